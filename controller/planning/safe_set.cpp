@@ -1,0 +1,64 @@
+#include "controller/planning/safe_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+namespace qsmpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+void check_box(const Box& box, Eigen::Index dim, const std::string& name) {
+  if (box.lower.size() != dim || box.upper.size() != dim) {
+    throw std::invalid_argument(name + ": lower and upper need " + std::to_string(dim) +
+                                " entries each");
+  }
+  if (!(box.lower.array() < box.upper.array()).all()) {
+    throw std::invalid_argument(name + ": lower must be less than upper in every coordinate");
+  }
+}
+
+/// How deep `point` is inside `box`; negative outside, where only the sign matters.
+double depth_in_box(const Eigen::Ref<const Eigen::VectorXd>& point, const Box& box) {
+  return std::min((point - box.lower).minCoeff(), (box.upper - point).minCoeff());
+}
+
+}  // namespace
+
+SafeSet unbounded_safe_set(Eigen::Index dim) {
+  return {.bounds = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
+                     .upper = Eigen::VectorXd::Constant(dim, kInfinity)},
+          .obstacles = {}};
+}
+
+void check_safe_set(const SafeSet& safe_set) {
+  check_box(safe_set.bounds, safe_set.dim(), "safe set bounds");
+  for (const Box& obstacle : safe_set.obstacles) {
+    check_box(obstacle, safe_set.dim(), "obstacle");
+  }
+}
+
+double distance_to_box(const Eigen::Ref<const Eigen::VectorXd>& point, const Box& box) {
+  return (box.lower - point).cwiseMax(point - box.upper).cwiseMax(0.0).norm();
+}
+
+double distance_to_unsafe(const Eigen::Ref<const Eigen::VectorXd>& point, const SafeSet& safe_set) {
+  return std::max(0.0, clearance(point, safe_set));
+}
+
+double clearance(const Eigen::Ref<const Eigen::VectorXd>& point, const SafeSet& safe_set) {
+  // Inside the bounds the depth is the distance to the nearest face; outside, minus the distance.
+  const double depth = depth_in_box(point, safe_set.bounds);
+  double least = depth > 0.0 ? depth : -distance_to_box(point, safe_set.bounds);
+  for (const Box& obstacle : safe_set.obstacles) {
+    const double depth_in_obstacle = depth_in_box(point, obstacle);
+    least = std::min(least, depth_in_obstacle >= 0.0 ? -depth_in_obstacle
+                                                     : distance_to_box(point, obstacle));
+  }
+  return least;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,100 @@
+// The record of one episode: one growing value, and the only thing that leaves an episode.
+// Videos, reports and summaries are made from it alone.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/plant/plant.hpp"
+#include "harness/scenario/scenario.hpp"
+
+namespace qsmpc {
+
+/// The weighted points of one stage of the horizon.
+struct StageParticles {
+  StateBatch locations;     ///< state_dim x n
+  Eigen::VectorXd weights;  ///< n, non-negative, sums to 1
+};
+
+/// The W2 error budget of one stage, split by source; `total` bounds the distance between the true
+/// law of the model and the particles.
+struct StageBudget {
+  double belief = 0.0;
+  double noise = 0.0;
+  double compression = 0.0;
+  double total = 0.0;
+};
+
+/// Upper bounds of the probability that the model's state is unsafe at one stage of the plan.
+struct StageCertificate {
+  double value = 1.0;     ///< the least of the sound bounds
+  std::string kind;       ///< which one it was: "c1", "c2", …
+  double particles = 1.0; ///< C1: worst case over the W2 ball around the particles
+  double mixture = 1.0;   ///< C2: the same before the last noise, which stays Gaussian
+  double thesis = 1.0;    ///< Algorithms 3 and 4 as printed; not sound
+  double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe; no bound of anything
+};
+
+struct CostParts {
+  double state = 0.0;
+  double input = 0.0;
+  double terminal = 0.0;
+  double box = 0.0;
+  double obstacle = 0.0;
+  [[nodiscard]] double total() const { return state + input + terminal + box + obstacle; }
+};
+
+/// Wall-clock times of one control step, in milliseconds; never part of the state.
+struct StepTiming {
+  double quantise = 0.0;
+  double propagate = 0.0;  ///< predictions outside the solver: linearisation, assignments, particles
+  double optimise = 0.0;
+  double certify = 0.0;
+  double total = 0.0;      ///< quantise + propagate + optimise + certify
+  double simulate = 0.0;   ///< the plant
+};
+
+/// Everything about one control period, which begins at `time`.
+struct StepRecord {
+  double time = 0.0;               ///< s
+  Eigen::VectorXd state;           ///< true state when the input is chosen, state_dim
+  Eigen::VectorXd input;           ///< input that is applied, input_dim
+  Eigen::VectorXd disturbance;     ///< added at the end of the period, state_dim
+  Eigen::VectorXd belief_mean;     ///< what the plan was made for, state_dim
+  Eigen::MatrixXd belief_covariance;
+  Eigen::MatrixXd plan_inputs;     ///< input_dim x horizon
+  Eigen::MatrixXd plan_states;     ///< nominal states, state_dim x (horizon + 1)
+  CostParts cost;
+  std::string solver_status;       ///< name of the solver's status
+  bool fallback = false;           ///< the shifted previous plan was applied instead
+  int iterations = 0;              ///< cost-and-gradient evaluations
+  std::vector<StageParticles> particles;       ///< horizon + 1
+  std::vector<StageBudget> budgets;            ///< horizon + 1
+  std::vector<StageCertificate> certificates;  ///< stages 1 … horizon
+  StepTiming timing;
+};
+
+/// How an episode ended.
+enum class Outcome { kReached, kTimeout, kLeftSafeSet, kFault, kInterrupted };
+
+/// "reached", "timeout", "left_safe_set", "fault" or "interrupted".
+[[nodiscard]] const char* outcome_name(Outcome outcome);
+/// The inverse of `outcome_name`; throws std::invalid_argument.
+[[nodiscard]] Outcome outcome_from_name(const std::string& name);
+
+struct Trace {
+  Scenario scenario;
+  std::string scenario_text;  ///< the resolved scenario as YAML
+  std::uint64_t seed = 0;
+  std::string version;
+  std::vector<StepRecord> steps;
+  Eigen::VectorXd final_state;   ///< true state after the last period, state_dim
+  std::vector<MotionSample> motion;   ///< of the whole episode, oldest first
+  Outcome outcome = Outcome::kTimeout;
+  std::string fault;  ///< the simulator's words where the outcome is kFault
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,37 @@
+// The errors that end a command, each with the exit code that the command line documents.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace qsmpc {
+
+/// A wrong input: a file that does not say what it should. Exit code 2.
+/// `what()` is one line: "FILE:LINE: KEY: found F, expected E". Parts not known are left out.
+class InputError : public std::runtime_error {
+ public:
+  struct Where {
+    std::string file{};
+    int line = 0;       ///< from 1; 0 where a line makes no sense
+    std::string key{};  ///< dotted path, e.g. "controller.quantisation.state"
+    std::string found{};
+    std::string expected{};
+  };
+  explicit InputError(Where where);
+  [[nodiscard]] const Where& where() const { return where_; }
+
+ private:
+  Where where_;
+};
+
+/// A file or folder that cannot be read or written. Exit code 3.
+class IoError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// `text` on one line and safe for a terminal: control characters become spaces, a text longer
+/// than `limit` bytes is cut and marked with "…".
+[[nodiscard]] std::string printable(const std::string& text, std::size_t limit = 80);
+
+}  // namespace qsmpc

@@ -1,0 +1,44 @@
+// What is driven: something that holds a true state, takes an input for one control period and is
+// then disturbed. The planner never sees a plant, only the states that it shows at the end of a
+// period.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace qsmpc {
+
+/// Where the vehicle was between two control instants, for drawing.
+struct MotionSample {
+  double time = 0.0;         ///< s since reset
+  std::vector<double> qpos;  ///< generalised position of the MuJoCo model; empty without one
+};
+
+/// What one control period brought.
+struct PlantStep {
+  Eigen::VectorXd state;              ///< true state after the disturbance, state_dim
+  std::vector<MotionSample> motion;   ///< samples within the period, oldest first
+  std::optional<std::string> fault;   ///< the simulator's own words when it broke; state is then the last good one
+};
+
+class Plant {
+ public:
+  virtual ~Plant() = default;
+
+  /// Puts the plant at rest of its low-level loops at `state` (state_dim, finite) and time 0, and
+  /// returns the first motion sample.
+  virtual MotionSample reset(const Eigen::VectorXd& state) = 0;
+
+  /// Holds `input` (input_dim) for one control period, then adds `disturbance` (state_dim) to the
+  /// state. A fault of the simulator is returned, never thrown; after one, only `reset` helps.
+  virtual PlantStep advance(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance) = 0;
+
+  /// The true state now, state_dim.
+  [[nodiscard]] virtual Eigen::VectorXd state() const = 0;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,88 @@
+// One experiment as plain values: what a scenario file says, checked and with defaults filled in.
+//
+// Keys and their meaning are documented in docs/scenario.md. A Scenario that was loaded is valid:
+// sizes agree with the system, covariances are positive semidefinite, names are known.
+#pragma once
+
+#include <Eigen/Core>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controller/planning/safe_set.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+struct Scenario {
+  struct Model {
+    std::string system;       ///< a name from `qsmpc list systems`
+    ParameterMap parameters;  ///< all of them, defaults filled in
+  };
+  struct Plant {
+    std::string kind = "mujoco";  ///< a name from `qsmpc list plants`: "analytic" or "mujoco"
+    std::string mjcf;             ///< absolute path of the XML; also drawn for an analytic plant
+  };
+  struct GaussianValue {
+    Eigen::VectorXd mean;        ///< state_dim
+    Eigen::MatrixXd covariance;  ///< state_dim x state_dim
+  };
+  struct Target {
+    Eigen::VectorXd state;  ///< state_dim
+    double radius = 0.5;    ///< m, in the plane of position (or over all states without one)
+  };
+  struct Quantisation {
+    int state = 100;       ///< points of the belief
+    int noise = 100;       ///< points of the process noise
+    int compressed = 100;  ///< points kept after each step
+  };
+  struct Cost {
+    Eigen::MatrixXd state;     ///< Q, state_dim x state_dim
+    Eigen::MatrixXd input;     ///< R, input_dim x input_dim
+    Eigen::MatrixXd terminal;  ///< Q_term, state_dim x state_dim
+  };
+  struct Penalty {
+    std::string shape = "smooth";  ///< "smooth" or "thesis" (Algorithm 2)
+    double box = 450.0;            ///< weight
+    double obstacle = 400.0;       ///< weight
+    double length = 0.5;           ///< m, how far outside the unsafe set the smooth shape begins
+  };
+  struct Controller {
+    int horizon = 8;
+    std::string policy = "closed_loop";             ///< or "open_loop"
+    std::optional<Eigen::MatrixXd> feedback_gain;   ///< K, input_dim x state_dim; else from LQR
+    std::string solver = "lbfgs";                   ///< a name from `qsmpc list solvers`
+    Quantisation quantisation;
+    bool propagate_noise = true;
+    Cost cost;
+    Penalty penalty;
+    Eigen::VectorXd input_lower;  ///< input_dim
+    Eigen::VectorXd input_upper;  ///< input_dim
+    int max_iterations = 100;
+  };
+  struct Video {
+    std::string camera = "chase";  ///< "chase", "top" or "fixed"
+    int width = 1280;              ///< pixels
+    int height = 720;              ///< pixels
+    int fps = 30;                  ///< frames a second
+  };
+
+  std::string name;
+  std::string description;
+  Model model;
+  Plant plant;
+  double time_step = 0.1;  ///< s, the control period
+  GaussianValue initial_state;
+  Eigen::MatrixXd disturbance_covariance;  ///< state_dim x state_dim, per control period
+  SafeSet safe_set;
+  Target target;
+  Controller controller;
+  int step_limit = 200;
+  bool stop_when_unsafe = true;  ///< whether the episode ends when the true state is unsafe
+  std::uint64_t seed = 0;
+  Video video;
+};
+
+}  // namespace qsmpc

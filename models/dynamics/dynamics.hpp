@@ -1,0 +1,106 @@
+// A controlled discrete-time system x⁺ = f(x, u), evaluated on whole batches of states.
+//
+// The planner, the propagators and the certificates know systems only through this interface;
+// process noise is additive and belongs to the one who propagates: x⁺ = f(x, u) + w.
+//
+//   auto car = qsmpc::make_dynamics("dubins", {{"speed", 1.5}}, /*time_step=*/0.1);
+//   StateBatch next(3, n);
+//   car->step(states, inputs, next);
+#pragma once
+
+#include <Eigen/Core>
+
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace qsmpc {
+
+/// A batch of vectors, one coordinate a row and one particle a column, so that a coordinate of all
+/// particles is contiguous in memory.
+using StateBatch = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// One coordinate of a state or of an input.
+struct Coordinate {
+  std::string name;       ///< as users write it in scenario files, e.g. "x"
+  std::string unit;       ///< SI symbol, e.g. "m", "rad", "rad/s"
+  bool is_angle = false;  ///< whether values 2π apart mean the same
+};
+
+/// The names of a system's states and inputs, its default input bounds, and which two states are
+/// its position in the plane.
+struct SystemDescription {
+  std::string name;
+  std::string summary;  ///< one line for `qsmpc list systems`
+  std::vector<Coordinate> states;
+  std::vector<Coordinate> inputs;
+  Eigen::VectorXd input_lower;  ///< input_dim
+  Eigen::VectorXd input_upper;  ///< input_dim
+  /// Indices of the states that are drawn as x, y and heading; -1 where a system has none.
+  int position_x = -1;
+  int position_y = -1;
+  int heading = -1;
+
+  /// Index of the state called `name`, or -1.
+  [[nodiscard]] int state_index(std::string_view name) const;
+};
+
+/// x⁺ = f(x, u) over one control period. Implementations hold constants only: every function is
+/// const, thread-safe and allocates nothing.
+class Dynamics {
+ public:
+  using BatchView = Eigen::Ref<const StateBatch>;
+  using BatchOut = Eigen::Ref<StateBatch>;
+
+  virtual ~Dynamics() = default;
+
+  [[nodiscard]] virtual const SystemDescription& description() const = 0;
+  [[nodiscard]] int state_dim() const { return static_cast<int>(description().states.size()); }
+  [[nodiscard]] int input_dim() const { return static_cast<int>(description().inputs.size()); }
+
+  /// next = f(states, inputs), column by column.
+  /// states, next: state_dim x n; inputs: input_dim x n. `next` must not alias `states`.
+  virtual void step(const BatchView& states, const BatchView& inputs, BatchOut next) const = 0;
+
+  /// Reverse mode of `step`: state_adjoint = (∂f/∂x)ᵀ next_adjoint and
+  /// input_adjoint = (∂f/∂u)ᵀ next_adjoint, column by column; both are overwritten.
+  virtual void pullback(const BatchView& states, const BatchView& inputs,
+                        const BatchView& next_adjoint, BatchOut state_adjoint,
+                        BatchOut input_adjoint) const = 0;
+
+  /// ∂f/∂x (state_dim x state_dim) and ∂f/∂u (state_dim x input_dim) at one point.
+  virtual void jacobians(const Eigen::Ref<const Eigen::VectorXd>& state,
+                         const Eigen::Ref<const Eigen::VectorXd>& input,
+                         Eigen::Ref<Eigen::MatrixXd> state_jacobian,
+                         Eigen::Ref<Eigen::MatrixXd> input_jacobian) const = 0;
+
+  /// A rigorous upper bound of the Lipschitz constant, in the Euclidean norm, of
+  /// x ↦ f(x, sat(v + K (x − x̄))) over all x, v and x̄, where `sat` clamps to any box.
+  /// gain: K, input_dim x state_dim; zero for an open-loop policy. Infinity where no global bound
+  /// is known, so that a certificate built on it is trivial instead of wrong.
+  [[nodiscard]] virtual double lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const = 0;
+};
+
+/// A system's numeric constants by name, e.g. {"speed", 1.5}.
+using ParameterMap = std::map<std::string, double, std::less<>>;
+
+/// What `qsmpc list systems` and the scenario loader need to know of a system before it is built.
+struct SystemEntry {
+  std::string name;
+  std::string summary;
+  ParameterMap defaults;  ///< every parameter that may be given, with its default
+};
+
+/// The table of systems.
+[[nodiscard]] const std::vector<SystemEntry>& systems();
+
+/// Builds the system called `name` for the control period `time_step` (s, > 0). Parameters not
+/// given take their default. Throws std::invalid_argument on an unknown system or parameter, or
+/// on a value out of its range; the message says what is known.
+[[nodiscard]] std::unique_ptr<const Dynamics> make_dynamics(std::string_view name,
+                                                            const ParameterMap& parameters,
+                                                            double time_step);
+
+}  // namespace qsmpc

@@ -1,0 +1,79 @@
+// What a picture shows, as plain values: nothing here knows of planners or episodes.
+// Lengths are metres in the plane of the ground unless a name says otherwise.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+namespace qsmpc {
+
+struct PlanarPoint {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+struct PlanarRectangle {
+  double x_lower = 0.0;
+  double x_upper = 0.0;
+  double y_lower = 0.0;
+  double y_upper = 0.0;
+};
+
+struct PlanarPose {
+  double x = 0.0;
+  double y = 0.0;
+  double heading = 0.0;  ///< rad
+};
+
+/// What stands still during an episode.
+struct World {
+  PlanarRectangle bounds;  ///< the safe set's box; infinite sides are not drawn
+  std::vector<PlanarRectangle> obstacles;
+  PlanarPoint target;
+  double target_radius = 0.5;
+};
+
+/// The weighted points of one stage of the horizon.
+struct ParticleStage {
+  std::vector<PlanarPoint> points;
+  std::vector<double> weights;  ///< as many as points; they sum to one
+};
+
+/// One line of a strip chart in the head-up display: the history of a quantity up to now.
+struct StripChart {
+  std::string label;           ///< e.g. "input ω [rad/s]"; ASCII
+  std::vector<double> values;  ///< one a control period, oldest first
+  double lower = 0.0;          ///< range of the chart
+  double upper = 1.0;
+  bool logarithmic = false;
+};
+
+/// What the head-up display says: rows of a name and a value.
+struct HudRow {
+  std::string name;
+  std::string value;
+};
+
+/// One moment of an episode.
+struct Frame {
+  double time = 0.0;
+  std::vector<double> qpos;  ///< pose of every joint of the vehicle model; empty: use `pose`
+  PlanarPose pose;           ///< where the vehicle stands if `qpos` is empty; the chase camera follows it
+  std::vector<PlanarPoint> driven_path;   ///< oldest first
+  std::vector<PlanarPoint> planned_path;  ///< stage 0 first
+  std::vector<ParticleStage> particles;   ///< stage 0 first; coloured by stage, sized by weight
+  std::string title;
+  std::vector<HudRow> hud;
+  std::vector<StripChart> charts;
+  std::string banner;  ///< large text, e.g. "target reached"; empty: none
+};
+
+/// An image as it is encoded: rows from the top, 3 bytes a pixel (red, green, blue).
+struct Image {
+  int width = 0;
+  int height = 0;
+  std::vector<unsigned char> rgb;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,29 @@
+# What every target of the project shares: warnings, sanitizers, the include root.
+
+add_library(qsmpc_options INTERFACE)
+target_include_directories(qsmpc_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_features(qsmpc_options INTERFACE cxx_std_20)
+target_compile_options(qsmpc_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror
+  # A contraction into a fused multiply-add would make results depend on the processor.
+  -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 reports false positives from inside Eigen and the standard library at -O3.
+  target_compile_options(qsmpc_options INTERFACE
+    -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-null-dereference
+    -Wno-restrict)
+endif()
+if(QSMPC_SANITIZE)
+  target_compile_options(qsmpc_options INTERFACE
+    -fsanitize=${QSMPC_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all -g)
+  target_link_options(qsmpc_options INTERFACE -fsanitize=${QSMPC_SANITIZE})
+endif()
+
+# qsmpc_library(NAME SOURCES… LINK libraries…): one room as a static library.
+function(qsmpc_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES})
+  target_link_libraries(${name} PUBLIC qsmpc_options ${ARG_LINK})
+  set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+endfunction()
