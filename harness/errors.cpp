@@ -20,7 +20,8 @@ std::string describe(const InputError::Where& where) {
 
 }  // namespace
 
-InputError::InputError(Where where) : std::runtime_error(describe(where)), where_(std::move(where)) {}
+InputError::InputError(Where where)
+    : std::runtime_error(describe(where)), where_(std::move(where)) {}
 
 std::string printable(const std::string& text, std::size_t limit) {
   std::string line;

@@ -55,8 +55,8 @@ double clearance(const Eigen::Ref<const Eigen::VectorXd>& point, const SafeSet& 
   double least = depth > 0.0 ? depth : -distance_to_box(point, safe_set.bounds);
   for (const Box& obstacle : safe_set.obstacles) {
     const double depth_in_obstacle = depth_in_box(point, obstacle);
-    least = std::min(least, depth_in_obstacle >= 0.0 ? -depth_in_obstacle
-                                                     : distance_to_box(point, obstacle));
+    least = std::min(
+        least, depth_in_obstacle >= 0.0 ? -depth_in_obstacle : distance_to_box(point, obstacle));
   }
   return least;
 }

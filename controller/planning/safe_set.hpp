@@ -4,9 +4,9 @@
 // that every probability of being unsafe that is computed from it is on the cautious side.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace qsmpc {
 

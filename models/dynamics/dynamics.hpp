@@ -8,13 +8,13 @@
 //   car->step(states, inputs, next);
 #pragma once
 
-#include <Eigen/Core>
-
 #include <map>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace qsmpc {
 

@@ -1,0 +1,103 @@
+#include "models/dynamics/dubins.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "models/dynamics/templated_dynamics.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kDefaultSpeed = 1.5;         // m/s, Table B-1
+constexpr double kDefaultYawRateBound = 2.0;  // rad/s, Table B-1
+constexpr const char* kSummary = "Dubins car: x, y, heading; steered by its yaw rate (Eq. 5-1)";
+
+/// The batch functions by hand: rows are contiguous, so each line is one vector operation.
+class DubinsDynamics final : public TemplatedDynamics<Dubins> {
+ public:
+  using TemplatedDynamics::TemplatedDynamics;
+
+  void step(const BatchView& states, const BatchView& inputs, BatchOut next) const override {
+    const double reach = model().speed * model().time_step;
+    next.row(Dubins::kX) =
+        states.row(Dubins::kX).array() + reach * states.row(Dubins::kHeading).array().cos();
+    next.row(Dubins::kY) =
+        states.row(Dubins::kY).array() + reach * states.row(Dubins::kHeading).array().sin();
+    next.row(Dubins::kHeading) =
+        states.row(Dubins::kHeading) + model().time_step * inputs.row(Dubins::kYawRate);
+  }
+
+  void pullback(const BatchView& states, const BatchView& /*inputs*/, const BatchView& next_adjoint,
+                BatchOut state_adjoint, BatchOut input_adjoint) const override {
+    const double reach = model().speed * model().time_step;
+    const auto heading = states.row(Dubins::kHeading).array();
+    state_adjoint.row(Dubins::kX) = next_adjoint.row(Dubins::kX);
+    state_adjoint.row(Dubins::kY) = next_adjoint.row(Dubins::kY);
+    state_adjoint.row(Dubins::kHeading) =
+        next_adjoint.row(Dubins::kHeading).array() +
+        reach * (next_adjoint.row(Dubins::kY).array() * heading.cos() -
+                 next_adjoint.row(Dubins::kX).array() * heading.sin());
+    input_adjoint.row(Dubins::kYawRate) = model().time_step * next_adjoint.row(Dubins::kHeading);
+  }
+};
+
+/// Largest singular value of [[a, b], [c, d]].
+double spectral_norm(double a, double b, double c, double d) {
+  const double sum = a * a + b * b + c * c + d * d;
+  const double determinant = a * d - b * c;
+  const double root = std::sqrt(std::max(0.0, sum * sum - 4.0 * determinant * determinant));
+  return std::sqrt(0.5 * (sum + root));
+}
+
+}  // namespace
+
+SystemDescription Dubins::description() const {
+  SystemDescription description;
+  description.name = "dubins";
+  description.summary = kSummary;
+  description.states = {{"x", "m"}, {"y", "m"}, {"heading", "rad", true}};
+  description.inputs = {{"yaw_rate", "rad/s"}};
+  description.input_lower = Eigen::VectorXd::Constant(1, -kDefaultYawRateBound);
+  description.input_upper = Eigen::VectorXd::Constant(1, kDefaultYawRateBound);
+  description.position_x = kX;
+  description.position_y = kY;
+  description.heading = kHeading;
+  return description;
+}
+
+// Where the clamp is differentiable, the closed loop's Jacobian is, with a = vT, e = (−sin φ, cos
+// φ), K = [k_xyᵀ, k_φ] and the clamp's slope s ∈ {0, 1},
+//
+//     J = [ I₂        a e      ]
+//         [ T s k_xyᵀ 1 + T s k_φ ].
+//
+// Open loop (K = 0) its norm does not depend on φ and is that of [[1, a], [0, 1]], which is
+// a/2 + √(1 + a²/4): attained. Otherwise the norm of a block matrix is at most that of the matrix
+// of its blocks' norms, and the norm of a non-negative matrix grows with its entries. The closed
+// loop is piecewise differentiable, so its Lipschitz constant is the largest of these norms.
+double Dubins::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const {
+  if (gain.rows() != kInputDim || gain.cols() != kStateDim) {
+    throw std::invalid_argument("dubins: the feedback gain must be 1 x 3");
+  }
+  const double reach = speed * time_step;
+  const double sideways = time_step * gain.leftCols<2>().norm();
+  const double turning = std::max(1.0, std::abs(1.0 + time_step * gain(0, kHeading)));
+  return spectral_norm(1.0, reach, sideways, turning);
+}
+
+std::unique_ptr<const Dynamics> make_dubins(const ParameterMap& parameters, double time_step) {
+  const double speed = parameters.at("speed");
+  if (!(std::isfinite(speed) && speed >= 0.0)) {
+    throw std::invalid_argument("dubins: speed must be a finite number of at least 0 m/s");
+  }
+  if (!(std::isfinite(time_step) && time_step > 0.0)) {
+    throw std::invalid_argument("dubins: time_step must be a finite number above 0 s");
+  }
+  return std::make_unique<DubinsDynamics>(Dubins{.speed = speed, .time_step = time_step});
+}
+
+SystemEntry dubins_entry() {
+  return {.name = "dubins", .summary = kSummary, .defaults = {{"speed", kDefaultSpeed}}};
+}
+
+}  // namespace qsmpc

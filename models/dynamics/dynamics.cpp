@@ -1,0 +1,68 @@
+#include "models/dynamics/dynamics.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "models/dynamics/dubins.hpp"
+
+namespace qsmpc {
+namespace {
+
+using Factory = std::unique_ptr<const Dynamics> (*)(const ParameterMap&, double);
+
+struct Registration {
+  SystemEntry entry;
+  Factory make;
+};
+
+const std::vector<Registration>& registrations() {
+  static const std::vector<Registration> kTable = {
+      {dubins_entry(), make_dubins},
+  };
+  return kTable;
+}
+
+std::string joined_names(const ParameterMap& parameters) {
+  std::string names;
+  for (const auto& [name, value] : parameters) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+}  // namespace
+
+int SystemDescription::state_index(std::string_view wanted) const {
+  const auto found = std::find_if(states.begin(), states.end(),
+                                  [&](const Coordinate& state) { return state.name == wanted; });
+  return found == states.end() ? -1 : static_cast<int>(found - states.begin());
+}
+
+const std::vector<SystemEntry>& systems() {
+  static const std::vector<SystemEntry> kEntries = [] {
+    std::vector<SystemEntry> entries;
+    for (const Registration& registration : registrations()) entries.push_back(registration.entry);
+    return entries;
+  }();
+  return kEntries;
+}
+
+std::unique_ptr<const Dynamics> make_dynamics(std::string_view name, const ParameterMap& parameters,
+                                              double time_step) {
+  for (const auto& [entry, make] : registrations()) {
+    if (entry.name != name) continue;
+    ParameterMap complete = entry.defaults;
+    for (const auto& [key, value] : parameters) {
+      const auto known = complete.find(key);
+      if (known == complete.end()) {
+        throw std::invalid_argument(entry.name + " has no parameter '" + key +
+                                    "'; it has: " + joined_names(entry.defaults));
+      }
+      known->second = value;
+    }
+    return make(complete, time_step);
+  }
+  std::string known;
+  for (const SystemEntry& entry : systems()) known += (known.empty() ? "" : ", ") + entry.name;
+  throw std::invalid_argument("no system '" + std::string(name) + "'; known are: " + known);
+}
+
+}  // namespace qsmpc
