@@ -1,0 +1,33 @@
+// Compression of a weighted point set to fewer points, with a known Wasserstein error.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+
+namespace qsmpc {
+
+/// A partition of a measure's points into clusters and the measure of the clusters' means.
+struct Compression {
+  DiscreteMeasure measure;      ///< one point a cluster; no cluster is empty
+  std::vector<int> assignment;  ///< cluster of every point of the original
+  double w2 = 0.0;  ///< √Σ ρ_i |c_i − c̃_{a(i)}|², the cost of the coupling i → a(i)
+  Eigen::MatrixXd
+      within_covariance;  ///< d x d, Σ ρ_i (c_i − c̃)(c_i − c̃)ᵀ: what the compression lost
+};
+
+/// Compresses `measure` to at most `count` points, deterministically.
+///
+/// The points are split recursively, always the cluster with the largest second moment along one
+/// axis, at that axis's mean; then `refinements` rounds of reassignment to the nearest mean follow.
+/// The result's points are the means of their clusters and its weights their masses, so that mass
+/// and mean are kept exactly (up to rounding), the lost covariance is `within_covariance`, and
+/// `w2`, the cost of a coupling, bounds the 2-Wasserstein distance from above; with Voronoi
+/// clusters it is equal to it. Points of weight zero are assigned but carry nothing. Costs O(n log
+/// count) and, for each refinement, O(n count). Throws std::invalid_argument if count < 1,
+/// refinements < 0, or as check_measure.
+[[nodiscard]] Compression compress(const DiscreteMeasure& measure, int count, int refinements = 1);
+
+}  // namespace qsmpc
