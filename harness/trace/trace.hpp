@@ -2,11 +2,11 @@
 // Videos, reports and summaries are made from it alone.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "harness/plant/plant.hpp"
 #include "harness/scenario/scenario.hpp"
@@ -30,11 +30,11 @@ struct StageBudget {
 
 /// Upper bounds of the probability that the model's state is unsafe at one stage of the plan.
 struct StageCertificate {
-  double value = 1.0;     ///< the least of the sound bounds
-  std::string kind;       ///< which one it was: "c1", "c2", …
-  double particles = 1.0; ///< C1: worst case over the W2 ball around the particles
-  double mixture = 1.0;   ///< C2: the same before the last noise, which stays Gaussian
-  double thesis = 1.0;    ///< Algorithms 3 and 4 as printed; not sound
+  double value = 1.0;        ///< the least of the sound bounds
+  std::string kind;          ///< which one it was: "c1", "c2", …
+  double particles = 1.0;    ///< C1: worst case over the W2 ball around the particles
+  double mixture = 1.0;      ///< C2: the same before the last noise, which stays Gaussian
+  double thesis = 1.0;       ///< Algorithms 3 and 4 as printed; not sound
   double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe; no bound of anything
 };
 
@@ -50,27 +50,28 @@ struct CostParts {
 /// Wall-clock times of one control step, in milliseconds; never part of the state.
 struct StepTiming {
   double quantise = 0.0;
-  double propagate = 0.0;  ///< predictions outside the solver: linearisation, assignments, particles
+  double propagate =
+      0.0;  ///< predictions outside the solver: linearisation, assignments, particles
   double optimise = 0.0;
   double certify = 0.0;
-  double total = 0.0;      ///< quantise + propagate + optimise + certify
-  double simulate = 0.0;   ///< the plant
+  double total = 0.0;     ///< quantise + propagate + optimise + certify
+  double simulate = 0.0;  ///< the plant
 };
 
 /// Everything about one control period, which begins at `time`.
 struct StepRecord {
-  double time = 0.0;               ///< s
-  Eigen::VectorXd state;           ///< true state when the input is chosen, state_dim
-  Eigen::VectorXd input;           ///< input that is applied, input_dim
-  Eigen::VectorXd disturbance;     ///< added at the end of the period, state_dim
-  Eigen::VectorXd belief_mean;     ///< what the plan was made for, state_dim
+  double time = 0.0;            ///< s
+  Eigen::VectorXd state;        ///< true state when the input is chosen, state_dim
+  Eigen::VectorXd input;        ///< input that is applied, input_dim
+  Eigen::VectorXd disturbance;  ///< added at the end of the period, state_dim
+  Eigen::VectorXd belief_mean;  ///< what the plan was made for, state_dim
   Eigen::MatrixXd belief_covariance;
-  Eigen::MatrixXd plan_inputs;     ///< input_dim x horizon
-  Eigen::MatrixXd plan_states;     ///< nominal states, state_dim x (horizon + 1)
+  Eigen::MatrixXd plan_inputs;  ///< input_dim x horizon
+  Eigen::MatrixXd plan_states;  ///< nominal states, state_dim x (horizon + 1)
   CostParts cost;
-  std::string solver_status;       ///< name of the solver's status
-  bool fallback = false;           ///< the shifted previous plan was applied instead
-  int iterations = 0;              ///< cost-and-gradient evaluations
+  std::string solver_status;                   ///< name of the solver's status
+  bool fallback = false;                       ///< the shifted previous plan was applied instead
+  int iterations = 0;                          ///< cost-and-gradient evaluations
   std::vector<StageParticles> particles;       ///< horizon + 1
   std::vector<StageBudget> budgets;            ///< horizon + 1
   std::vector<StageCertificate> certificates;  ///< stages 1 … horizon
@@ -91,8 +92,8 @@ struct Trace {
   std::uint64_t seed = 0;
   std::string version;
   std::vector<StepRecord> steps;
-  Eigen::VectorXd final_state;   ///< true state after the last period, state_dim
-  std::vector<MotionSample> motion;   ///< of the whole episode, oldest first
+  Eigen::VectorXd final_state;       ///< true state after the last period, state_dim
+  std::vector<MotionSample> motion;  ///< of the whole episode, oldest first
   Outcome outcome = Outcome::kTimeout;
   std::string fault;  ///< the simulator's words where the outcome is kFault
 };

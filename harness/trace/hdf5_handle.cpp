@@ -1,0 +1,55 @@
+#include "harness/trace/hdf5_handle.hpp"
+
+#include <string_view>
+
+namespace qsmpc::hdf5 {
+namespace {
+
+std::recursive_mutex& mutex() {
+  // Never destroyed: a file may still close itself while the process's statics are torn down.
+  static auto* const kMutex = new std::recursive_mutex;
+  return *kMutex;
+}
+
+}  // namespace
+
+Lock::Lock() : lock_(mutex()) {
+  static const herr_t kSilenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+  static_cast<void>(kSilenced);
+}
+
+std::string error_words() {
+  std::string words;
+  const auto visit = [](unsigned n, const H5E_error2_t* error, void* data) -> herr_t {
+    auto& text = *static_cast<std::string*>(data);
+    if (n == 0 && error->desc != nullptr) text = error->desc;
+    return 0;
+  };
+  H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, visit, &words);
+  constexpr std::string_view kSystem = "error message = '";
+  if (const auto at = words.find(kSystem); at != std::string::npos) {
+    const auto begin = at + kSystem.size();
+    return words.substr(begin, words.find('\'', begin) - begin);
+  }
+  return words.empty() ? "HDF5 gave no reason" : "HDF5: " + words;
+}
+
+Handle text_type(std::size_t bytes) {
+  Handle type(H5Tcopy(H5T_C_S1), H5Tclose);
+  H5Tset_size(type.get(), bytes);
+  H5Tset_cset(type.get(), H5T_CSET_UTF8);
+  H5Tset_strpad(type.get(), H5T_STR_NULLPAD);
+  return type;
+}
+
+Handle file_access() {
+  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  // One format, whatever later version of the library this is built with.
+  H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110);
+  H5Pset_fclose_degree(access.get(), H5F_CLOSE_STRONG);
+  // A file system that knows no locks is no reason to refuse.
+  H5Pset_file_locking(access.get(), /*use_file_locking=*/true, /*ignore_when_disabled=*/true);
+  return access;
+}
+
+}  // namespace qsmpc::hdf5

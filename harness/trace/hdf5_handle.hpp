@@ -1,0 +1,52 @@
+// HDF5's identifiers as owned values, for `hdf5_file.cpp` alone: the only header with its types.
+#pragma once
+
+#include <cstddef>
+#include <mutex>
+#include <string>
+#include <utility>
+
+#include <hdf5.h>
+
+namespace qsmpc::hdf5 {
+
+/// HDF5's lock; taking it also silences the printing of its error stack.
+class Lock {
+ public:
+  Lock();
+
+ private:
+  std::lock_guard<std::recursive_mutex> lock_;
+};
+
+/// Owns one HDF5 identifier.
+class Handle {
+ public:
+  using Close = herr_t (*)(hid_t);
+  Handle() = default;
+  Handle(hid_t id, Close close) : id_(id), close_(close) {}
+  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(id_, other.id_);
+    std::swap(close_, other.close_);
+    return *this;
+  }
+  ~Handle() { reset(); }
+
+  [[nodiscard]] hid_t get() const { return id_; }
+  [[nodiscard]] bool ok() const { return id_ >= 0; }
+  herr_t reset() { return ok() ? close_(std::exchange(id_, -1)) : 0; }
+
+ private:
+  hid_t id_ = -1;
+  Close close_ = nullptr;
+};
+
+/// The innermost message of HDF5's error stack; the system's own words alone where it has them.
+[[nodiscard]] std::string error_words();
+/// The type of texts of `bytes` bytes, or H5T_VARIABLE.
+[[nodiscard]] Handle text_type(std::size_t bytes);
+/// How files are opened: the format's version, locks, and what closing one closes with it.
+[[nodiscard]] Handle file_access();
+
+}  // namespace qsmpc::hdf5
