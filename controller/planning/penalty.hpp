@@ -1,0 +1,41 @@
+// Penalties that keep particles out of the unsafe set, with their gradients.
+//
+// `thesis` is Algorithm 2 and Eq. 4-10 as printed: flat inside an obstacle, so that a particle in
+// it is not pushed out, and with a halo of one unit whatever the unit is. `smooth` is the default:
+// with s the signed distance to the unsafe set (negative inside) and ℓ a stated length,
+//
+//     h(s) = 0 for s ≥ ℓ,  ½ (1 − s/ℓ)² for 0 ≤ s ≤ ℓ,  ½ − s/ℓ for s ≤ 0:
+//
+// continuously differentiable, ½ on the boundary, and growing with the depth inside, so that the
+// gradient points the way out from everywhere.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/planning/safe_set.hpp"
+
+namespace qsmpc {
+
+enum class PenaltyShape { kSmooth, kThesis };
+
+struct Penalty {
+  PenaltyShape shape = PenaltyShape::kSmooth;
+  double box = 450.0;       ///< weight of leaving the bounds, ≥ 0
+  double obstacle = 400.0;  ///< weight of entering an obstacle, ≥ 0
+  double length = 0.5;      ///< ℓ (m), > 0; `smooth` only
+};
+
+struct PenaltyValue {
+  double box = 0.0;
+  double obstacle = 0.0;
+};
+
+/// Σ_i weights_i · penalty(locations_i), box and obstacles apart; the gradient with respect to the
+/// locations is added to `adjoint` (d x n). Where two faces are equally near the gradient is that
+/// of one of them.
+[[nodiscard]] PenaltyValue add_penalty(const Points& locations, const Eigen::VectorXd& weights,
+                                       const SafeSet& safe_set, const Penalty& penalty,
+                                       Points& adjoint);
+
+}  // namespace qsmpc

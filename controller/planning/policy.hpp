@@ -1,0 +1,55 @@
+// Policies over a horizon (Eq. 4-16, 4-17): u_k(x) = sat(v_k + K_k (x − x̄_k)), where x̄ is the
+// noise-free trajectory under the nominal inputs v, and sat clamps to the input bounds. Open loop
+// is K = 0.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// Closed interval of each input.
+struct InputBounds {
+  Eigen::VectorXd lower;  ///< input_dim
+  Eigen::VectorXd upper;  ///< input_dim, greater than lower
+};
+
+struct Policy {
+  Eigen::MatrixXd inputs;              ///< v, input_dim x horizon, within the bounds
+  Eigen::MatrixXd states;              ///< x̄, state_dim x (horizon + 1)
+  std::vector<Eigen::MatrixXd> gains;  ///< K, horizon of input_dim x state_dim
+  InputBounds bounds;
+
+  [[nodiscard]] Eigen::Index horizon() const { return inputs.cols(); }
+};
+
+/// What the policy does at one state (state_dim) at stage `stage` (input_dim).
+[[nodiscard]] Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
+                                           const Eigen::Ref<const Eigen::VectorXd>& state);
+
+/// The same for every column of `states` (state_dim x n), written to `out` (input_dim x n).
+void policy_inputs(const Policy& policy, Eigen::Index stage, const Points& states, Points& out);
+
+/// x̄_0 = start, x̄_{k+1} = f(x̄_k, v_k): state_dim x (horizon + 1).
+[[nodiscard]] Eigen::MatrixXd nominal_states(const Dynamics& dynamics,
+                                             const Eigen::Ref<const Eigen::VectorXd>& start,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+
+/// Weights of ½ xᵀQx + ½ uᵀRu, summed over the stages, + ½ xᵀPx at the end.
+struct LqrWeights {
+  Eigen::MatrixXd state;     ///< Q, positive semidefinite
+  Eigen::MatrixXd input;     ///< R, positive definite
+  Eigen::MatrixXd terminal;  ///< P, positive semidefinite
+};
+
+/// Gains of the time-varying linear-quadratic regulator about the trajectory (states, inputs), by
+/// the Riccati recursion: K = −(R + BᵀPB)⁻¹BᵀPA. Not finite where the linearisation is not.
+[[nodiscard]] std::vector<Eigen::MatrixXd> lqr_gains(
+    const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
+    const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights);
+
+}  // namespace qsmpc

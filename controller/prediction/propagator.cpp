@@ -1,0 +1,157 @@
+#include "controller/prediction/propagator.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "controller/measure/compression.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kCompressed = "compressed";
+constexpr const char* kNoiseFree = "noise_free";
+
+/// Products with the noise quantiser, compressed to a number of clusters.
+class CompressedPropagator final : public Propagator {
+ public:
+  explicit CompressedPropagator(const PropagatorSettings& settings)
+      : noise_(quantise(settings.noise, settings.noise_points)),
+        compressed_points_(settings.compressed_points) {
+    if (compressed_points_ < 1) {
+      throw std::invalid_argument("propagator: at least one point must be kept");
+    }
+  }
+
+  [[nodiscard]] StageMap stage_map(const Points& stepped,
+                                   const Eigen::VectorXd& weights) const override {
+    const DiscreteMeasure product = product_measure(stepped, weights);
+    const Compression compression = compress(product, compressed_points_, /*refinements=*/0);
+    return sparse_map(compression, weights);
+  }
+
+  [[nodiscard]] double noise_w2() const override { return noise_.w2; }
+
+ private:
+  /// All sums f_i + d_j; the product of point i and noise j stands at i·m + j.
+  [[nodiscard]] DiscreteMeasure product_measure(const Points& stepped,
+                                                const Eigen::VectorXd& weights) const {
+    const Eigen::Index noise_size = noise_.measure.size();
+    DiscreteMeasure product{.locations = Points(stepped.rows(), stepped.cols() * noise_size),
+                            .weights = Eigen::VectorXd(stepped.cols() * noise_size)};
+    for (Eigen::Index i = 0; i < stepped.cols(); ++i) {
+      product.locations.middleCols(i * noise_size, noise_size) =
+          noise_.measure.locations.colwise() + stepped.col(i);
+      product.weights.segment(i * noise_size, noise_size) = weights[i] * noise_.measure.weights;
+    }
+    return product;
+  }
+
+  /// With Γ_ni = Σ_{j: a(i,j) = n} γ_j: A_ni = ρ_i Γ_ni / ρ̃_n and
+  /// b_n = Σ_i ρ_i Σ_{j: a(i,j) = n} γ_j d_j / ρ̃_n.
+  [[nodiscard]] StageMap sparse_map(const Compression& compression,
+                                    const Eigen::VectorXd& weights) const {
+    const Eigen::Index sources = weights.size();
+    const Eigen::Index noise_size = noise_.measure.size();
+    const Eigen::Index clusters = compression.measure.size();
+    StageMap map;
+    map.weights = compression.measure.weights;
+    map.compression_w2 = compression.w2;
+    map.offset = Points::Zero(noise_.measure.dim(), clusters);
+    Eigen::MatrixXd share = Eigen::MatrixXd::Zero(sources, clusters);  // ρ_i Γ_ni, by column n
+    for (Eigen::Index i = 0; i < sources; ++i) {
+      for (Eigen::Index j = 0; j < noise_size; ++j) {
+        const int n = compression.assignment[i * noise_size + j];
+        const double mass = weights[i] * noise_.measure.weights[j];
+        share(i, n) += mass;
+        map.offset.col(n) += mass * noise_.measure.locations.col(j);
+      }
+    }
+    map.row_begin.push_back(0);
+    for (Eigen::Index n = 0; n < clusters; ++n) {
+      map.offset.col(n) /= map.weights[n];
+      for (Eigen::Index i = 0; i < sources; ++i) {
+        if (share(i, n) == 0.0) continue;
+        map.column.push_back(static_cast<int>(i));
+        map.coefficient.push_back(share(i, n) / map.weights[n]);
+      }
+      map.row_begin.push_back(static_cast<int>(map.column.size()));
+    }
+    return map;
+  }
+
+  GaussianQuantisation noise_;
+  int compressed_points_;
+};
+
+/// Every point stays as it is. The noise is represented by its mean, so its whole standard
+/// deviation counts as error.
+class NoiseFreePropagator final : public Propagator {
+ public:
+  explicit NoiseFreePropagator(const PropagatorSettings& settings)
+      : noise_w2_(std::sqrt(settings.noise.covariance.trace())) {}
+
+  [[nodiscard]] StageMap stage_map(const Points& stepped,
+                                   const Eigen::VectorXd& weights) const override {
+    StageMap map;
+    map.row_begin.resize(weights.size() + 1);
+    std::iota(map.row_begin.begin(), map.row_begin.end(), 0);
+    map.column.assign(map.row_begin.begin(), map.row_begin.end() - 1);
+    map.coefficient.assign(weights.size(), 1.0);
+    map.offset = Points::Zero(stepped.rows(), stepped.cols());
+    map.weights = weights;
+    return map;
+  }
+
+  [[nodiscard]] double noise_w2() const override { return noise_w2_; }
+
+ private:
+  double noise_w2_;
+};
+
+}  // namespace
+
+void apply_stage_map(const StageMap& map, const Points& stepped, Points& out) {
+  for (Eigen::Index axis = 0; axis < stepped.rows(); ++axis) {
+    for (Eigen::Index n = 0; n < map.clusters(); ++n) {
+      double sum = map.offset(axis, n);
+      for (int k = map.row_begin[n]; k < map.row_begin[n + 1]; ++k) {
+        sum += map.coefficient[k] * stepped(axis, map.column[k]);
+      }
+      out(axis, n) = sum;
+    }
+  }
+}
+
+void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& stepped_adjoint) {
+  stepped_adjoint.setZero();
+  for (Eigen::Index axis = 0; axis < adjoint.rows(); ++axis) {
+    for (Eigen::Index n = 0; n < map.clusters(); ++n) {
+      for (int k = map.row_begin[n]; k < map.row_begin[n + 1]; ++k) {
+        stepped_adjoint(axis, map.column[k]) += map.coefficient[k] * adjoint(axis, n);
+      }
+    }
+  }
+}
+
+const std::vector<PropagatorEntry>& propagators() {
+  static const std::vector<PropagatorEntry> kTable = {
+      {kCompressed, "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)"},
+      {kNoiseFree, "the belief's points only; the noise counts as error of the certificate"},
+  };
+  return kTable;
+}
+
+std::unique_ptr<const Propagator> make_propagator(std::string_view name,
+                                                  const PropagatorSettings& settings) {
+  check_gaussian(settings.noise);
+  if (!settings.noise.mean.isZero(0.0)) {
+    throw std::invalid_argument("propagator: the noise must have zero mean");
+  }
+  if (name == kCompressed) return std::make_unique<CompressedPropagator>(settings);
+  if (name == kNoiseFree) return std::make_unique<NoiseFreePropagator>(settings);
+  throw std::invalid_argument("no propagator '" + std::string(name) +
+                              "'; known are: " + std::string(kCompressed) + ", " + kNoiseFree);
+}
+
+}  // namespace qsmpc
