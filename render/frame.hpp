@@ -59,7 +59,7 @@ struct HudRow {
 struct Frame {
   double time = 0.0;
   std::vector<double> qpos;  ///< pose of every joint of the vehicle model; empty: use `pose`
-  PlanarPose pose;           ///< where the vehicle stands if `qpos` is empty; the chase camera follows it
+  PlanarPose pose;  ///< where the vehicle stands if `qpos` is empty; the chase camera follows it
   std::vector<PlanarPoint> driven_path;   ///< oldest first
   std::vector<PlanarPoint> planned_path;  ///< stage 0 first
   std::vector<ParticleStage> particles;   ///< stage 0 first; coloured by stage, sized by weight

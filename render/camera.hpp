@@ -1,0 +1,58 @@
+// Where pictures are taken from, and where a point of the world ends up in them.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "render/canvas.hpp"
+#include "render/frame.hpp"
+
+namespace qsmpc {
+
+/// A point or direction in space: x, y, z in metres, z up.
+using SpacePoint = std::array<double, 3>;
+
+enum class CameraKind { kChase, kTop, kFixed };
+
+/// Throws std::invalid_argument, naming the cameras there are.
+[[nodiscard]] CameraKind camera_kind(const std::string& name);
+
+/// Size of a picture, and the share of its width on the left that the head-up display covers; what
+/// a camera looks at is shown in the middle of the rest.
+struct PictureSize {
+  int width = 1280;
+  int height = 720;
+  double covered_share = 0.0;
+};
+
+/// A camera with its lens. `right`, `up` and `forward` are orthonormal.
+struct View {
+  SpacePoint position{};
+  SpacePoint forward{};
+  SpacePoint up{};
+  SpacePoint right{};
+  double distance = 1.0;     ///< m, to what it looks at
+  double near_plane = 0.05;  ///< m
+  double far_plane = 500.0;  ///< m
+  double half_height = 0.0;  ///< m, of the picture in the near plane
+  double half_width = 0.0;   ///< m, the same
+  double centre = 0.0;       ///< m, the picture's centre in the near plane right of the axis
+  int width = 0;             ///< pixels
+  int height = 0;            ///< pixels
+};
+
+/// From behind and above the vehicle at `pose`, which stands `distance` metres from the camera.
+[[nodiscard]] View chase_view(const PlanarPose& pose, double distance, const PictureSize& size);
+
+/// Shows all of `region`, from above (kTop) or obliquely (kFixed).
+[[nodiscard]] View region_view(CameraKind kind, const PlanarRectangle& region,
+                               const PictureSize& size);
+
+/// Where `point` is drawn; nothing when it is behind the camera.
+[[nodiscard]] std::optional<PixelPoint> project(const View& view, const SpacePoint& point);
+
+/// `point` in the camera's own axes: right, up, and the distance along the line of sight.
+[[nodiscard]] SpacePoint camera_coordinates(const View& view, const SpacePoint& point);
+
+}  // namespace qsmpc

@@ -1,0 +1,31 @@
+// Colours of pictures: named ones in palette.hpp, and the ramp of the horizon's stages.
+#pragma once
+
+namespace qsmpc {
+
+/// sRGB and opacity, each in [0, 1].
+struct Colour {
+  float red = 0.0F;
+  float green = 0.0F;
+  float blue = 0.0F;
+  float alpha = 1.0F;
+
+  [[nodiscard]] constexpr Colour with_alpha(float value) const { return {red, green, blue, value}; }
+};
+
+/// `first` at share 0, `second` at share 1, linear between; the opacity too.
+[[nodiscard]] constexpr Colour mix(const Colour& first, const Colour& second, float share) {
+  return {first.red + share * (second.red - first.red),
+          first.green + share * (second.green - first.green),
+          first.blue + share * (second.blue - first.blue),
+          first.alpha + share * (second.alpha - first.alpha)};
+}
+
+/// Matplotlib's "plasma" (perceptually uniform, readable with any colour vision) from 0 to 1.
+/// A share outside [0, 1] is clamped.
+[[nodiscard]] Colour plasma(double share);
+
+/// The colour of `stage` among `stages`: plasma without its palest end, which light ground drowns.
+[[nodiscard]] Colour stage_colour(int stage, int stages);
+
+}  // namespace qsmpc

@@ -1,0 +1,73 @@
+// Simple shapes drawn with OpenGL into whatever is current; no lighting, colours as given.
+#pragma once
+
+#include <vector>
+
+#include "render/camera.hpp"
+#include "render/colour.hpp"
+#include "render/frame.hpp"
+
+namespace qsmpc {
+
+/// Keeps OpenGL's state as it was, and sets up flat drawing with `view` until it is destroyed:
+/// blending and depth test on, lighting and textures off.
+class FlatDrawing {
+ public:
+  explicit FlatDrawing(const View& view);
+  ~FlatDrawing();
+  FlatDrawing(const FlatDrawing&) = delete;
+  FlatDrawing& operator=(const FlatDrawing&) = delete;
+};
+
+/// Whether what is drawn next hides what is drawn later behind it.
+void write_depth(bool on);
+
+/// From `begin` to `end` metres along the line of sight, colours go over into `colour`.
+void set_fog(double begin, double end, const Colour& colour);
+void clear_fog();
+
+/// Between these two calls a pixel is drawn once only, whatever covers it how often.
+void begin_single_coverage();
+void end_single_coverage();
+
+/// Fills what nothing has been drawn to with a gradient between the upper and the lower edge.
+void draw_background(const Colour& top, const Colour& bottom);
+
+/// A rectangle lying at `height` metres.
+void draw_rectangle(const PlanarRectangle& area, double height, const Colour& colour);
+
+/// An upright box from the ground, its sides shaded as if the sun stood in the south-west.
+void draw_box(const PlanarRectangle& area, double height, const Colour& colour);
+
+/// A convex polygon lying on the ground.
+void draw_polygon(const std::vector<PlanarPoint>& corners, const Colour& colour);
+
+/// A ring lying on the ground; a disc where the inner radius is 0.
+void draw_ring(const PlanarPoint& centre, double inner, double outer, const Colour& colour);
+
+/// The side of an upright cylinder, whose colour goes from `bottom` to `top`.
+void draw_tube(const PlanarPoint& centre, double radius, double height, const Colour& bottom,
+               const Colour& top);
+
+/// A triangle in space.
+void draw_triangle(const SpacePoint& a, const SpacePoint& b, const SpacePoint& c,
+                   const Colour& colour);
+
+/// Separate lines, `width` pixels wide, between the points 0 and 1, 2 and 3, …
+void draw_segments(const std::vector<SpacePoint>& ends, double width, const Colour& colour);
+
+/// One line through all points at `height` metres, `width` pixels wide.
+void draw_path(const std::vector<PlanarPoint>& points, double height, double width,
+               const Colour& colour);
+
+/// A round point of `size` pixels across.
+struct GlPoint {
+  SpacePoint position{};
+  float size = 1.0F;
+  Colour colour;
+};
+
+/// In the order given. Points of one size that follow each other are drawn in one go.
+void draw_points(const std::vector<GlPoint>& points);
+
+}  // namespace qsmpc

@@ -1,0 +1,84 @@
+#include "render/renderer.hpp"
+
+#include <stdexcept>
+
+#include "render/camera.hpp"
+#include "render/hud.hpp"
+#include "render/offscreen_context.hpp"
+#include "render/scene_painter.hpp"
+#include "render/vehicle.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr int kLeastSide = 64;               // pixels
+constexpr int kLargestSide = 8192;           // pixels
+constexpr double kChaseLengths = 5.0;        // vehicle lengths from the chase camera
+constexpr double kLeastChaseDistance = 0.5;  // m
+
+const RenderOptions& checked(const RenderOptions& options) {
+  if (options.width < kLeastSide || options.height < kLeastSide || options.width > kLargestSide ||
+      options.height > kLargestSide) {
+    throw std::invalid_argument("picture of " + std::to_string(options.width) + "x" +
+                                std::to_string(options.height) + " pixels: each side is from " +
+                                std::to_string(kLeastSide) + " to " + std::to_string(kLargestSide));
+  }
+  return options;
+}
+
+PlanarRectangle shown_region(const RenderOptions& options, const World& world) {
+  const PlanarRectangle& region = options.region;
+  const bool given = region.x_upper > region.x_lower && region.y_upper > region.y_lower;
+  return given ? region : world_region(world);
+}
+
+}  // namespace
+
+struct Renderer::Parts {
+  RenderOptions options;
+  CameraKind camera;
+  PlanarRectangle region;
+  OffscreenContext context;  // before what draws with it
+  Vehicle vehicle;
+  ScenePainter painter;
+  Hud hud;
+
+  Parts(const RenderOptions& given, const World& world, const std::string& mjcf_path)
+      : options(checked(given)),
+        camera(camera_kind(given.camera)),
+        region(shown_region(given, world)),
+        vehicle(mjcf_path, given.width, given.height, given.samples),
+        painter(world, region),
+        hud(given.width, given.height) {}
+
+  [[nodiscard]] View view(const Frame& frame) const {
+    const PictureSize size{options.width, options.height, hud.covered_share(frame)};
+    if (camera != CameraKind::kChase) {
+      return region_view(camera, region, size);
+    }
+    const double by_length = kChaseLengths * vehicle.length();
+    const double distance = options.chase_distance > 0.0 ? options.chase_distance : by_length;
+    return chase_view(frame.pose, std::max(distance, kLeastChaseDistance), size);
+  }
+};
+
+Renderer::Renderer(const RenderOptions& options, const World& world, const std::string& mjcf_path)
+    : parts_(std::make_unique<Parts>(options, world, mjcf_path)) {}
+
+Renderer::~Renderer() = default;
+
+void Renderer::draw(const Frame& frame, Image& out) {
+  const View view = parts_->view(frame);
+  parts_->vehicle.place(frame);
+  parts_->vehicle.draw(view);
+  parts_->painter.paint(frame, view, parts_->vehicle.shadows());
+  parts_->vehicle.read_picture(out);
+  parts_->hud.draw(frame, out);
+}
+
+std::optional<PixelPoint> Renderer::locate(const Frame& frame, const PlanarPoint& point,
+                                           double height) const {
+  return project(parts_->view(frame), {point.x, point.y, height});
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,45 @@
+// Pictures of frames: a vehicle, its surroundings, what is planned, and a head-up display.
+//
+//   qsmpc::Renderer renderer({.camera = "top"}, world, "models/mjcf/dubins_car.xml");
+//   qsmpc::Image image;
+//   renderer.draw(frame, image);
+//
+// The same frame gives the same image, whatever was drawn before and on whichever thread.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "render/canvas.hpp"
+#include "render/frame.hpp"
+#include "render/render_options.hpp"
+
+namespace qsmpc {
+
+/// Use and destroy it on the thread that made it; at most one a thread at a time. Different threads
+/// may have one each.
+class Renderer {
+ public:
+  /// `mjcf_path`: the vehicle's XML. Throws std::invalid_argument on a size or camera that is none,
+  /// std::runtime_error when there is no off-screen OpenGL or the vehicle cannot be loaded.
+  Renderer(const RenderOptions& options, const World& world, const std::string& mjcf_path);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Draws `frame` into `out`, of which it sets the size and which it may be given again and again.
+  /// Throws std::invalid_argument when `frame.qpos` does not fit the vehicle or is not finite.
+  void draw(const Frame& frame, Image& out);
+
+  /// Where the point at `point` and `height` (m) is drawn in the picture of `frame`; nothing when
+  /// it is behind the camera.
+  [[nodiscard]] std::optional<PixelPoint> locate(const Frame& frame, const PlanarPoint& point,
+                                                 double height = 0.0) const;
+
+ private:
+  struct Parts;
+  std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,249 @@
+#include "render/scene_painter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <utility>
+
+#include "render/gl_shapes.hpp"
+#include "render/palette.hpp"
+#include "render/shadow.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kObstacleHeight = 0.40;    // m
+constexpr double kWallHeight = 0.10;        // m
+constexpr double kWallThickness = 0.06;     // m
+constexpr double kPostHeight = 0.75;        // m, the target's flag
+constexpr double kPostSide = 0.018;         // m
+constexpr double kTubeHeight = 0.35;        // m
+constexpr double kMarkHeight = 0.01;        // m, particles and paths, clear of the ground
+constexpr double kGroundReach = 500.0;      // m beyond the region
+constexpr double kGridReach = 40.0;         // cells beyond the region
+constexpr double kFogBegin = 2.2;           // of the camera's distance
+constexpr double kFogEnd = 9.0;             // of the camera's distance
+constexpr double kReferenceHeight = 720.0;  // pixels, for which the sizes below are
+constexpr double kPathWidth = 3.0;          // pixels
+constexpr double kPlanWidth = 2.2;          // pixels
+constexpr double kCasingWidth = 5.0;        // pixels
+constexpr double kNodeSize = 8.5;           // pixels
+constexpr double kWholeStageSize = 68.0;    // pixels across, a particle that has all the weight
+constexpr double kLeastSize = 2.5;          // pixels
+constexpr double kLargestSize = 18.0;       // pixels
+constexpr float kParticleOpacity = 0.82F;
+
+PlanarRectangle grown(const PlanarRectangle& area, double margin) {
+  return {area.x_lower - margin, area.x_upper + margin, area.y_lower - margin,
+          area.y_upper + margin};
+}
+
+// 1 m, or more where that would be too many lines.
+double grid_spacing(const PlanarRectangle& region) {
+  const double extent = std::max(region.x_upper - region.x_lower, region.y_upper - region.y_lower);
+  constexpr double kMostCells = 80.0;
+  double spacing = 1.0;
+  while (extent / spacing > kMostCells) {
+    spacing *= 5.0;
+  }
+  return spacing;
+}
+
+std::vector<SpacePoint> grid_lines(const PlanarRectangle& region) {
+  const double spacing = grid_spacing(region);
+  const PlanarRectangle area = grown(region, kGridReach * spacing);
+  std::vector<SpacePoint> ends;
+  for (double i = std::ceil(area.x_lower / spacing); i * spacing <= area.x_upper; ++i) {
+    ends.push_back({i * spacing, area.y_lower, 0.0});
+    ends.push_back({i * spacing, area.y_upper, 0.0});
+  }
+  for (double i = std::ceil(area.y_lower / spacing); i * spacing <= area.y_upper; ++i) {
+    ends.push_back({area.x_lower, i * spacing, 0.0});
+    ends.push_back({area.x_upper, i * spacing, 0.0});
+  }
+  return ends;
+}
+
+PlanarRectangle clipped_to(const PlanarRectangle& bounds, const PlanarRectangle& area) {
+  return {std::max(bounds.x_lower, area.x_lower), std::min(bounds.x_upper, area.x_upper),
+          std::max(bounds.y_lower, area.y_lower), std::min(bounds.y_upper, area.y_upper)};
+}
+
+// One low wall on the outer side of each finite bound.
+std::vector<PlanarRectangle> boundary_walls(const PlanarRectangle& bounds,
+                                            const PlanarRectangle& region) {
+  const PlanarRectangle inner = clipped_to(bounds, grown(region, kGroundReach));
+  const PlanarRectangle outer = grown(inner, kWallThickness);
+  std::vector<PlanarRectangle> walls;
+  if (std::isfinite(bounds.x_lower)) {
+    walls.push_back({outer.x_lower, inner.x_lower, outer.y_lower, outer.y_upper});
+  }
+  if (std::isfinite(bounds.x_upper)) {
+    walls.push_back({inner.x_upper, outer.x_upper, outer.y_lower, outer.y_upper});
+  }
+  if (std::isfinite(bounds.y_lower)) {
+    walls.push_back({inner.x_lower, inner.x_upper, outer.y_lower, inner.y_lower});
+  }
+  if (std::isfinite(bounds.y_upper)) {
+    walls.push_back({inner.x_lower, inner.x_upper, inner.y_upper, outer.y_upper});
+  }
+  return walls;
+}
+
+void append_stage(const ParticleStage& stage, const Colour& colour, double scale,
+                  std::vector<GlPoint>& points) {
+  const std::size_t begin = points.size();
+  for (std::size_t i = 0; i < stage.points.size() && i < stage.weights.size(); ++i) {
+    // Area proportional to weight; halves of a pixel, so that points are drawn in few batches.
+    const double size = kWholeStageSize * std::sqrt(std::max(stage.weights[i], 0.0));
+    const double rounded =
+        0.5 * std::round(2.0 * scale * std::clamp(size, kLeastSize, kLargestSize));
+    points.push_back(
+        {{stage.points[i].x, stage.points[i].y, kMarkHeight}, static_cast<float>(rounded), colour});
+  }
+  std::stable_sort(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(),
+                   [](const GlPoint& a, const GlPoint& b) { return a.size > b.size; });
+}
+
+// The last stage first: it spreads widest and would cover the others.
+void paint_particles(const std::vector<ParticleStage>& stages, double scale) {
+  std::vector<GlPoint> points;
+  for (std::size_t i = stages.size(); i-- > 0;) {
+    const Colour colour = stage_colour(static_cast<int>(i), static_cast<int>(stages.size()));
+    append_stage(stages[i], colour.with_alpha(kParticleOpacity), scale, points);
+  }
+  draw_points(points);
+}
+
+void paint_plan(const std::vector<PlanarPoint>& plan, double scale) {
+  draw_path(plan, kMarkHeight, kCasingWidth * scale, palette::kPlannedCasing);
+  draw_path(plan, kMarkHeight, kPlanWidth * scale, palette::kPlannedPath);
+  std::vector<GlPoint> rims;
+  std::vector<GlPoint> nodes;
+  for (std::size_t i = 0; i < plan.size(); ++i) {
+    const SpacePoint position{plan[i].x, plan[i].y, kMarkHeight};
+    const Colour colour = stage_colour(static_cast<int>(i), static_cast<int>(plan.size()));
+    rims.push_back({position, static_cast<float>((kNodeSize + 3.0) * scale),
+                    palette::kPlannedCasing.with_alpha(1.0F)});
+    nodes.push_back({position, static_cast<float>(kNodeSize * scale), colour});
+  }
+  draw_points(rims);
+  draw_points(nodes);
+}
+
+}  // namespace
+
+PlanarRectangle world_region(const World& world) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  PlanarRectangle region{kInfinity, -kInfinity, kInfinity, -kInfinity};
+  const auto include = [&region](double x, double y) {
+    if (std::isfinite(x)) {
+      region.x_lower = std::min(region.x_lower, x);
+      region.x_upper = std::max(region.x_upper, x);
+    }
+    if (std::isfinite(y)) {
+      region.y_lower = std::min(region.y_lower, y);
+      region.y_upper = std::max(region.y_upper, y);
+    }
+  };
+  include(world.bounds.x_lower, world.bounds.y_lower);
+  include(world.bounds.x_upper, world.bounds.y_upper);
+  for (const PlanarRectangle& obstacle : world.obstacles) {
+    include(obstacle.x_lower, obstacle.y_lower);
+    include(obstacle.x_upper, obstacle.y_upper);
+  }
+  include(world.target.x - world.target_radius, world.target.y - world.target_radius);
+  include(world.target.x + world.target_radius, world.target.y + world.target_radius);
+  constexpr double kLeastHalf = 1.0;  // m
+  const double x = 0.5 * (region.x_lower + region.x_upper);
+  const double y = 0.5 * (region.y_lower + region.y_upper);
+  return {std::min(region.x_lower, x - kLeastHalf), std::max(region.x_upper, x + kLeastHalf),
+          std::min(region.y_lower, y - kLeastHalf), std::max(region.y_upper, y + kLeastHalf)};
+}
+
+ScenePainter::ScenePainter(World world, const PlanarRectangle& region)
+    : world_(std::move(world)), region_(region), walls_(boundary_walls(world_.bounds, region)) {
+  // A side may be infinite: a drawn box ends where the ground does.
+  for (PlanarRectangle& obstacle : world_.obstacles) {
+    obstacle = clipped_to(obstacle, grown(region, kGroundReach));
+  }
+}
+
+void ScenePainter::paint_solids() const {
+  for (const PlanarRectangle& o : world_.obstacles) {
+    draw_box(o, kObstacleHeight, palette::kObstacle);
+    const double z = kObstacleHeight;
+    const SpacePoint a{o.x_lower, o.y_lower, z};
+    const SpacePoint b{o.x_upper, o.y_lower, z};
+    const SpacePoint c{o.x_upper, o.y_upper, z};
+    const SpacePoint d{o.x_lower, o.y_upper, z};
+    draw_segments({a, b, b, c, c, d, d, a}, 1.5, palette::kObstacleEdge);
+  }
+  for (const PlanarRectangle& wall : walls_) {
+    draw_box(wall, kWallHeight, palette::kWall);
+  }
+}
+
+void ScenePainter::paint_ground(const View& view) const {
+  draw_background(palette::kSky, palette::kHorizon);
+  set_fog(kFogBegin * view.distance, kFogEnd * view.distance, palette::kHorizon);
+  const PlanarRectangle all = grown(region_, kGroundReach);
+  draw_rectangle(all, 0.0, palette::kOuterGround);
+  draw_rectangle(clipped_to(world_.bounds, all), 0.0, palette::kSafeGround);
+  draw_segments(grid_lines(region_), 1.0, palette::kGridLine);
+}
+
+void ScenePainter::paint_shadows(
+    const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const {
+  begin_single_coverage();
+  for (const PlanarRectangle& obstacle : world_.obstacles) {
+    draw_polygon(box_shadow(obstacle, kObstacleHeight), palette::kShadow);
+  }
+  for (const PlanarRectangle& wall : walls_) {
+    draw_polygon(box_shadow(wall, kWallHeight), palette::kShadow);
+  }
+  for (const std::vector<PlanarPoint>& outline : vehicle_shadows) {
+    draw_polygon(outline, palette::kShadow);
+  }
+  end_single_coverage();
+}
+
+void ScenePainter::paint_target_mark() const {
+  const double radius = world_.target_radius;
+  draw_ring(world_.target, 0.0, radius, palette::kTarget.with_alpha(0.22F));
+  draw_ring(world_.target, 0.93 * radius, radius, palette::kTarget.with_alpha(0.9F));
+  draw_ring(world_.target, 0.46 * radius, 0.50 * radius, palette::kTarget.with_alpha(0.55F));
+}
+
+void ScenePainter::paint_target_post() const {
+  const PlanarPoint& t = world_.target;
+  write_depth(true);
+  draw_box(grown({t.x, t.x, t.y, t.y}, kPostSide), kPostHeight, {0.93F, 0.94F, 0.95F});
+  draw_triangle({t.x, t.y, kPostHeight}, {t.x, t.y, 0.68 * kPostHeight},
+                {t.x + 0.26, t.y - 0.26, 0.84 * kPostHeight}, palette::kTarget);
+  write_depth(false);
+  draw_tube(t, world_.target_radius, kTubeHeight, palette::kTarget.with_alpha(0.30F),
+            palette::kTarget.with_alpha(0.0F));
+}
+
+// Marks on the ground are painted in order and without depth of their own, so that none flickers
+// through another; what stands upright has depth and hides them.
+void ScenePainter::paint(const Frame& frame, const View& view,
+                         const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const {
+  const FlatDrawing drawing(view);
+  const double scale = view.height / kReferenceHeight;
+  write_depth(true);
+  paint_solids();
+  write_depth(false);
+  paint_ground(view);
+  clear_fog();
+  paint_target_mark();
+  paint_shadows(vehicle_shadows);
+  draw_path(frame.driven_path, kMarkHeight, kPathWidth * scale, palette::kDrivenPath);
+  paint_particles(frame.particles, scale);
+  paint_plan(frame.planned_path, scale);
+  paint_target_post();
+}
+
+}  // namespace qsmpc
