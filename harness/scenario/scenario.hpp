@@ -4,12 +4,12 @@
 // sizes agree with the system, covariances are positive semidefinite, names are known.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 #include "controller/planning/safe_set.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -51,9 +51,9 @@ struct Scenario {
   };
   struct Controller {
     int horizon = 8;
-    std::string policy = "closed_loop";             ///< or "open_loop"
-    std::optional<Eigen::MatrixXd> feedback_gain;   ///< K, input_dim x state_dim; else from LQR
-    std::string solver = "lbfgs";                   ///< a name from `qsmpc list solvers`
+    std::string policy = "closed_loop";            ///< or "open_loop"
+    std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
+    std::string solver = "lbfgs";                  ///< a name from `qsmpc list solvers`
     Quantisation quantisation;
     bool propagate_noise = true;
     Cost cost;

@@ -1,0 +1,97 @@
+#include "harness/scenario/known_names.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace qsmpc {
+namespace {
+
+// Longer names are no slips of the keyboard, and would cost time quadratic in their length.
+constexpr std::size_t kLongestCompared = 64;
+constexpr std::size_t kMostSuggested = 3;
+
+// A third of the letters wrong is still a slip; so are two in a short name.
+std::size_t farthest_near(std::string_view name) {
+  return std::max<std::size_t>(2, name.size() / 3);
+}
+
+}  // namespace
+
+const std::vector<std::string>& solver_names() {
+  static const std::vector<std::string> names{"lbfgs"};
+  return names;
+}
+
+const std::vector<std::string>& policy_names() {
+  static const std::vector<std::string> names{"closed_loop", "open_loop"};
+  return names;
+}
+
+const std::vector<std::string>& penalty_shape_names() {
+  static const std::vector<std::string> names{"smooth", "thesis"};
+  return names;
+}
+
+const std::vector<std::string>& plant_kind_names() {
+  static const std::vector<std::string> names{"analytic", "mujoco"};
+  return names;
+}
+
+const std::vector<std::string>& camera_names() {
+  static const std::vector<std::string> names{"chase", "fixed", "top"};
+  return names;
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  // Three rows of the dynamic programme: a swap looks two rows back.
+  std::vector<std::size_t> before(b.size() + 1);
+  std::vector<std::size_t> above(b.size() + 1);
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::swap(before, above);
+    std::swap(above, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t replaced = above[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({above[j] + 1, row[j - 1] + 1, replaced});
+      const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+std::vector<std::string> nearest_names(std::string_view name,
+                                       const std::vector<std::string>& known) {
+  if (name.empty() || name.size() > kLongestCompared) return {};
+  std::vector<std::pair<std::size_t, std::string>> near;
+  for (const std::string& candidate : known) {
+    // What was begun and not finished ("dubins") is near too, however much is missing.
+    const bool begun = name.size() >= 3 && candidate.starts_with(name);
+    const std::size_t slips = edit_distance(name, candidate);
+    const std::size_t distance = begun ? std::min<std::size_t>(slips, 1) : slips;
+    if (distance <= farthest_near(name) && distance < candidate.size()) {
+      near.emplace_back(distance, candidate);
+    }
+  }
+  std::stable_sort(near.begin(), near.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (near.size() > kMostSuggested) near.resize(kMostSuggested);
+  std::vector<std::string> names;
+  names.reserve(near.size());
+  for (auto& [distance, candidate] : near) names.push_back(std::move(candidate));
+  return names;
+}
+
+std::string expected_names(std::string_view name, const std::vector<std::string>& known) {
+  const std::vector<std::string> near = nearest_names(name, known);
+  if (near.empty()) return fmt::format("one of {}", fmt::join(known, ", "));
+  // The suggestion stands first, so that no shortening of a long list can lose it.
+  return fmt::format("{} (known: {})", fmt::join(near, " or "), fmt::join(known, ", "));
+}
+
+}  // namespace qsmpc

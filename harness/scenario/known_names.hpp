@@ -1,0 +1,32 @@
+// The names that a scenario may use for things that are chosen by name, and what to suggest for one
+// that is not known.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace qsmpc {
+
+[[nodiscard]] const std::vector<std::string>& solver_names();
+[[nodiscard]] const std::vector<std::string>& policy_names();
+[[nodiscard]] const std::vector<std::string>& penalty_shape_names();
+[[nodiscard]] const std::vector<std::string>& plant_kind_names();
+[[nodiscard]] const std::vector<std::string>& camera_names();
+
+/// Least number of bytes to insert, delete, replace, or swap with a neighbour, that makes `a` into
+/// `b` (optimal string alignment distance).
+[[nodiscard]] std::size_t edit_distance(std::string_view a, std::string_view b);
+
+/// Up to three of `known` that `name` may have been meant to be, the nearest first; empty if none
+/// is near.
+[[nodiscard]] std::vector<std::string> nearest_names(std::string_view name,
+                                                     const std::vector<std::string>& known);
+
+/// What an error says is expected in place of the unknown `name`: "lbfgs (known: lbfgs, slsqp)"
+/// when one is near, otherwise "one of lbfgs, slsqp".
+[[nodiscard]] std::string expected_names(std::string_view name,
+                                         const std::vector<std::string>& known);
+
+}  // namespace qsmpc

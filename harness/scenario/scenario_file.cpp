@@ -1,0 +1,67 @@
+#include "harness/scenario/scenario_file.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/overrides.hpp"
+#include "harness/scenario/scenario_reader.hpp"
+#include "harness/scenario/shipped_files.hpp"
+#include "harness/scenario/yaml_section.hpp"
+#include "harness/scenario/yaml_tree.hpp"
+
+namespace qsmpc {
+namespace {
+
+namespace fs = std::filesystem;
+
+Scenario read_text(const std::string& text, const ScenarioSource& source, Problems& problems) {
+  YamlNode tree = parse_yaml(text, source.file);
+  for (const std::string& override : source.overrides) apply_override(tree, override);
+  return read_scenario(tree, {.folder = source.folder, .must_exist = source.files_must_exist},
+                       problems);
+}
+
+std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
+
+}  // namespace
+
+std::string find_scenario(const std::string& path_or_name) {
+  std::error_code error;
+  if (fs::is_regular_file(path_or_name, error)) return path_or_name;
+  if (const auto shipped = find_shipped_scenario(path_or_name)) return *shipped;
+  const std::string extension = fs::path(path_or_name).extension().string();
+  const bool is_path = path_or_name.find('/') != std::string::npos || extension == ".yaml" ||
+                       extension == ".yml" || fs::exists(path_or_name, error);
+  if (is_path) return path_or_name;
+  throw InputError({.file = path_or_name,
+                    .found = "no such file or shipped scenario",
+                    .expected = "the path of a scenario file, or " +
+                                expected_names(path_or_name, shipped_scenario_names())});
+}
+
+Scenario load_scenario(const std::string& path_or_name, const std::vector<std::string>& overrides) {
+  const std::string path = find_scenario(path_or_name);
+  return parse_scenario(read_yaml_text(path),
+                        {.file = path, .folder = folder_of(path), .overrides = overrides});
+}
+
+Scenario parse_scenario(const std::string& text, const ScenarioSource& source) {
+  Problems problems(source.file);
+  Scenario scenario = read_text(text, source, problems);
+  if (!problems.empty()) throw InputError(problems.sorted().front());
+  return scenario;
+}
+
+std::vector<InputError::Where> validate_scenario_file(const std::string& path_or_name) {
+  try {
+    const std::string path = find_scenario(path_or_name);
+    Problems problems(path);
+    (void)read_text(read_yaml_text(path), {.file = path, .folder = folder_of(path)}, problems);
+    return problems.sorted();
+  } catch (const InputError& error) {
+    return {error.where()};
+  }
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,48 @@
+// Scenario files: loaded and checked, or refused with where and why; and written back.
+//
+//   Scenario scenario = load_scenario("dubins_obstacles", {"controller.horizon=12"});
+//   write_file(folder + "/scenario.yaml", to_yaml(scenario));
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/errors.hpp"
+#include "harness/scenario/scenario.hpp"
+
+namespace qsmpc {
+
+/// Where a scenario's text comes from.
+struct ScenarioSource {
+  std::string file = "scenario";  ///< what errors call it
+  std::string folder{};           ///< where its files are looked up; the current one if empty
+  std::vector<std::string> overrides{};  ///< KEY=VALUE, each as after --set, applied in order
+  /// Whether a MuJoCo XML file that is not found is refused; otherwise its name is kept as it is
+  /// written, for those who only read a recorded scenario.
+  bool files_must_exist = true;
+};
+
+/// The path of the scenario `path_or_name`: a path, or the name of a shipped one.
+/// Throws InputError when it is neither.
+[[nodiscard]] std::string find_scenario(const std::string& path_or_name);
+
+/// Loads a scenario file, a path or the name of a shipped one, with `overrides` (KEY=VALUE) applied
+/// in their order. Throws InputError with the first thing that is wrong: its file ("--set" for an
+/// override), line, key, what was found and what is expected.
+[[nodiscard]] Scenario load_scenario(const std::string& path_or_name,
+                                     const std::vector<std::string>& overrides = {});
+
+/// As load_scenario, from the text itself, e.g. one that a trace holds.
+[[nodiscard]] Scenario parse_scenario(const std::string& text, const ScenarioSource& source = {});
+
+/// Everything that is wrong with a scenario file, the file being unreadable included; empty if it
+/// is valid. At most 100 problems; after one that leaves no tree of keys to look at, that one.
+[[nodiscard]] std::vector<InputError::Where> validate_scenario_file(
+    const std::string& path_or_name);
+
+/// The scenario as a file with every key written out. Loading it gives the same values, bit for
+/// bit. The same scenario always gives the same bytes; a shipped MuJoCo XML file is written by its
+/// name, so that no path of this machine is in it, any other by its absolute path.
+[[nodiscard]] std::string to_yaml(const Scenario& scenario);
+
+}  // namespace qsmpc

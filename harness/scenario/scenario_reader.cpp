@@ -1,0 +1,362 @@
+#include "harness/scenario/scenario_reader.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/shipped_files.hpp"
+#include "harness/scenario/value_checks.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr std::size_t kLongestName = 100;         // bytes; a title, and part of file names
+constexpr std::size_t kLongestDescription = 500;  // bytes; one line
+constexpr std::size_t kLongestPath = 1024;        // bytes
+constexpr std::size_t kMostObstacles = 1000;      // every particle is held against each of them
+constexpr double kShortestPeriod = 1e-4;          // s, a simulator's step at its finest
+constexpr double kLongestPeriod = 10.0;           // s
+constexpr WholeRange kHorizonRange{1, 1000};
+constexpr WholeRange kPointsRange{1, 100000};
+constexpr WholeRange kIterationsRange{1, 100000};
+constexpr WholeRange kStepsRange{1, 1000000};
+constexpr WholeRange kFpsRange{1, 240};
+constexpr NumberRange kNotNegative{.least = 0.0};
+constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
+
+// The vehicle that drives, or is drawn for, a system unless the scenario names another.
+std::string default_mjcf(const std::string& system) {
+  return system == "dubins" ? "dubins_car.xml" : "";
+}
+
+std::vector<std::string> system_names() {
+  std::vector<std::string> names;
+  names.reserve(systems().size());
+  for (const SystemEntry& entry : systems()) names.push_back(entry.name);
+  return names;
+}
+
+std::vector<std::string> coordinate_names(const std::vector<Coordinate>& coordinates) {
+  std::vector<std::string> names;
+  names.reserve(coordinates.size());
+  for (const Coordinate& coordinate : coordinates) names.push_back(coordinate.name);
+  return names;
+}
+
+std::string list_of(const std::vector<Coordinate>& coordinates) {
+  return fmt::format("{} numbers, [{}]", coordinates.size(),
+                     fmt::join(coordinate_names(coordinates), ", "));
+}
+
+// make_dynamics with its refusal, if any, as text.
+std::unique_ptr<const Dynamics> try_dynamics(const Scenario::Model& model, double time_step,
+                                             std::string& refusal) {
+  try {
+    return make_dynamics(model.system, model.parameters, time_step);
+  } catch (const std::invalid_argument& error) {
+    refusal = error.what();
+    return nullptr;
+  }
+}
+
+class ScenarioReader {
+ public:
+  ScenarioReader(const YamlNode& tree, const FileLookup& lookup, Problems& problems)
+      : root_(tree, problems), lookup_(lookup) {}
+
+  Scenario read() {
+    if (!root_.present()) return {};
+    read_names();
+    read_model();
+    read_limit();
+    read_video();
+    read_plant();
+    if (dynamics_ != nullptr) {
+      read_safe_set();
+      read_initial_state();
+      read_disturbance();
+      read_target();
+      read_controller();
+    } else {
+      // Sizes are not known without a system; what is wrong in here shows once it has one.
+      for (const char* key : {"initial_state", "disturbance", "safe_set", "target", "controller"}) {
+        (void)root_.section(key);
+      }
+    }
+    root_.refuse_unread();
+    return std::move(scenario_);
+  }
+
+ private:
+  void read_names();
+  void read_model();
+  void check_parameters(Section& model, const SystemEntry& entry);
+  void read_plant();
+  void read_initial_state();
+  void read_disturbance();
+  void read_safe_set();
+  Box read_box(Section& section, bool& any);
+  void read_target();
+  void read_controller();
+  void read_quantisation(Section& controller);
+  void read_cost(Section& controller);
+  void read_penalty(Section& controller);
+  void read_input_bounds(Section& controller);
+  void read_limit();
+  void read_video();
+  void check_safe(Section& section, const std::string& key, const Eigen::VectorXd& point);
+  Eigen::MatrixXd semidefinite(Section& section, const std::string& key, Eigen::MatrixXd fallback);
+
+  [[nodiscard]] const SystemDescription& system() const { return dynamics_->description(); }
+  [[nodiscard]] Eigen::Index state_dim() const { return dynamics_->state_dim(); }
+  [[nodiscard]] Eigen::Index input_dim() const { return dynamics_->input_dim(); }
+
+  Section root_;
+  const FileLookup& lookup_;
+  Scenario scenario_;
+  std::unique_ptr<const Dynamics> dynamics_;  // nullptr while the system is not known
+};
+
+void ScenarioReader::read_names() {
+  root_.require("name", "a name for the experiment");
+  scenario_.name = root_.text("name", "", kLongestName);
+  if (root_.has("name") && scenario_.name.empty()) root_.note("name", "a name, not empty");
+  scenario_.description = root_.text("description", "", kLongestDescription);
+  scenario_.seed = root_.seed("seed", scenario_.seed);
+  scenario_.time_step =
+      root_.number("time_step", scenario_.time_step, {kShortestPeriod, kLongestPeriod});
+}
+
+void ScenarioReader::read_model() {
+  Section model = root_.section("model");
+  const std::vector<std::string> names = system_names();
+  model.require("system", expected_names("", names));
+  scenario_.model.system = model.name("system", "", names);
+  for (const SystemEntry& entry : systems()) {
+    if (entry.name != scenario_.model.system) continue;
+    check_parameters(model, entry);
+    model.refuse_unread();
+  }
+}
+
+// A refusal is tied to the parameter that causes it by trying each alone among the defaults.
+void ScenarioReader::check_parameters(Section& model, const SystemEntry& entry) {
+  const double time_step = scenario_.time_step;
+  std::string refusal;
+  scenario_.model.parameters = entry.defaults;
+  for (const auto& [name, fallback] : entry.defaults) {
+    const double value = model.number(name, fallback);
+    Scenario::Model alone{.system = entry.name, .parameters = entry.defaults};
+    alone.parameters[name] = value;
+    if (value == fallback || try_dynamics(alone, time_step, refusal) != nullptr) {
+      scenario_.model.parameters[name] = value;
+    } else {
+      model.note(name, "what the system accepts: " + refusal);
+    }
+  }
+  dynamics_ = try_dynamics(scenario_.model, time_step, refusal);
+  if (dynamics_ == nullptr) {
+    root_.note("model", "what the system accepts: " + refusal,
+               "parameters that do not go together");
+    scenario_.model.parameters = entry.defaults;
+    dynamics_ = try_dynamics(scenario_.model, time_step, refusal);
+  }
+}
+
+void ScenarioReader::read_plant() {
+  Section plant = root_.section("plant");
+  scenario_.plant.kind = plant.name("kind", scenario_.plant.kind, plant_kind_names());
+  const std::string name = plant.text("mjcf", default_mjcf(scenario_.model.system), kLongestPath);
+  const bool is_needed = scenario_.plant.kind == "mujoco" && dynamics_ != nullptr;
+  const std::string path = find_mjcf(name, lookup_.folder);
+  scenario_.plant.mjcf = path.empty() && !lookup_.must_exist ? name : path;
+  if (name.empty() && is_needed) {
+    plant.note("mjcf", "a MuJoCo XML file, since the plant's kind is mujoco");
+  } else if (scenario_.plant.mjcf.empty() && (is_needed || plant.has("mjcf")) && !name.empty()) {
+    plant.note("mjcf",
+               "a file beside the scenario, or " + expected_names(name, shipped_mjcf_names()),
+               "no file " + name);
+  }
+  plant.refuse_unread();
+}
+
+Eigen::MatrixXd ScenarioReader::semidefinite(Section& section, const std::string& key,
+                                             Eigen::MatrixXd fallback) {
+  std::optional<Eigen::MatrixXd> matrix = section.matrix(key, fallback.rows(), fallback.cols());
+  if (!matrix) return fallback;
+  if (const auto problem = make_semidefinite(*matrix)) {
+    section.note(key, "a symmetric, positive semidefinite matrix", *problem);
+    return fallback;
+  }
+  return *matrix;
+}
+
+void ScenarioReader::check_safe(Section& section, const std::string& key,
+                                const Eigen::VectorXd& point) {
+  if (const auto problem = why_unsafe(point, scenario_.safe_set, system().states)) {
+    section.note(key, "a state in the safe set", *problem);
+  }
+}
+
+void ScenarioReader::read_initial_state() {
+  Section section = root_.section("initial_state");
+  section.require("mean", list_of(system().states));
+  Scenario::GaussianValue& initial = scenario_.initial_state;
+  const auto mean = section.vector("mean", state_dim());
+  initial.mean = mean.value_or(Eigen::VectorXd::Zero(state_dim()));
+  if (mean) check_safe(section, "mean", *mean);
+  initial.covariance =
+      semidefinite(section, "covariance", Eigen::MatrixXd::Zero(state_dim(), state_dim()));
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_disturbance() {
+  Section section = root_.section("disturbance");
+  scenario_.disturbance_covariance =
+      semidefinite(section, "covariance", Eigen::MatrixXd::Zero(state_dim(), state_dim()));
+  section.refuse_unread();
+}
+
+// Intervals by state name; a state that is not named is not restricted.
+Box ScenarioReader::read_box(Section& section, bool& any) {
+  Box box = unbounded_safe_set(state_dim()).bounds;
+  for (Eigen::Index i = 0; i < state_dim(); ++i) {
+    const auto interval =
+        section.interval(system().states[static_cast<std::size_t>(i)].name, false);
+    if (!interval) continue;
+    box.lower[i] = interval->lower;
+    box.upper[i] = interval->upper;
+    any = true;
+  }
+  section.refuse_unread();
+  return box;
+}
+
+void ScenarioReader::read_safe_set() {
+  Section section = root_.section("safe_set");
+  Section bounds = section.section("bounds");
+  bool any = false;
+  scenario_.safe_set.bounds = read_box(bounds, any);
+  const std::size_t count = section.list_size("obstacles");
+  if (count > kMostObstacles) {
+    section.note("obstacles", fmt::format("at most {} obstacles", kMostObstacles));
+  }
+  for (std::size_t i = 0; i < std::min(count, kMostObstacles); ++i) {
+    Section item = section.item("obstacles", i);
+    any = false;
+    Box box = read_box(item, any);
+    if (any) {
+      scenario_.safe_set.obstacles.push_back(std::move(box));
+    } else if (item.present() && item.keys().empty()) {
+      item.note_here(fmt::format("an interval of at least one of {}",
+                                 fmt::join(coordinate_names(system().states), ", ")),
+                     "an obstacle that fills the whole space");
+    }
+  }
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_target() {
+  Section section = root_.section("target");
+  section.require("state", list_of(system().states));
+  const auto state = section.vector("state", state_dim());
+  scenario_.target.state = state.value_or(Eigen::VectorXd::Zero(state_dim()));
+  if (state) check_safe(section, "state", *state);
+  scenario_.target.radius = section.number("radius", scenario_.target.radius, kPositive);
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_controller() {
+  Section section = root_.section("controller");
+  Scenario::Controller& controller = scenario_.controller;
+  controller.horizon = section.whole("horizon", controller.horizon, kHorizonRange);
+  controller.policy = section.name("policy", controller.policy, policy_names());
+  controller.feedback_gain = section.matrix("feedback_gain", input_dim(), state_dim());
+  controller.solver = section.name("solver", controller.solver, solver_names());
+  controller.max_iterations =
+      section.whole("max_iterations", controller.max_iterations, kIterationsRange);
+  controller.propagate_noise = section.flag("propagate_noise", controller.propagate_noise);
+  read_quantisation(section);
+  read_cost(section);
+  read_penalty(section);
+  read_input_bounds(section);
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_quantisation(Section& controller) {
+  Section section = controller.section("quantisation");
+  Scenario::Quantisation& points = scenario_.controller.quantisation;
+  points.state = section.whole("state", points.state, kPointsRange);
+  points.noise = section.whole("noise", points.noise, kPointsRange);
+  points.compressed = section.whole("compressed", points.compressed, kPointsRange);
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_cost(Section& controller) {
+  Section section = controller.section("cost");
+  Scenario::Cost& cost = scenario_.controller.cost;
+  cost.state = semidefinite(section, "state", Eigen::MatrixXd::Identity(state_dim(), state_dim()));
+  cost.input = semidefinite(section, "input", Eigen::MatrixXd::Identity(input_dim(), input_dim()));
+  cost.terminal = semidefinite(section, "terminal", cost.state);
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_penalty(Section& controller) {
+  Section section = controller.section("penalty");
+  Scenario::Penalty& penalty = scenario_.controller.penalty;
+  penalty.shape = section.name("shape", penalty.shape, penalty_shape_names());
+  penalty.box = section.number("box", penalty.box, kNotNegative);
+  penalty.obstacle = section.number("obstacle", penalty.obstacle, kNotNegative);
+  penalty.length = section.number("length", penalty.length, kPositive);
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_input_bounds(Section& controller) {
+  Section section = controller.section("input_bounds");
+  scenario_.controller.input_lower = system().input_lower;
+  scenario_.controller.input_upper = system().input_upper;
+  for (Eigen::Index i = 0; i < input_dim(); ++i) {
+    const auto interval = section.interval(system().inputs[static_cast<std::size_t>(i)].name, true);
+    if (!interval) continue;
+    scenario_.controller.input_lower[i] = interval->lower;
+    scenario_.controller.input_upper[i] = interval->upper;
+  }
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_limit() {
+  Section section = root_.section("limit");
+  scenario_.step_limit = section.whole("steps", scenario_.step_limit, kStepsRange);
+  scenario_.stop_when_unsafe = section.flag("stop_when_unsafe", scenario_.stop_when_unsafe);
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_video() {
+  Section section = root_.section("video");
+  Scenario::Video& video = scenario_.video;
+  video.camera = section.name("camera", video.camera, camera_names());
+  const std::string fallback = fmt::format("{}x{}", video.width, video.height);
+  if (const auto size = parse_frame_size(section.text("size", fallback, kLongestName))) {
+    video.width = size->width;
+    video.height = size->height;
+  } else {
+    section.note("size", expected_frame_size());
+  }
+  video.fps = section.whole("fps", video.fps, kFpsRange);
+  section.refuse_unread();
+}
+
+}  // namespace
+
+Scenario read_scenario(const YamlNode& tree, const FileLookup& lookup, Problems& problems) {
+  return ScenarioReader(tree, lookup, problems).read();
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,140 @@
+// to_yaml: the writing side of scenario_file.hpp.
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/shipped_files.hpp"
+
+namespace qsmpc {
+namespace {
+
+// The shortest text that reads back as the same double.
+std::string number(double value) {
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  return fmt::format("{}", value);
+}
+
+// Always quoted: no text can then be taken for a number, a null or the syntax around it.
+std::string quoted(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+template <class Values>
+std::string list(const Values& values) {
+  std::string out = "[";
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    out += (i == 0 ? "" : ", ") + number(values[i]);
+  }
+  return out + "]";
+}
+
+std::string rows(const Eigen::MatrixXd& matrix) {
+  std::string out = "[";
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    out += (i == 0 ? "" : ", ") + list(Eigen::VectorXd(matrix.row(i)));
+  }
+  return out + "]";
+}
+
+// As a diagonal where that loses nothing, not even the sign of a zero.
+std::string square(const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      if (i != j && (matrix(i, j) != 0.0 || std::signbit(matrix(i, j)))) return rows(matrix);
+    }
+  }
+  return list(Eigen::VectorXd(matrix.diagonal()));
+}
+
+std::string box(const Box& box, const std::vector<Coordinate>& states) {
+  std::string out = "{";
+  for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
+    out +=
+        fmt::format("{}{}: [{}, {}]", i == 0 ? "" : ", ", states[static_cast<std::size_t>(i)].name,
+                    number(box.lower[i]), number(box.upper[i]));
+  }
+  return out + "}";
+}
+
+std::string model_text(const Scenario& scenario) {
+  std::string out = "model: {system: " + scenario.model.system;
+  for (const auto& [name, value] : scenario.model.parameters) {
+    out += fmt::format(", {}: {}", name, number(value));
+  }
+  return out + "}\n";
+}
+
+std::string safe_set_text(const SafeSet& safe_set, const std::vector<Coordinate>& states) {
+  std::string out = fmt::format("safe_set:\n  bounds: {}\n", box(safe_set.bounds, states));
+  if (safe_set.obstacles.empty()) return out + "  obstacles: []\n";
+  out += "  obstacles:\n";
+  for (const Box& obstacle : safe_set.obstacles) {
+    out += fmt::format("    - {}\n", box(obstacle, states));
+  }
+  return out;
+}
+
+std::string input_bounds(const Scenario::Controller& controller,
+                         const std::vector<Coordinate>& inputs) {
+  return box({controller.input_lower, controller.input_upper}, inputs);
+}
+
+std::string controller_text(const Scenario::Controller& controller,
+                            const std::vector<Coordinate>& inputs) {
+  std::string out = "controller:\n";
+  out += fmt::format("  horizon: {}\n  policy: {}\n", controller.horizon, controller.policy);
+  if (controller.feedback_gain) {
+    out += fmt::format("  feedback_gain: {}\n", rows(*controller.feedback_gain));
+  }
+  const Scenario::Quantisation& points = controller.quantisation;
+  const Scenario::Penalty& penalty = controller.penalty;
+  out += fmt::format("  solver: {}\n", controller.solver);
+  out += fmt::format("  quantisation: {{state: {}, noise: {}, compressed: {}}}\n", points.state,
+                     points.noise, points.compressed);
+  out += fmt::format("  propagate_noise: {}\n", controller.propagate_noise);
+  out += fmt::format("  cost:\n    state: {}\n    input: {}\n    terminal: {}\n",
+                     square(controller.cost.state), square(controller.cost.input),
+                     square(controller.cost.terminal));
+  out += fmt::format("  penalty: {{shape: {}, box: {}, obstacle: {}, length: {}}}\n", penalty.shape,
+                     number(penalty.box), number(penalty.obstacle), number(penalty.length));
+  out += fmt::format("  input_bounds: {}\n", input_bounds(controller, inputs));
+  return out + fmt::format("  max_iterations: {}\n", controller.max_iterations);
+}
+
+}  // namespace
+
+std::string to_yaml(const Scenario& scenario) {
+  const auto dynamics =
+      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const SystemDescription& system = dynamics->description();
+  const Scenario::Video& video = scenario.video;
+  std::string out;
+  out += fmt::format("name: {}\ndescription: {}\nseed: {}\n", quoted(scenario.name),
+                     quoted(scenario.description), scenario.seed);
+  out += model_text(scenario);
+  out += fmt::format("plant: {{kind: {}, mjcf: {}}}\n", scenario.plant.kind,
+                     quoted(mjcf_name(scenario.plant.mjcf)));
+  out += fmt::format("time_step: {}\n", number(scenario.time_step));
+  out += fmt::format("initial_state:\n  mean: {}\n  covariance: {}\n",
+                     list(scenario.initial_state.mean), square(scenario.initial_state.covariance));
+  out += fmt::format("disturbance:\n  covariance: {}\n", square(scenario.disturbance_covariance));
+  out += safe_set_text(scenario.safe_set, system.states);
+  out += fmt::format("target:\n  state: {}\n  radius: {}\n", list(scenario.target.state),
+                     number(scenario.target.radius));
+  out += controller_text(scenario.controller, system.inputs);
+  out += fmt::format("limit: {{steps: {}, stop_when_unsafe: {}}}\n", scenario.step_limit,
+                     scenario.stop_when_unsafe);
+  out += fmt::format("video: {{camera: {}, size: {}x{}, fps: {}}}\n", video.camera, video.width,
+                     video.height, video.fps);
+  return out;
+}
+
+}  // namespace qsmpc

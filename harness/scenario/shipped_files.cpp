@@ -1,0 +1,116 @@
+#include "harness/scenario/shipped_files.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <system_error>
+
+#include "harness/errors.hpp"
+#include "harness/scenario/yaml_tree.hpp"
+
+namespace qsmpc {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A path without "..", links resolved as far as it exists; never throws.
+fs::path normal(const fs::path& path) {
+  std::error_code error;
+  fs::path canonical = fs::weakly_canonical(path, error);
+  return error ? path.lexically_normal() : canonical;
+}
+
+bool is_file(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+fs::path installed_models_folder() {
+  std::error_code error;
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path() : program.parent_path().parent_path() / "share" / "qsmpc" / "models";
+}
+
+// The files with the given extension in a folder of the shipped models, by name.
+std::vector<fs::path> shipped_in(const char* folder, const char* extension) {
+  std::vector<fs::path> paths;
+  std::error_code error;
+  fs::directory_iterator at(fs::path(shipped_models_folder()) / folder, error);
+  for (; !error && at != fs::directory_iterator(); at.increment(error)) {
+    if (at->path().extension() == extension && is_file(at->path())) paths.push_back(at->path());
+  }
+  std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::string description_in(const std::string& path) {
+  try {
+    const YamlNode tree = parse_yaml(read_yaml_text(path), path);
+    const YamlNode* node = tree.find("description");
+    return node == nullptr ? "" : printable(node->text, 200);
+  } catch (const InputError&) {
+    return "";  // `qsmpc validate` says what is wrong; a list of names should not fail over it
+  }
+}
+
+}  // namespace
+
+std::string shipped_models_folder() {
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the program never changes its environment.
+  const char* given = std::getenv("QSMPC_MODELS");
+  std::error_code error;
+  if (given != nullptr && *given != '\0') return normal(fs::absolute(given, error)).string();
+  const fs::path installed = installed_models_folder();
+  if (!installed.empty() && fs::is_directory(installed, error)) return normal(installed).string();
+  return normal(QSMPC_SOURCE_MODELS_DIR).string();
+}
+
+std::vector<std::string> shipped_scenario_names() {
+  std::vector<std::string> names;
+  for (const fs::path& path : shipped_in("scenarios", ".yaml")) names.push_back(path.stem());
+  return names;
+}
+
+std::vector<std::string> shipped_mjcf_names() {
+  std::vector<std::string> names;
+  for (const fs::path& path : shipped_in("mjcf", ".xml")) names.push_back(path.filename());
+  return names;
+}
+
+std::vector<ShippedScenario> shipped_scenarios() {
+  std::vector<ShippedScenario> scenarios;
+  for (const std::string& name : shipped_scenario_names()) {
+    if (const auto path = find_shipped_scenario(name)) {
+      scenarios.push_back({.name = name, .description = description_in(*path), .path = *path});
+    }
+  }
+  return scenarios;
+}
+
+std::optional<std::string> find_shipped_scenario(const std::string& name) {
+  if (name.empty() || name.find('/') != std::string::npos) return std::nullopt;
+  const fs::path path = fs::path(shipped_models_folder()) / "scenarios" / (name + ".yaml");
+  return is_file(path) ? std::optional(path.string()) : std::nullopt;
+}
+
+std::string find_mjcf(const std::string& name, const std::string& scenario_folder) {
+  if (name.empty()) return "";
+  const fs::path given(name);
+  const fs::path folder = scenario_folder.empty() ? fs::path(".") : fs::path(scenario_folder);
+  std::error_code error;
+  const fs::path beside = fs::absolute(given.is_absolute() ? given : folder / given, error);
+  if (!error && is_file(beside)) return normal(beside).string();
+  if (given.is_absolute()) return "";
+  const fs::path shipped = fs::path(shipped_models_folder()) / "mjcf" / given;
+  return is_file(shipped) ? normal(shipped).string() : "";
+}
+
+std::string mjcf_name(const std::string& path) {
+  if (path.empty()) return path;
+  const fs::path folder = normal(fs::path(shipped_models_folder()) / "mjcf");
+  const fs::path relative = normal(path).lexically_relative(folder);
+  const bool is_inside = !relative.empty() && *relative.begin() != ".." && relative != ".";
+  return is_inside ? relative.string() : path;
+}
+
+}  // namespace qsmpc

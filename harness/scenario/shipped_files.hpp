@@ -1,0 +1,42 @@
+// Where the models and scenarios are that come with the program.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace qsmpc {
+
+/// A scenario that comes with the program.
+struct ShippedScenario {
+  std::string name;         ///< as it is given on the command line
+  std::string description;  ///< one line, from the file; empty where that cannot be read
+  std::string path;
+};
+
+/// The folder of shipped models, with `scenarios` and `mjcf` in it: the environment variable
+/// QSMPC_MODELS where it is set, else ../share/qsmpc/models beside the program, else the source
+/// tree's.
+[[nodiscard]] std::string shipped_models_folder();
+
+/// All of them, by name; empty where the folder cannot be read.
+[[nodiscard]] std::vector<ShippedScenario> shipped_scenarios();
+
+/// Their names only, without reading the files.
+[[nodiscard]] std::vector<std::string> shipped_scenario_names();
+
+/// The names of the shipped MuJoCo XML files, e.g. "dubins_car.xml".
+[[nodiscard]] std::vector<std::string> shipped_mjcf_names();
+
+/// The path of the shipped scenario called `name`, or nothing.
+[[nodiscard]] std::optional<std::string> find_shipped_scenario(const std::string& name);
+
+/// Absolute path of the MuJoCo XML file `name`: an absolute path as it is, else relative to
+/// `scenario_folder`, else among the shipped ones. Empty if there is no such file.
+[[nodiscard]] std::string find_mjcf(const std::string& name, const std::string& scenario_folder);
+
+/// What `find_mjcf` finds `path` again by, on any machine where that is possible: the shipped name
+/// of a shipped file, otherwise `path` itself.
+[[nodiscard]] std::string mjcf_name(const std::string& path);
+
+}  // namespace qsmpc

@@ -1,0 +1,19 @@
+// Whether bytes are text that a person could have written: UTF-8 without stray control characters.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace qsmpc {
+
+struct TextProblem {
+  int line = 0;  ///< from 1
+  std::string found;
+};
+
+/// The first byte of `text` that is not well-formed UTF-8, or a control character other than tab,
+/// line feed and a carriage return before one; nothing if there is none.
+[[nodiscard]] std::optional<TextProblem> find_text_problem(std::string_view text);
+
+}  // namespace qsmpc

@@ -1,0 +1,79 @@
+#include "harness/scenario/value_checks.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <system_error>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+namespace qsmpc {
+namespace {
+
+// Relative to the largest entry: far above the rounding of a matrix that a program printed with
+// ten digits, far below an entry that somebody meant.
+constexpr double kMatrixTolerance = 1e-9;
+
+std::optional<int> parse_side(std::string_view text, int most) {
+  int side = 0;
+  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), side);
+  const bool is_number = error == std::errc{} && stopped == text.data() + text.size();
+  if (!is_number || side < kLeastFrameSide || side > most || side % 2 != 0) return std::nullopt;
+  return side;
+}
+
+}  // namespace
+
+std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix) {
+  const double scale = matrix.cwiseAbs().maxCoeff();
+  if (scale == 0.0) return std::nullopt;
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      if (std::abs(matrix(i, j) / scale - matrix(j, i) / scale) > kMatrixTolerance) {
+        return fmt::format("{} in row {}, column {} and {} in its mirror image", matrix(i, j),
+                           i + 1, j + 1, matrix(j, i));
+      }
+      matrix(j, i) = matrix(i, j);
+    }
+  }
+  // Scaled, so that no entry however large or small overflows on the way to the eigenvalues.
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix / scale,
+                                                              Eigen::EigenvaluesOnly);
+  const double least = solver.eigenvalues().minCoeff();
+  if (solver.info() == Eigen::Success && least >= -kMatrixTolerance) return std::nullopt;
+  return fmt::format("a matrix with the eigenvalue {:.6g}", least * scale);
+}
+
+std::optional<std::string> why_unsafe(const Eigen::VectorXd& point, const SafeSet& safe_set,
+                                      const std::vector<Coordinate>& states) {
+  const Box& bounds = safe_set.bounds;
+  for (Eigen::Index i = 0; i < point.size(); ++i) {
+    if (point[i] > bounds.lower[i] && point[i] < bounds.upper[i]) continue;
+    return fmt::format("{0} = {1}, outside of the bounds {2} < {0} < {3}",
+                       states[static_cast<std::size_t>(i)].name, point[i], bounds.lower[i],
+                       bounds.upper[i]);
+  }
+  for (std::size_t k = 0; k < safe_set.obstacles.size(); ++k) {
+    const Box& obstacle = safe_set.obstacles[k];
+    const bool inside = (point.array() >= obstacle.lower.array()).all() &&
+                        (point.array() <= obstacle.upper.array()).all();
+    if (inside) return fmt::format("a state inside safe_set.obstacles.{}", k);
+  }
+  return std::nullopt;
+}
+
+std::optional<FrameSize> parse_frame_size(std::string_view text) {
+  const std::size_t cross = text.find('x');
+  if (cross == std::string_view::npos) return std::nullopt;
+  const std::optional<int> width = parse_side(text.substr(0, cross), kMostFrameWidth);
+  const std::optional<int> height = parse_side(text.substr(cross + 1), kMostFrameHeight);
+  if (!width || !height) return std::nullopt;
+  return FrameSize{.width = *width, .height = *height};
+}
+
+std::string expected_frame_size() {
+  return fmt::format("WIDTHxHEIGHT in even numbers of pixels from {0}x{0} to {1}x{2}",
+                     kLeastFrameSide, kMostFrameWidth, kMostFrameHeight);
+}
+
+}  // namespace qsmpc

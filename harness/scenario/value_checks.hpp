@@ -1,0 +1,45 @@
+// What a value must be beyond its type and size; each returns what is wrong in the words that an
+// error uses for what was found, or nothing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/safe_set.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// Replaces the upper triangle of the square, finite `matrix` by the lower one where they differ by
+/// rounding only. Returns what keeps it from being symmetric and positive semidefinite: entries
+/// that differ by more than 1e-9 of the largest entry, or an eigenvalue below minus 1e-9 of it.
+[[nodiscard]] std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix);
+
+/// Which bound or obstacle makes `point` unsafe, naming states as `states` does, e.g.
+/// "x = 13, outside of the bounds -1 < x < 12".
+[[nodiscard]] std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
+                                                    const SafeSet& safe_set,
+                                                    const std::vector<Coordinate>& states);
+
+/// Width and height of a video frame, pixels.
+struct FrameSize {
+  int width = 0;
+  int height = 0;
+};
+
+inline constexpr int kLeastFrameSide = 64;    // pixels; less shows nothing
+inline constexpr int kMostFrameWidth = 7680;  // pixels, 8K
+inline constexpr int kMostFrameHeight = 4320;
+
+/// The size written as "1280x720": both even, as video encoders need, and within the limits above;
+/// nothing if `text` is something else.
+[[nodiscard]] std::optional<FrameSize> parse_frame_size(std::string_view text);
+
+/// What an error says is expected where `parse_frame_size` found nothing.
+[[nodiscard]] std::string expected_frame_size();
+
+}  // namespace qsmpc
