@@ -8,44 +8,17 @@
 
 #include <Eigen/Core>
 
+#include "controller/certification/certificate.hpp"
+#include "controller/certification/error_budget.hpp"
+#include "controller/measure/measures.hpp"
+#include "controller/planning/horizon_cost.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/scenario/scenario.hpp"
 
 namespace qsmpc {
 
 /// The weighted points of one stage of the horizon.
-struct StageParticles {
-  StateBatch locations;     ///< state_dim x n
-  Eigen::VectorXd weights;  ///< n, non-negative, sums to 1
-};
-
-/// The W2 error budget of one stage, split by source; `total` bounds the distance between the true
-/// law of the model and the particles.
-struct StageBudget {
-  double belief = 0.0;
-  double noise = 0.0;
-  double compression = 0.0;
-  double total = 0.0;
-};
-
-/// Upper bounds of the probability that the model's state is unsafe at one stage of the plan.
-struct StageCertificate {
-  double value = 1.0;        ///< the least of the sound bounds
-  std::string kind;          ///< which one it was: "c1", "c2", …
-  double particles = 1.0;    ///< C1: worst case over the W2 ball around the particles
-  double mixture = 1.0;      ///< C2: the same before the last noise, which stays Gaussian
-  double thesis = 1.0;       ///< Algorithms 3 and 4 as printed; not sound
-  double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe; no bound of anything
-};
-
-struct CostParts {
-  double state = 0.0;
-  double input = 0.0;
-  double terminal = 0.0;
-  double box = 0.0;
-  double obstacle = 0.0;
-  [[nodiscard]] double total() const { return state + input + terminal + box + obstacle; }
-};
+using StageParticles = DiscreteMeasure;
 
 /// Wall-clock times of one control step, in milliseconds; never part of the state.
 struct StepTiming {

@@ -27,6 +27,15 @@ class DubinsDynamics final : public TemplatedDynamics<Dubins> {
         states.row(Dubins::kHeading) + model().time_step * inputs.row(Dubins::kYawRate);
   }
 
+  [[nodiscard]] std::optional<UnicycleStructure> unicycle() const override {
+    return UnicycleStructure{.x = Dubins::kX,
+                             .y = Dubins::kY,
+                             .heading = Dubins::kHeading,
+                             .input = Dubins::kYawRate,
+                             .reach = model().speed * model().time_step,
+                             .input_gain = model().time_step};
+  }
+
   void pullback(const BatchView& states, const BatchView& /*inputs*/, const BatchView& next_adjoint,
                 BatchOut state_adjoint, BatchOut input_adjoint) const override {
     const double reach = model().speed * model().time_step;

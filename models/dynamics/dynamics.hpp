@@ -10,6 +10,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -47,6 +48,18 @@ struct SystemDescription {
   [[nodiscard]] int state_index(std::string_view name) const;
 };
 
+/// What a system is made of if its position is carried by its heading alone:
+///     (x, y)⁺ = (x, y) + reach (cos φ, sin φ),  φ⁺ = φ + input_gain · u[input].
+/// Certificates use it: the position is then an explicit function of the headings.
+struct UnicycleStructure {
+  int x = 0;
+  int y = 1;
+  int heading = 2;
+  int input = 0;
+  double reach = 0.0;       ///< m a period
+  double input_gain = 0.0;  ///< rad per unit of the input and period
+};
+
 /// x⁺ = f(x, u) over one control period. Implementations hold constants only: every function is
 /// const, thread-safe and allocates nothing.
 class Dynamics {
@@ -81,6 +94,9 @@ class Dynamics {
   /// gain: K, input_dim x state_dim; zero for an open-loop policy. Infinity where no global bound
   /// is known, so that a certificate built on it is trivial instead of wrong.
   [[nodiscard]] virtual double lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const = 0;
+
+  /// The unicycle that this system is, exactly, if it is one with three states and one input.
+  [[nodiscard]] virtual std::optional<UnicycleStructure> unicycle() const { return std::nullopt; }
 };
 
 /// A system's numeric constants by name, e.g. {"speed", 1.5}.

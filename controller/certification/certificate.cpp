@@ -1,0 +1,93 @@
+#include "controller/certification/certificate.hpp"
+
+#include <algorithm>
+
+#include "controller/certification/smoothed_bound.hpp"
+#include "controller/certification/unicycle_surrogate.hpp"
+#include "controller/certification/worst_case.hpp"
+
+namespace qsmpc {
+namespace {
+
+double unsafe_mass(const DiscreteMeasure& measure, const SafeSet& safe_set) {
+  double mass = 0.0;
+  for (Eigen::Index i = 0; i < measure.size(); ++i) {
+    if (clearance(measure.locations.col(i), safe_set) <= 0.0) mass += measure.weights[i];
+  }
+  return mass;
+}
+
+/// C3 of all stages; 1 where it does not apply.
+std::vector<double> surrogate_bounds(const Planner& planner, const Gaussian& belief,
+                                     const Plan& plan) {
+  const Eigen::Index horizon = plan.policy.horizon();
+  std::vector<double> bounds(horizon, 1.0);
+  const std::optional<UnicycleStructure> unicycle = planner.dynamics().unicycle();
+  if (!unicycle) return bounds;
+  const bool open_loop = std::all_of(plan.policy.gains.begin(), plan.policy.gains.end(),
+                                     [](const auto& gain) { return gain.isZero(0.0); });
+  // The input of a stage moves the heading alone, so the position of stage 1 is that of open loop.
+  const bool heading_is_bounded =
+      planner.settings().safe_set.bounds.lower.array().isFinite()[unicycle->heading] ||
+      planner.settings().safe_set.bounds.upper.array().isFinite()[unicycle->heading];
+  Eigen::Index stages = horizon;
+  if (!open_loop) stages = heading_is_bounded ? 0 : 1;
+  const std::vector<GaussianSurrogate> surrogates =
+      unicycle_surrogates(*unicycle, belief, plan.policy.inputs.row(unicycle->input).head(stages),
+                          planner.settings().noise_covariance);
+  for (Eigen::Index k = 0; k < stages; ++k) {
+    const DiscreteMeasure centre{.locations = surrogates[k].law.mean,
+                                 .weights = Eigen::VectorXd::Ones(1)};
+    bounds[k] = smoothed_probability(centre, surrogates[k].law.covariance,
+                                     planner.settings().safe_set, surrogates[k].radius);
+  }
+  return bounds;
+}
+
+/// The radius that the thesis would use: Eq. 4-4 and 4-6, without noise and without the feedback.
+std::vector<double> thesis_radii(const Planner& planner, const Plan& plan) {
+  const Eigen::MatrixXd no_gain =
+      Eigen::MatrixXd::Zero(plan.policy.inputs.rows(), plan.policy.states.rows());
+  const double lipschitz = planner.dynamics().lipschitz(no_gain);
+  std::vector<double> radii = {plan.belief.w2};
+  for (const StageMap& map : plan.prediction.maps) {
+    radii.push_back(lipschitz * radii.back() + map.compression_w2);
+  }
+  return radii;
+}
+
+}  // namespace
+
+std::vector<StageCertificate> certify(const Planner& planner, const Gaussian& belief,
+                                      const Plan& plan, const std::vector<StageBudget>& budgets) {
+  const SafeSet& safe_set = planner.settings().safe_set;
+  const std::vector<double> surrogates = surrogate_bounds(planner, belief, plan);
+  const std::vector<double> radii = thesis_radii(planner, plan);
+  std::vector<StageCertificate> certificates(plan.policy.horizon());
+  for (std::size_t k = 0; k < certificates.size(); ++k) {
+    StageCertificate& certificate = certificates[k];
+    const DiscreteMeasure& particles = plan.prediction.stages[k + 1];
+    const DiscreteMeasure stepped{.locations = plan.prediction.stepped[k],
+                                  .weights = plan.prediction.stages[k].weights};
+    certificate.particles = worst_case_probability(particles, safe_set, budgets[k + 1].total);
+    certificate.mixture = smoothed_probability(stepped, planner.settings().noise_covariance,
+                                               safe_set, budgets[k].lipschitz * budgets[k].total);
+    certificate.surrogate = surrogates[k];
+    certificate.thesis = thesis_probability(particles, safe_set, radii[k + 1]);
+    certificate.unsafe_mass = unsafe_mass(particles, safe_set);
+    certificate.value =
+        std::min({certificate.particles, certificate.mixture, certificate.surrogate});
+    certificate.kind = certificate.value == certificate.surrogate ? "c3"
+                       : certificate.value == certificate.mixture ? "c2"
+                                                                  : "c1";
+  }
+  return certificates;
+}
+
+double horizon_bound(const std::vector<StageCertificate>& certificates) {
+  double sum = 0.0;
+  for (const StageCertificate& certificate : certificates) sum += certificate.value;
+  return std::min(1.0, sum);
+}
+
+}  // namespace qsmpc

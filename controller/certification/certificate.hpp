@@ -1,0 +1,41 @@
+// Upper bounds of the probability that the model's state is unsafe, stage by stage of a plan.
+//
+// Each bound holds for the law of the model under the plan's policy from the plan's belief:
+//   C1  worst case over the W2 ball about the particles,
+//   C2  the same before the last noise, which stays Gaussian,
+//   C3  the affine-Gaussian surrogate of a unicycle, where the policy is open loop up to the
+//   heading
+//       that carries the position: every stage of an open-loop plan, stage 1 of any plan.
+// Proofs: docs/theory/certificates.md. A bound says nothing of a plant that is not the model, and
+// one of a later stage speaks of the plan as planned, not of what is planned anew in between.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "controller/certification/error_budget.hpp"
+#include "controller/planning/planner.hpp"
+
+namespace qsmpc {
+
+struct StageCertificate {
+  double value = 1.0;        ///< the least of the bounds
+  std::string kind;          ///< which one it was: "c1", "c2" or "c3"
+  double particles = 1.0;    ///< C1
+  double mixture = 1.0;      ///< C2
+  double surrogate = 1.0;    ///< C3; 1 where it does not apply
+  double thesis = 1.0;       ///< Algorithms 3 and 4 as printed: NOT a bound
+  double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe: NOT a bound
+};
+
+/// Certificates of stages 1 … horizon of `plan`, which `planner` made for `belief`.
+/// budgets: what `error_budget` gives for the plan.
+[[nodiscard]] std::vector<StageCertificate> certify(const Planner& planner, const Gaussian& belief,
+                                                    const Plan& plan,
+                                                    const std::vector<StageBudget>& budgets);
+
+/// Upper bound of the probability that the state is unsafe at any of the stages: their sum, at
+/// most 1.
+[[nodiscard]] double horizon_bound(const std::vector<StageCertificate>& certificates);
+
+}  // namespace qsmpc

@@ -1,0 +1,28 @@
+// How far the particles can be from the true law of the model: the 2-Wasserstein error along the
+// horizon, split by its sources. Derivation: docs/theory/certificates.md, section 1.
+#pragma once
+
+#include <vector>
+
+#include "controller/planning/planner.hpp"
+
+namespace qsmpc {
+
+/// W2 error of one stage. `total` bounds the distance between the law of the state and the
+/// particles; the parts say what each source alone would give (their sum is at least the total).
+struct StageBudget {
+  double belief = 0.0;
+  double noise = 0.0;
+  double compression = 0.0;
+  double total = 0.0;
+  double lipschitz = 1.0;  ///< of the closed loop from this stage to the next; 1 at the last stage
+};
+
+/// The budgets of stages 0 … horizon of `plan`, which `planner` made. With L_k the Lipschitz
+/// constant of the closed loop,
+///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k)² + W_noise²) + W_compression,k+1:
+/// the noise is independent of the state and its quantiser centroidal, so that the cross term
+/// vanishes; the compression is a triangle inequality.
+[[nodiscard]] std::vector<StageBudget> error_budget(const Planner& planner, const Plan& plan);
+
+}  // namespace qsmpc

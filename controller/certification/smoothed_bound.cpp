@@ -1,0 +1,174 @@
+#include "controller/certification/smoothed_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/Cholesky>
+
+#include "controller/measure/normal_distribution.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// Beyond this many standard deviations a normal tail is below 1e-17; it counts as kTailAllowance.
+constexpr double kTail = 8.6;
+constexpr double kTailAllowance = 1e-17;
+constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+// t is searched over radius · 1.02 … radius · 1.02 · 2^kOctaves, then about the best of these.
+constexpr int kOctaves = 12;
+constexpr int kBisections = 5;
+// With no error at all the bound tends to the probability itself as t → 0.
+constexpr double kSmallestT = 1e-4;
+
+/// E[(1 − (D − y)²/t²); D − t ≤ y ≤ D] for y ~ N(0, s²): what lies within t before a wall at D.
+double before_wall(double wall, double deviation, double t) {
+  if (wall - t > kTail * deviation || wall < -kTail * deviation) return kTailAllowance;
+  const double low = (wall - t) / deviation;
+  const double high = wall / deviation;
+  const double mass = normal_probability(low, high);
+  const double first = deviation * (normal_density(low) - normal_density(high));
+  const double second =
+      deviation * deviation * (mass + normal_density_moment(low) - normal_density_moment(high));
+  const double squares = wall * wall * mass - 2.0 * wall * first + second;
+  const double rounding = kRounding * (wall * wall + deviation * deviation) / (t * t);
+  return std::clamp(mass - squares / (t * t) + rounding, 0.0, mass);
+}
+
+/// At least E(1 − d(y, H)²/t²)₊ for the half-space H = {z : normal·z ≥ offset}, |normal| = 1.
+double soft_half_space(const Eigen::VectorXd& normal, double offset, const Eigen::VectorXd& mean,
+                       const Eigen::MatrixXd& covariance, double t) {
+  const double deviation = std::sqrt(std::max(0.0, normal.dot(covariance * normal)));
+  return soft_interval_probability(normal.dot(mean), deviation, offset, kInfinity, t);
+}
+
+/// The half-space with inner normal along `direction` that touches `box` from outside `mean`, or 1
+/// if the direction does not separate them. A half-space that contains the obstacle is nearer than
+/// it, so its value is an upper bound.
+double separating_half_space(const Eigen::VectorXd& direction, const Eigen::VectorXd& mean,
+                             const Eigen::MatrixXd& covariance, const Box& box, double t) {
+  const double length = direction.norm();
+  if (!(length > 0.0) || !std::isfinite(length)) return 1.0;
+  const Eigen::VectorXd normal = direction / length;
+  double offset = 0.0;  // min over the box of normal·z
+  for (Eigen::Index axis = 0; axis < normal.size(); ++axis) {
+    if (normal[axis] == 0.0) continue;
+    offset += normal[axis] * (normal[axis] > 0.0 ? box.lower[axis] : box.upper[axis]);
+  }
+  return std::isfinite(offset) ? soft_half_space(normal, offset, mean, covariance, t) : 1.0;
+}
+
+bool diagonal_on(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Box& box) {
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const bool both = (std::isfinite(box.lower[i]) || std::isfinite(box.upper[i])) &&
+                        (std::isfinite(box.lower[j]) || std::isfinite(box.upper[j]));
+      if (both && covariance(i, j) != 0.0) return false;
+    }
+  }
+  return true;
+}
+
+// 1 − Σ_a d_a²/t² ≤ Π_a (1 − d_a²/t²)₊ where the left side is positive, and independent coordinates
+// factor. For correlated ones any single axis, and any half-space that contains the obstacle,
+// serve.
+double soft_obstacle(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
+                     const Box& obstacle, double t) {
+  const bool independent = diagonal_on(covariance, obstacle);
+  double product = 1.0;
+  double least = 1.0;
+  for (Eigen::Index axis = 0; axis < mean.size(); ++axis) {
+    const double factor = soft_interval_probability(mean[axis], std::sqrt(covariance(axis, axis)),
+                                                    obstacle.lower[axis], obstacle.upper[axis], t);
+    product *= factor;
+    least = std::min(least, factor);
+  }
+  if (independent) return product;
+  const Eigen::VectorXd nearest = mean.cwiseMax(obstacle.lower).cwiseMin(obstacle.upper);
+  const Eigen::VectorXd across = nearest - mean;
+  const Eigen::VectorXd whitened = covariance.ldlt().solve(across);
+  return std::min({least, separating_half_space(across, mean, covariance, obstacle, t),
+                   separating_half_space(whitened, mean, covariance, obstacle, t)});
+}
+
+double mixture_value(const DiscreteMeasure& centres,
+                     const Eigen::Ref<const Eigen::MatrixXd>& covariance, const SafeSet& safe_set,
+                     double t) {
+  double sum = 0.0;
+  for (Eigen::Index i = 0; i < centres.size(); ++i) {
+    if (centres.weights[i] == 0.0) continue;
+    sum += centres.weights[i] *
+           soft_unsafe_probability(centres.locations.col(i), covariance, safe_set, t);
+  }
+  return sum;
+}
+
+}  // namespace
+
+double soft_interval_probability(double mean, double deviation, double lower, double upper,
+                                 double t) {
+  if (deviation == 0.0) {
+    const double distance = std::max({lower - mean, mean - upper, 0.0});
+    return std::max(0.0, 1.0 - distance * distance / (t * t));
+  }
+  const double inside = normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
+  const double below = std::isinf(lower) ? 0.0 : before_wall(lower - mean, deviation, t);
+  const double above = std::isinf(upper) ? 0.0 : before_wall(mean - upper, deviation, t);
+  return std::min(1.0, inside + below + above + kTailAllowance);
+}
+
+double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
+                               const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                               const SafeSet& safe_set, double t) {
+  double sum = 0.0;
+  for (Eigen::Index axis = 0; axis < mean.size(); ++axis) {
+    const double deviation = std::sqrt(covariance(axis, axis));
+    const double lower = safe_set.bounds.lower[axis];
+    const double upper = safe_set.bounds.upper[axis];
+    if (!std::isinf(lower)) {
+      sum += soft_interval_probability(mean[axis], deviation, -kInfinity, lower, t);
+    }
+    if (!std::isinf(upper)) {
+      sum += soft_interval_probability(mean[axis], deviation, upper, kInfinity, t);
+    }
+  }
+  for (const Box& obstacle : safe_set.obstacles) {
+    sum += soft_obstacle(mean, covariance, obstacle, t);
+  }
+  return std::min(1.0, sum);
+}
+
+double smoothed_probability(const DiscreteMeasure& centres,
+                            const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                            const SafeSet& safe_set, double radius) {
+  if (!std::isfinite(radius)) return 1.0;
+  if (radius == 0.0) return mixture_value(centres, covariance, safe_set, kSmallestT);
+  const auto value = [&](double t) {
+    return radius * radius / (t * t) + mixture_value(centres, covariance, safe_set, t);
+  };
+  double best_t = 1.02 * radius;
+  double best = 1.0;
+  double t = best_t;
+  for (int octave = 0; octave <= kOctaves; ++octave, t *= 2.0) {
+    const double here = value(t);
+    if (here < best) {
+      best = here;
+      best_t = t;
+    }
+  }
+  double ratio = std::sqrt(2.0);
+  for (int step = 0; step < kBisections; ++step, ratio = std::sqrt(ratio)) {
+    for (const double beside : {best_t / ratio, best_t * ratio}) {
+      const double here = value(beside);
+      if (here < best) {
+        best = here;
+        best_t = beside;
+        break;
+      }
+    }
+  }
+  return std::min(1.0, best);
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,35 @@
+// Upper bounds of P(x ∈ U) for x = y + e, where y is a Gaussian mixture and e any error of known
+// mean square: the bounds C2 and C3 of docs/theory/certificates.md.
+//
+// If y + e is unsafe, then |e| is at least the distance d(y) to the unsafe set, so for every t > 0
+//     1{y + e ∈ U} ≤ (1 − d(y)²/t²)₊ + |e|²/t²,
+// hence P(x ∈ U) ≤ E(1 − d(y)²/t²)₊ + E|e|²/t². The expectation has a closed form for each face of
+// the safe set; U is a union, so the parts are added.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/planning/safe_set.hpp"
+
+namespace qsmpc {
+
+/// E(1 − dist(y, [lower, upper])²/t²)₊ for y ~ N(mean, deviation²): at least the value up to
+/// rounding, which is added. lower ≤ upper, either may be infinite; deviation ≥ 0; t > 0.
+[[nodiscard]] double soft_interval_probability(double mean, double deviation, double lower,
+                                               double upper, double t);
+
+/// At least E(1 − d(y, U)²/t²)₊ for y ~ N(mean, covariance) and U the complement of `safe_set`. t >
+/// 0.
+[[nodiscard]] double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
+                                             const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                                             const SafeSet& safe_set, double t);
+
+/// An upper bound of P(y + e ∈ U) for y ~ Σ ρ_i N(centre_i, covariance), centres and ρ from
+/// `centres`, and any e with E|e|² ≤ radius²: the least over a search in t, each of whose values is
+/// a bound.
+[[nodiscard]] double smoothed_probability(const DiscreteMeasure& centres,
+                                          const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                                          const SafeSet& safe_set, double radius);
+
+}  // namespace qsmpc
