@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kChaseFieldOfView = 42.0;   // degrees, vertical
-constexpr double kChaseElevation = -27.0;    // degrees
+constexpr double kChaseElevation = -25.0;    // degrees
 constexpr double kChaseLead = 0.16;          // of the distance: what is ahead matters more
 constexpr double kRegionFieldOfView = 24.0;  // degrees; narrow, so that boxes hardly lean outwards
 constexpr double kFixedElevation = -42.0;    // degrees

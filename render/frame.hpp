@@ -2,7 +2,7 @@
 // Lengths are metres in the plane of the ground unless a name says otherwise.
 #pragma once
 
-#include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,7 +42,7 @@ struct ParticleStage {
 
 /// One line of a strip chart in the head-up display: the history of a quantity up to now.
 struct StripChart {
-  std::string label;           ///< e.g. "input ω [rad/s]"; ASCII
+  std::string label;           ///< e.g. "yaw_rate [rad/s]"; ASCII
   std::vector<double> values;  ///< one a control period, oldest first
   double lower = 0.0;          ///< range of the chart
   double upper = 1.0;
@@ -59,7 +59,8 @@ struct HudRow {
 struct Frame {
   double time = 0.0;
   std::vector<double> qpos;  ///< pose of every joint of the vehicle model; empty: use `pose`
-  PlanarPose pose;  ///< where the vehicle stands if `qpos` is empty; the chase camera follows it
+  PlanarPose pose;           ///< where the vehicle stands if `qpos` is empty
+  std::optional<PlanarPose> followed;     ///< what the chase camera follows; without it `pose`
   std::vector<PlanarPoint> driven_path;   ///< oldest first
   std::vector<PlanarPoint> planned_path;  ///< stage 0 first
   std::vector<ParticleStage> particles;   ///< stage 0 first; coloured by stage, sized by weight

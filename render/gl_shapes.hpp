@@ -67,7 +67,8 @@ struct GlPoint {
   Colour colour;
 };
 
-/// In the order given. Points of one size that follow each other are drawn in one go.
-void draw_points(const std::vector<GlPoint>& points);
+/// Discs that face the camera, in the order given. OpenGL's own points come out square or crossed
+/// at these sizes.
+void draw_points(const View& view, const std::vector<GlPoint>& points);
 
 }  // namespace qsmpc

@@ -1,11 +1,13 @@
 #include "render/renderer.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "render/camera.hpp"
 #include "render/hud.hpp"
 #include "render/offscreen_context.hpp"
 #include "render/scene_painter.hpp"
+#include "render/smoothing.hpp"
 #include "render/vehicle.hpp"
 
 namespace qsmpc {
@@ -13,7 +15,8 @@ namespace {
 
 constexpr int kLeastSide = 64;               // pixels
 constexpr int kLargestSide = 8192;           // pixels
-constexpr double kChaseLengths = 5.0;        // vehicle lengths from the chase camera
+constexpr double kChaseLengths = 6.5;        // vehicle lengths from the chase camera
+constexpr double kFarthestChase = 4.0;       // times the nearest: the vehicle stays recognisable
 constexpr double kLeastChaseDistance = 0.5;  // m
 
 const RenderOptions& checked(const RenderOptions& options) {
@@ -42,12 +45,13 @@ struct Renderer::Parts {
   Vehicle vehicle;
   ScenePainter painter;
   Hud hud;
+  SmoothingWorkspace smoothing;
 
   Parts(const RenderOptions& given, const World& world, const std::string& mjcf_path)
       : options(checked(given)),
         camera(camera_kind(given.camera)),
         region(shown_region(given, world)),
-        vehicle(mjcf_path, given.width, given.height, given.samples),
+        vehicle(mjcf_path, given.width, given.height),
         painter(world, region),
         hud(given.width, given.height) {}
 
@@ -57,8 +61,9 @@ struct Renderer::Parts {
       return region_view(camera, region, size);
     }
     const double by_length = kChaseLengths * vehicle.length();
-    const double distance = options.chase_distance > 0.0 ? options.chase_distance : by_length;
-    return chase_view(frame.pose, std::max(distance, kLeastChaseDistance), size);
+    const double nearest = std::max(by_length, kLeastChaseDistance);
+    const double distance = std::clamp(options.chase_distance, nearest, kFarthestChase * nearest);
+    return chase_view(frame.followed.value_or(frame.pose), distance, size);
   }
 };
 
@@ -73,6 +78,7 @@ void Renderer::draw(const Frame& frame, Image& out) {
   parts_->vehicle.draw(view);
   parts_->painter.paint(frame, view, parts_->vehicle.shadows());
   parts_->vehicle.read_picture(out);
+  smooth_edges(out, parts_->smoothing);
   parts_->hud.draw(frame, out);
 }
 

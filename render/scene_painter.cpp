@@ -30,7 +30,7 @@ constexpr double kPlanWidth = 2.2;          // pixels
 constexpr double kCasingWidth = 5.0;        // pixels
 constexpr double kNodeSize = 8.5;           // pixels
 constexpr double kWholeStageSize = 68.0;    // pixels across, a particle that has all the weight
-constexpr double kLeastSize = 2.5;          // pixels
+constexpr double kLeastSize = 3.6;          // pixels
 constexpr double kLargestSize = 18.0;       // pixels
 constexpr float kParticleOpacity = 0.82F;
 
@@ -95,28 +95,27 @@ void append_stage(const ParticleStage& stage, const Colour& colour, double scale
                   std::vector<GlPoint>& points) {
   const std::size_t begin = points.size();
   for (std::size_t i = 0; i < stage.points.size() && i < stage.weights.size(); ++i) {
-    // Area proportional to weight; halves of a pixel, so that points are drawn in few batches.
+    // Area proportional to weight.
     const double size = kWholeStageSize * std::sqrt(std::max(stage.weights[i], 0.0));
-    const double rounded =
-        0.5 * std::round(2.0 * scale * std::clamp(size, kLeastSize, kLargestSize));
-    points.push_back(
-        {{stage.points[i].x, stage.points[i].y, kMarkHeight}, static_cast<float>(rounded), colour});
+    points.push_back({{stage.points[i].x, stage.points[i].y, kMarkHeight},
+                      static_cast<float>(scale * std::clamp(size, kLeastSize, kLargestSize)),
+                      colour});
   }
   std::stable_sort(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(),
                    [](const GlPoint& a, const GlPoint& b) { return a.size > b.size; });
 }
 
 // The last stage first: it spreads widest and would cover the others.
-void paint_particles(const std::vector<ParticleStage>& stages, double scale) {
+void paint_particles(const View& view, const std::vector<ParticleStage>& stages, double scale) {
   std::vector<GlPoint> points;
   for (std::size_t i = stages.size(); i-- > 0;) {
     const Colour colour = stage_colour(static_cast<int>(i), static_cast<int>(stages.size()));
     append_stage(stages[i], colour.with_alpha(kParticleOpacity), scale, points);
   }
-  draw_points(points);
+  draw_points(view, points);
 }
 
-void paint_plan(const std::vector<PlanarPoint>& plan, double scale) {
+void paint_plan(const View& view, const std::vector<PlanarPoint>& plan, double scale) {
   draw_path(plan, kMarkHeight, kCasingWidth * scale, palette::kPlannedCasing);
   draw_path(plan, kMarkHeight, kPlanWidth * scale, palette::kPlannedPath);
   std::vector<GlPoint> rims;
@@ -128,8 +127,8 @@ void paint_plan(const std::vector<PlanarPoint>& plan, double scale) {
                     palette::kPlannedCasing.with_alpha(1.0F)});
     nodes.push_back({position, static_cast<float>(kNodeSize * scale), colour});
   }
-  draw_points(rims);
-  draw_points(nodes);
+  draw_points(view, rims);
+  draw_points(view, nodes);
 }
 
 }  // namespace
@@ -173,15 +172,21 @@ ScenePainter::ScenePainter(World world, const PlanarRectangle& region)
 void ScenePainter::paint_solids() const {
   for (const PlanarRectangle& o : world_.obstacles) {
     draw_box(o, kObstacleHeight, palette::kObstacle);
+  }
+  for (const PlanarRectangle& wall : walls_) {
+    draw_box(wall, kWallHeight, palette::kWall);
+  }
+}
+
+// After the ground: smooth lines blend with what is below.
+void ScenePainter::paint_edges(double scale) const {
+  for (const PlanarRectangle& o : world_.obstacles) {
     const double z = kObstacleHeight;
     const SpacePoint a{o.x_lower, o.y_lower, z};
     const SpacePoint b{o.x_upper, o.y_lower, z};
     const SpacePoint c{o.x_upper, o.y_upper, z};
     const SpacePoint d{o.x_lower, o.y_upper, z};
-    draw_segments({a, b, b, c, c, d, d, a}, 1.5, palette::kObstacleEdge);
-  }
-  for (const PlanarRectangle& wall : walls_) {
-    draw_box(wall, kWallHeight, palette::kWall);
+    draw_segments({a, b, b, c, c, d, d, a}, 1.5 * scale, palette::kObstacleEdge);
   }
 }
 
@@ -241,8 +246,9 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   paint_target_mark();
   paint_shadows(vehicle_shadows);
   draw_path(frame.driven_path, kMarkHeight, kPathWidth * scale, palette::kDrivenPath);
-  paint_particles(frame.particles, scale);
-  paint_plan(frame.planned_path, scale);
+  paint_particles(view, frame.particles, scale);
+  paint_plan(view, frame.planned_path, scale);
+  paint_edges(scale);
   paint_target_post();
 }
 

@@ -24,6 +24,7 @@ class ScenePainter {
 
  private:
   void paint_solids() const;
+  void paint_edges(double scale) const;
   void paint_ground(const View& view) const;
   void paint_shadows(const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const;
   void paint_target_mark() const;

@@ -45,7 +45,7 @@ ModelPointer load_model(const std::string& path) {
 }
 
 // The ground and the sky are drawn by ScenePainter: MuJoCo's textured ones take most of a frame.
-void prepare_model(mjModel& model, int width, int height, int samples) {
+void prepare_model(mjModel& model, int width, int height) {
   for (int geom = 0; geom < model.ngeom; ++geom) {
     if (model.geom_type[geom] == mjGEOM_PLANE && model.geom_bodyid[geom] == 0) {
       model.geom_group[geom] = kHiddenGroup;
@@ -53,7 +53,7 @@ void prepare_model(mjModel& model, int width, int height, int samples) {
   }
   model.vis.global.offwidth = width;
   model.vis.global.offheight = height;
-  model.vis.quality.offsamples = samples > 1 ? samples : 0;
+  model.vis.quality.offsamples = 0;  // smooth_edges instead
   model.vis.quality.shadowsize = 0;
 }
 
@@ -142,9 +142,9 @@ struct Vehicle::Simulator {
   double length = 0.0;
   std::vector<unsigned char> bottom_up;  // the picture as OpenGL has it, rows from the bottom
 
-  Simulator(const std::string& path, int width, int height, int samples)
+  Simulator(const std::string& path, int width, int height)
       : model(load_model(path)), viewport{0, 0, width, height} {
-    prepare_model(*model, width, height, samples);
+    prepare_model(*model, width, height);
     data.reset(mj_makeData(model.get()));
     if (!data) {
       throw std::runtime_error("vehicle \"" + path + "\": MuJoCo cannot allocate its data");
@@ -214,9 +214,9 @@ struct Vehicle::Simulator {
   }
 };
 
-Vehicle::Vehicle(const std::string& mjcf_path, int width, int height, int samples) {
+Vehicle::Vehicle(const std::string& mjcf_path, int width, int height) {
   install_mujoco_guard();
-  simulator_ = std::make_unique<Simulator>(mjcf_path, width, height, samples);
+  simulator_ = std::make_unique<Simulator>(mjcf_path, width, height);
 }
 
 Vehicle::~Vehicle() = default;

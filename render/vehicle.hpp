@@ -15,7 +15,7 @@ class Vehicle {
  public:
   /// `mjcf_path`: the model's XML. Planes that belong to its world are not drawn. Throws
   /// std::runtime_error with MuJoCo's words when it cannot be loaded or drawn.
-  Vehicle(const std::string& mjcf_path, int width, int height, int samples);
+  Vehicle(const std::string& mjcf_path, int width, int height);
   ~Vehicle();
   Vehicle(const Vehicle&) = delete;
   Vehicle& operator=(const Vehicle&) = delete;

@@ -1,0 +1,69 @@
+// Where the vehicle is drawn at any time of an episode, from what the trace holds.
+//
+// At each control instant the disturbance makes the true state jump. A picture that jumps with it
+// is jerky, so the jump is drawn over the first kEaseTime of the following period: pictures within
+// it show the vehicle between the place where it was and the place to which it was moved.
+// Everywhere else they show the recorded motion. The trace itself is not touched.
+#pragma once
+
+#include <vector>
+
+#include "harness/trace/trace.hpp"
+#include "models/dynamics/dynamics.hpp"
+#include "render/frame.hpp"
+
+namespace qsmpc {
+
+/// The coordinates of `state` that are drawn; 0 where a system has none.
+[[nodiscard]] PlanarPose planar_pose(const SystemDescription& system,
+                                     const Eigen::Ref<const Eigen::VectorXd>& state);
+
+class EpisodeTrack {
+ public:
+  static constexpr double kEaseTime = 0.04;  ///< s
+
+  /// Takes what it needs from `trace`.
+  EpisodeTrack(const Trace& trace, const SystemDescription& system);
+
+  /// s, the end of the last control period; 0 without steps.
+  [[nodiscard]] double duration() const { return duration_; }
+
+  /// The vehicle's pose; `time` is clamped to the episode, here and below.
+  [[nodiscard]] PlanarPose pose(double time) const;
+
+  /// Values of all joints of the MuJoCo model; empty where the trace has none.
+  [[nodiscard]] std::vector<double> qpos(double time) const;
+
+  /// The way from the start to `pose(time)`.
+  [[nodiscard]] std::vector<PlanarPoint> driven_path(double time) const;
+
+  /// A pose near the vehicle's that moves smoothly: what a camera follows.
+  [[nodiscard]] PlanarPose smooth_pose(double time) const;
+
+  /// m/s, of the smooth pose.
+  [[nodiscard]] double smooth_speed(double time) const;
+
+  /// The smallest rectangle about the way; of no area without steps.
+  [[nodiscard]] PlanarRectangle extent() const;
+
+ private:
+  struct TimedPose {
+    double time = 0.0;
+    PlanarPose pose;
+  };
+  struct LocalLine {
+    PlanarPose value;
+    PlanarPose slope;
+  };
+
+  void add_poses(const Trace& trace, const SystemDescription& system);
+  void add_motion(const Trace& trace);
+  [[nodiscard]] LocalLine local_line(double time) const;
+
+  double duration_ = 0.0;
+  std::vector<TimedPose> instants_;   // at the control instants, after the jump
+  std::vector<TimedPose> drawn_;      // with the jumps eased
+  std::vector<MotionSample> motion_;  // with the jumps eased
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,37 @@
+// The video of an episode, made from its trace alone.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "harness/trace/trace.hpp"
+#include "render/frame.hpp"
+
+namespace qsmpc {
+
+struct EpisodeVideoOptions {
+  int width = 1280;              ///< pixels, even
+  int height = 720;              ///< pixels, even
+  int fps = 30;                  ///< frames a second
+  std::string camera = "chase";  ///< "chase", "top" or "fixed"
+  int threads = 2;               ///< that draw, at least 1; the result does not depend on it
+};
+
+/// Writes an MP4 to `path` that ends with a second in which the outcome is shown. `progress` (may
+/// be empty) is called on this thread after each frame; when it returns false, the video is
+/// finished with the frames so far. At most two pictures a thread are held in memory. Throws
+/// std::invalid_argument on options that are none, std::runtime_error when the vehicle cannot be
+/// drawn or the file not be written; nothing new is then under `path`.
+void write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
+                         const std::string& path,
+                         const std::function<bool(int done, int total)>& progress = {});
+
+/// What the video shows at `time` (s since the start). To draw more than one frame of a trace, make
+/// an EpisodeFrames.
+[[nodiscard]] Frame episode_frame(const Trace& trace, double time);
+
+/// One picture of the episode as a PNG. Throws like `write_episode_video`.
+void write_episode_still(const Trace& trace, const EpisodeVideoOptions& options, double time,
+                         const std::string& path);
+
+}  // namespace qsmpc
