@@ -106,12 +106,17 @@ void remux(const std::string& source, const std::string& target, const std::stri
   stream->avg_frame_rate = from->avg_frame_rate;
   output.write_header("+faststart");
   const libav::Pointer<AVPacket> packet(libav::check_allocated(av_packet_alloc(), what));
+  std::int64_t begin = AV_NOPTS_VALUE;
   while (true) {
     const int code = av_read_frame(input.get(), packet.get());
     if (code == AVERROR_EOF) {
       break;
     }
     libav::check(code, what);
+    // Fragments cannot begin before 0, so reordered frames made the first one late.
+    begin = begin == AV_NOPTS_VALUE ? packet->pts : begin;
+    packet->pts -= begin;
+    packet->dts -= begin;
     av_packet_rescale_ts(packet.get(), from->time_base, stream->time_base);
     packet->pos = -1;
     output.write(packet.get());
