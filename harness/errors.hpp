@@ -24,6 +24,13 @@ class InputError : public std::runtime_error {
   Where where_;
 };
 
+/// A model that the simulator itself refuses or cannot run, in its own words. An episode takes it
+/// as a fault of its plant.
+class SimulatorError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// A file or folder that cannot be read or written. Exit code 3.
 class IoError : public std::runtime_error {
  public:

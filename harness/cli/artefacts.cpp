@@ -1,0 +1,108 @@
+#include "harness/cli/artefacts.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/progress.hpp"
+#include "harness/errors.hpp"
+#include "harness/report/episode_page.hpp"
+#include "harness/trace/summary.hpp"
+#include "harness/trace/trace_file.hpp"
+
+namespace qsmpc {
+namespace {
+
+std::string in_folder(const std::string& folder, const char* file) { return folder + "/" + file; }
+
+std::string row(const std::string& name, const std::string& value) {
+  return fmt::format("  {:<28} {}\n", name, value);
+}
+
+}  // namespace
+
+void discard_artefacts(const std::string& folder) {
+  for (const char* file : {kSummaryFile, kVideoFile, kPageFile}) {
+    std::error_code error;
+    std::filesystem::remove(in_folder(folder, file), error);
+    if (error) throw IoError(in_folder(folder, file) + ": " + error.message());
+  }
+}
+
+EpisodeVideoOptions video_options(const Scenario& scenario) {
+  EpisodeVideoOptions options;
+  options.width = scenario.video.width;
+  options.height = scenario.video.height;
+  options.fps = scenario.video.fps;
+  options.camera = scenario.video.camera;
+  return options;
+}
+
+void make_video(const Trace& trace, const std::string& folder, const EpisodeVideoOptions& options,
+                bool quiet) {
+  Progress progress("rendering", quiet);
+  const int before = interrupts();
+  try {
+    write_episode_video(trace, options, in_folder(folder, kVideoFile), [&](int done, int total) {
+      progress.update(done, total, "frames");
+      return interrupts() == before;
+    });
+  } catch (const std::runtime_error& error) {
+    throw IoError(error.what());
+  }
+}
+
+void write_summary(const Trace& trace, const std::string& folder, bool with_video) {
+  write_file(in_folder(folder, kSummaryFile),
+             summary_json(trace, {.video_file = with_video ? kVideoFile : ""}));
+}
+
+void write_page(const Trace& trace, const std::string& folder, bool with_video) {
+  write_file(in_folder(folder, kPageFile),
+             episode_page(trace, {.video_file = with_video ? kVideoFile : ""}));
+}
+
+std::string summary_table(const Trace& trace, const std::string& folder, bool with_video) {
+  const Summary summary = summarise(trace);
+  std::string text = fmt::format("{} (seed {}): {}\n", printable(trace.scenario.name), trace.seed,
+                                 outcome_name(trace.outcome));
+  text += row("steps", fmt::format("{}", summary.steps));
+  if (summary.time_to_target)
+    text += row("time to target", fmt::format("{:.1f} s", *summary.time_to_target));
+  text += row("entered the unsafe set", summary.collision ? "yes" : "no");
+  text += row("least clearance", fmt::format("{:.3f} m", summary.min_clearance));
+  text += row("closed-loop cost", fmt::format("{:.1f}", summary.closed_loop_cost));
+  if (!trace.steps.empty()) {
+    text += row("solve time, median / p99",
+                fmt::format("{:.1f} / {:.1f} ms", summary.ocp_ms.median, summary.ocp_ms.p99));
+    text += row("deadline misses", fmt::format("{}", summary.deadline_misses));
+    text += row("P(unsafe at next step) <=",
+                fmt::format("{:.3g} at most, {:.3g} on average", summary.next_step_max,
+                            summary.next_step_mean));
+    text += row("P(unsafe over a plan) <=", fmt::format("{:.3g} at most", summary.horizon_max));
+    text +=
+        "  (both hold for the planner's model from its belief; the plant's mismatch is not in "
+        "them)\n";
+  }
+  text += row("numbers", in_folder(folder, kSummaryFile));
+  text += row("page", in_folder(folder, kPageFile));
+  if (with_video) text += row("video", in_folder(folder, kVideoFile));
+  text += row("trace", in_folder(folder, kTraceFile));
+  return text;
+}
+
+Trace read_folder(const std::string& folder) {
+  const std::string path = in_folder(folder, kTraceFile);
+  const std::string partial = path + ".partial";
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(partial, ignored)) {
+    return read_trace(partial);
+  }
+  return read_trace(path);
+}
+
+}  // namespace qsmpc

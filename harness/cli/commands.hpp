@@ -1,0 +1,17 @@
+// One function a subcommand: it adds the command's options to the parser. When the command was
+// given, the callback runs it and stores its exit code.
+#pragma once
+
+namespace CLI {
+class App;
+}
+
+namespace qsmpc {
+
+void add_run_command(CLI::App& app, int& exit_code);
+void add_render_command(CLI::App& app, int& exit_code);
+void add_report_command(CLI::App& app, int& exit_code);
+void add_list_command(CLI::App& app, int& exit_code);
+void add_validate_command(CLI::App& app, int& exit_code);
+
+}  // namespace qsmpc

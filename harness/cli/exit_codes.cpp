@@ -1,0 +1,38 @@
+#include "harness/cli/exit_codes.hpp"
+
+#include <iostream>
+#include <new>
+#include <string>
+
+#include "harness/errors.hpp"
+
+namespace qsmpc {
+namespace {
+
+// One line, however long an error's own text is.
+constexpr std::size_t kLineLimit = 2000;
+
+int told(const std::string& text, ExitCode code) {
+  std::cerr << "qsmpc: " << printable(text, kLineLimit) << '\n';
+  return code;
+}
+
+}  // namespace
+
+int report_exception(const std::exception_ptr& exception) {
+  try {
+    std::rethrow_exception(exception);
+  } catch (const InputError& error) {
+    return told(error.what(), kBadInput);
+  } catch (const IoError& error) {
+    return told(error.what(), kIoTrouble);
+  } catch (const std::bad_alloc&) {
+    return told("out of memory", kInternalError);
+  } catch (const std::exception& error) {
+    return told("internal error: " + std::string(error.what()), kInternalError);
+  } catch (...) {
+    return told("internal error of unknown kind", kInternalError);
+  }
+}
+
+}  // namespace qsmpc

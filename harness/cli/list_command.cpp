@@ -1,0 +1,91 @@
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "controller/planning/ocp_solver.hpp"
+#include "controller/prediction/propagator.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/exit_codes.hpp"
+#include "harness/cli/output.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/scenario/shipped_files.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+namespace {
+
+struct Item {
+  std::string name;
+  std::string summary;
+};
+
+struct Table {
+  std::string title;
+  std::vector<Item> items;
+};
+
+template <class Entries>
+Table make_table(const std::string& title, const Entries& entries) {
+  Table table{.title = title, .items = {}};
+  for (const auto& entry : entries) table.items.push_back({entry.name, entry.summary});
+  return table;
+}
+
+std::vector<Table> tables() {
+  Table scenarios{.title = "scenarios", .items = {}};
+  for (const ShippedScenario& scenario : shipped_scenarios()) {
+    scenarios.items.push_back({scenario.name, scenario.description});
+  }
+  return {make_table("systems", systems()), make_table("plants", plants()),
+          make_table("solvers", solvers()), make_table("propagators", propagators()), scenarios};
+}
+
+std::string as_text(const std::vector<Table>& chosen) {
+  std::string text;
+  for (const Table& table : chosen) {
+    text += table.title + "\n";
+    for (const Item& item : table.items) {
+      text += fmt::format("  {:<24} {}\n", item.name, item.summary);
+    }
+  }
+  return text;
+}
+
+std::string as_json(const std::vector<Table>& chosen) {
+  nlohmann::ordered_json json;
+  for (const Table& table : chosen) {
+    json[table.title] = nlohmann::ordered_json::array();
+    for (const Item& item : table.items) {
+      json[table.title].push_back({{"name", item.name}, {"summary", item.summary}});
+    }
+  }
+  return json.dump(2) + "\n";
+}
+
+int list(const std::string& kind, bool json) {
+  std::vector<Table> chosen;
+  for (Table& table : tables()) {
+    if (kind.empty() || kind == table.title) chosen.push_back(std::move(table));
+  }
+  print_result(json ? as_json(chosen) : as_text(chosen));
+  return kDone;
+}
+
+}  // namespace
+
+void add_list_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("list", "Lists what can be named.");
+  command->footer("Example: qsmpc list scenarios");
+  const auto kind = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  command->add_option("kind", *kind, "systems, plants, solvers, propagators or scenarios")
+      ->check(CLI::IsMember({"systems", "plants", "solvers", "propagators", "scenarios"}));
+  command->add_flag("--json", *json, "as JSON");
+  command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
+}
+
+}  // namespace qsmpc

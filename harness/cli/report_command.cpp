@@ -1,0 +1,34 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "harness/cli/artefacts.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/exit_codes.hpp"
+#include "harness/cli/output.hpp"
+
+namespace qsmpc {
+namespace {
+
+int report(const std::string& folder) {
+  const Trace trace = read_folder(folder);
+  std::error_code ignored;
+  write_page(trace, folder, std::filesystem::exists(folder + "/" + kVideoFile, ignored));
+  print_result(folder + "/" + kPageFile + "\n");
+  return kDone;
+}
+
+}  // namespace
+
+void add_report_command(CLI::App& app, int& exit_code) {
+  CLI::App* command =
+      app.add_subcommand("report", "Writes a self-contained HTML page from an episode's trace.");
+  command->footer("Example: qsmpc report out/dubins_obstacles-0");
+  const auto folder = std::make_shared<std::string>();
+  command->add_option("folder", *folder, "folder of an episode")->required();
+  command->callback([folder, &exit_code] { exit_code = report(*folder); });
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,130 @@
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/cli/artefacts.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/exit_codes.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/output.hpp"
+#include "harness/cli/progress.hpp"
+#include "harness/episode/episode.hpp"
+#include "harness/errors.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/summary.hpp"
+#include "harness/trace/trace_file.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kHelp =
+    "Runs one closed-loop episode and writes episode.h5, summary.json, scenario.yaml, episode.mp4\n"
+    "and report.html.";
+constexpr const char* kExample =
+    "Example: qsmpc run dubins_obstacles --seed 3 --set controller.horizon=10 --out out/ten";
+
+struct RunArguments {
+  std::string scenario;
+  std::vector<std::string> overrides;
+  std::optional<std::uint64_t> seed;
+  std::string out;
+  bool video = true;
+  bool quiet = false;
+  bool json = false;
+  std::vector<std::string> fail_on = {"fault"};
+};
+
+/// "out/NAME-SEED", with what does not belong in a file name replaced.
+std::string default_folder(const Scenario& scenario, std::uint64_t seed) {
+  std::string name = scenario.name;
+  for (char& c : name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    if (!plain) c = '_';
+  }
+  return fmt::format("out/{}-{}", name, seed);
+}
+
+Trace drive(const Scenario& scenario, std::uint64_t seed, const std::string& folder, bool quiet) {
+  TraceWriter writer(folder + "/" + kTraceFile, trace_header(scenario, seed));
+  Progress progress("driving", quiet);
+  EpisodeOptions options;
+  options.seed = seed;
+  options.writer = &writer;
+  options.should_stop = [] { return interrupts() > 0; };
+  options.on_step = [&](const Trace& trace) {
+    const StepRecord& step = trace.steps.back();
+    progress.update(static_cast<int>(trace.steps.size()), scenario.step_limit,
+                    fmt::format("t = {:.1f} s, solved in {:.0f} ms, P(unsafe next) <= {:.2g}",
+                                step.time, step.timing.total, step.certificates.front().value));
+  };
+  return run_episode(scenario, options);
+}
+
+bool asked_to_tell(const std::vector<std::string>& fail_on, const Summary& summary) {
+  return std::any_of(fail_on.begin(), fail_on.end(), [&](const std::string& name) {
+    return name == summary.outcome || (name == "collision" && summary.collision);
+  });
+}
+
+int run(const RunArguments& arguments) {
+  Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
+  const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
+  scenario.seed = seed;
+  const std::string folder = arguments.out.empty() ? default_folder(scenario, seed) : arguments.out;
+  make_output_folder(folder);
+  write_file(folder + "/" + kScenarioFile, to_yaml(scenario));
+
+  const Trace trace = drive(scenario, seed, folder, arguments.quiet);
+  discard_artefacts(folder);  // those of an earlier run, which this trace is not the source of
+  write_summary(trace, folder, /*with_video=*/false);
+  if (trace.outcome == Outcome::kFault) {
+    std::cerr << "qsmpc: the plant broke: " << printable(trace.fault, 1000) << '\n';
+  }
+  if (arguments.video) {
+    make_video(trace, folder, video_options(scenario), arguments.quiet);
+    write_summary(trace, folder, /*with_video=*/true);
+  }
+  write_page(trace, folder, arguments.video);
+
+  print_result(arguments.json
+                   ? summary_json(trace, {.video_file = arguments.video ? kVideoFile : ""})
+                   : summary_table(trace, folder, arguments.video));
+  if (trace.outcome == Outcome::kInterrupted) return kInterruptedExit;
+  return asked_to_tell(arguments.fail_on, summarise(trace)) ? kToldFailure : kDone;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("run", kHelp);
+  command->footer(kExample);
+  const auto arguments = std::make_shared<RunArguments>();
+  command
+      ->add_option("scenario", arguments->scenario, "a scenario file, or the name of a shipped one")
+      ->required();
+  command->add_option("--set", arguments->overrides, "KEY=VALUE: replaces a key of the scenario")
+      ->allow_extra_args(false);
+  command->add_option("--seed", arguments->seed, "of all random numbers; default: the scenario's");
+  command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
+  command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
+  command
+      ->add_option("--fail-on", arguments->fail_on,
+                   "exit with 1 on these outcomes (reached, timeout, left_safe_set, fault, "
+                   "collision, none); default: fault")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"reached", "timeout", "left_safe_set", "fault", "collision", "none"}));
+  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--json", arguments->json, "print summary.json instead of the table");
+  command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,37 @@
+#include "harness/episode/assembly.hpp"
+
+namespace qsmpc {
+
+std::unique_ptr<const Dynamics> model_of(const Scenario& scenario) {
+  return make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+}
+
+PlannerSettings planner_settings(const Scenario& scenario) {
+  const Scenario::Controller& controller = scenario.controller;
+  const Scenario::Penalty& penalty = controller.penalty;
+  PlannerSettings settings;
+  settings.horizon = controller.horizon;
+  settings.closed_loop = controller.policy == "closed_loop";
+  settings.feedback_gain = controller.feedback_gain;
+  settings.solver = controller.solver;
+  settings.propagator = controller.propagate_noise ? "compressed" : "noise_free";
+  settings.state_points = controller.quantisation.state;
+  settings.noise_points = controller.quantisation.noise;
+  settings.compressed_points = controller.quantisation.compressed;
+  settings.max_evaluations = controller.max_iterations;
+  settings.noise_covariance = scenario.disturbance_covariance;
+  settings.cost = {.state = controller.cost.state,
+                   .input = controller.cost.input,
+                   .terminal = controller.cost.terminal,
+                   .target = scenario.target.state};
+  settings.penalty = {
+      .shape = penalty.shape == "thesis" ? PenaltyShape::kThesis : PenaltyShape::kSmooth,
+      .box = penalty.box,
+      .obstacle = penalty.obstacle,
+      .length = penalty.length};
+  settings.safe_set = scenario.safe_set;
+  settings.bounds = {.lower = controller.input_lower, .upper = controller.input_upper};
+  return settings;
+}
+
+}  // namespace qsmpc

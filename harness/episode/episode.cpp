@@ -1,0 +1,175 @@
+#include "harness/episode/episode.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <utility>
+
+#include "controller/certification/certificate.hpp"
+#include "controller/planning/planner.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/errors.hpp"
+#include "harness/plant/disturbance.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/trace_file.hpp"
+#include "harness/version.hpp"
+
+namespace qsmpc {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+bool at_target(const Scenario& scenario, const SystemDescription& description,
+               const Eigen::VectorXd& state) {
+  const Eigen::VectorXd offset = state - scenario.target.state;
+  const int x = description.position_x;
+  const int y = description.position_y;
+  const double distance = x >= 0 && y >= 0 ? std::hypot(offset[x], offset[y]) : offset.norm();
+  return distance <= scenario.target.radius;
+}
+
+/// The closed loop's parts and its state between the steps.
+class Episode {
+ public:
+  Episode(const Scenario& scenario, const EpisodeOptions& options)
+      : scenario_(scenario),
+        options_(options),
+        model_(model_of(scenario)),
+        planner_(*model_, planner_settings(scenario)),
+        disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance_covariance),
+        belief_{.mean = scenario.initial_state.mean,
+                .covariance = scenario.initial_state.covariance} {}
+
+  Trace run() {
+    Trace trace = trace_header(scenario_, options_.seed);
+    const GaussianSampler initial(belief_.mean, belief_.covariance);
+    state_ = initial.sample({.seed = options_.seed, .stream = RandomStream::kInitialState});
+    try {
+      plant_ = make_plant(scenario_);
+      trace.outcome = drive(trace);
+    } catch (const SimulatorError& error) {
+      trace.outcome = Outcome::kFault;
+      trace.fault = error.what();
+    }
+    trace.final_state = state_;
+    if (options_.writer != nullptr) options_.writer->finish(trace);
+    return trace;
+  }
+
+ private:
+  [[nodiscard]] Outcome drive(Trace& trace) {
+    trace.motion.push_back(plant_->reset(state_));
+    std::optional<Outcome> outcome = outcome_now();
+    for (int k = 0; !outcome && k < scenario_.step_limit; ++k) {
+      if (options_.should_stop && options_.should_stop()) return Outcome::kInterrupted;
+      outcome = step(k, trace);
+    }
+    return outcome.value_or(Outcome::kTimeout);
+  }
+
+  /// How the episode ends in the present state, if it does.
+  [[nodiscard]] std::optional<Outcome> outcome_now() const {
+    if (scenario_.stop_when_unsafe && clearance(state_, scenario_.safe_set) <= 0.0) {
+      return Outcome::kLeftSafeSet;
+    }
+    if (at_target(scenario_, model_->description(), state_)) return Outcome::kReached;
+    return std::nullopt;
+  }
+
+  std::optional<Outcome> step(int k, Trace& trace) {
+    const std::size_t motion_begin = k == 0 ? 0 : trace.motion.size();
+    trace.steps.push_back(decide(k));
+    StepRecord& record = trace.steps.back();
+    const auto start = Clock::now();
+    PlantStep result = plant_->advance(record.input, record.disturbance);
+    record.timing.simulate = milliseconds_since(start);
+    trace.motion.insert(trace.motion.end(), std::make_move_iterator(result.motion.begin()),
+                        std::make_move_iterator(result.motion.end()));
+    if (options_.writer != nullptr) {
+      options_.writer->append(record, std::span(trace.motion).subspan(motion_begin));
+    }
+    if (options_.on_step) options_.on_step(trace);
+    observe(record, result.state);
+    if (result.fault) {
+      trace.fault = *result.fault;
+      return Outcome::kFault;
+    }
+    return outcome_now();
+  }
+
+  /// Plans for the belief, certifies the plan, and evaluates its first stage at the observed state.
+  [[nodiscard]] StepRecord decide(int k) {
+    const Plan& plan = planner_.plan(belief_);
+    const auto start = Clock::now();
+    StepRecord record;
+    record.budgets = error_budget(planner_, plan);
+    record.certificates = certify(planner_, belief_, plan, record.budgets);
+    record.timing.certify = milliseconds_since(start);
+    record.timing.quantise = plan.timing.quantise;
+    record.timing.propagate = plan.timing.propagate;
+    record.timing.optimise = plan.timing.optimise;
+    record.timing.total = record.timing.quantise + record.timing.propagate +
+                          record.timing.optimise + record.timing.certify;
+    record.time = k * scenario_.time_step;
+    record.state = state_;
+    record.input = policy_input(plan.policy, 0, state_);
+    const RandomKey key{.seed = options_.plant_seed.value_or(options_.seed),
+                        .stream = RandomStream::kDisturbance,
+                        .step = static_cast<std::uint64_t>(k)};
+    record.disturbance = disturbance_.sample(key);
+    record.belief_mean = belief_.mean;
+    record.belief_covariance = belief_.covariance;
+    record.plan_inputs = plan.policy.inputs;
+    record.plan_states = plan.policy.states;
+    record.cost = plan.cost;
+    record.solver_status = solver_status_name(plan.status);
+    record.fallback = plan.fallback;
+    record.iterations = plan.evaluations;
+    record.particles = plan.prediction.stages;
+    return record;
+  }
+
+  /// What is known of the next state before it is seen, and then the state itself.
+  void observe(const StepRecord& record, const Eigen::VectorXd& next_state) {
+    const StateBatch state = record.state;
+    const StateBatch input = record.input;
+    StateBatch predicted(state.rows(), 1);
+    model_->step(state, input, predicted);
+    belief_ = {.mean = predicted.col(0), .covariance = scenario_.disturbance_covariance};
+    state_ = next_state;
+  }
+
+  const Scenario& scenario_;
+  const EpisodeOptions& options_;
+  std::unique_ptr<const Dynamics> model_;
+  Planner planner_;
+  std::unique_ptr<Plant> plant_;
+  GaussianSampler disturbance_;
+  Gaussian belief_;
+  Eigen::VectorXd state_;
+};
+
+}  // namespace
+
+Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
+  Trace trace;
+  trace.scenario = scenario;
+  trace.scenario.seed = seed;
+  trace.scenario_text = to_yaml(trace.scenario);
+  trace.seed = seed;
+  trace.version = kVersion;
+  return trace;
+}
+
+Trace run_episode(const Scenario& scenario, const EpisodeOptions& options) {
+  return Episode(scenario, options).run();
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,42 @@
+// One closed loop in receding horizon (Algorithm 5): plan, certify, act on the plant, observe.
+//
+// The plan of a period is made one period ahead, as on a machine that needs the period to compute:
+// having seen x_k and applied u_k, the belief of x_{k+1} is the model's prediction
+// N(f(x_k, u_k), Σ_w). When x_{k+1} is then observed, the first stage of the policy is evaluated at
+// it. The plant's disturbance comes from a random stream of its own; the planner sees nothing of
+// the plant but the states at the ends of the periods.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "harness/scenario/scenario.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc {
+
+class TraceWriter;
+
+struct EpisodeOptions {
+  std::uint64_t seed = 0;
+  /// Seed of the plant's disturbances where it is not `seed`; the initial state stays that of
+  /// `seed`.
+  std::optional<std::uint64_t> plant_seed{};
+  /// Called after each step with the trace so far; not with none.
+  std::function<void(const Trace&)> on_step{};
+  /// Asked before each step; true ends the episode as interrupted.
+  std::function<bool()> should_stop{};
+  /// Receives every step as soon as it is done, and the end; may be null.
+  TraceWriter* writer = nullptr;
+};
+
+/// The header of the trace of `scenario`: scenario, its text, seed, version.
+[[nodiscard]] Trace trace_header(const Scenario& scenario, std::uint64_t seed);
+
+/// Runs one episode. A plant that breaks ends it with the outcome `fault`; numerical trouble of the
+/// planner is in the steps' solver status. Throws InputError for what is wrong with the plant's
+/// file and IoError from the writer.
+[[nodiscard]] Trace run_episode(const Scenario& scenario, const EpisodeOptions& options);
+
+}  // namespace qsmpc

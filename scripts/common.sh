@@ -1,0 +1,53 @@
+# Shared by the scripts beside it; to be sourced. Puts them in the project's root.
+set -euo pipefail
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+
+say() { printf '\n==> %s\n' "$*"; }
+
+# fail MESSAGE: the line that says what to do, and the end.
+fail() {
+  printf '\n%s: %s\n' "$(basename "$0")" "$*" >&2
+  exit 1
+}
+
+# install_packages LIST…: installs what is missing of the Debian packages named in the files.
+install_packages() {
+  command -v dpkg-query >/dev/null || fail "this script installs Debian packages; elsewhere, install what $* name and build with: cmake --preset release && cmake --build --preset release"
+  local missing=() package
+  while read -r package; do
+    [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      missing+=("$package")
+  done < <(sed 's/#.*//; /^[[:space:]]*$/d' "$@")
+  if [ ${#missing[@]} -eq 0 ]; then
+    say "All Debian packages are there"
+    return
+  fi
+  say "Installing missing Debian packages: ${missing[*]}"
+  local as_root=()
+  if [ "$(id -u)" -ne 0 ]; then
+    command -v sudo >/dev/null || fail "run this as root, or first: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  local log
+  log=$(mktemp)
+  if ! { "${as_root[@]}" apt-get update &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    tail -n 15 "$log" >&2
+    fail "apt-get could not install them; its log is $log"
+  fi
+  rm -f "$log"
+}
+
+# build PRESET: configures and builds a preset of CMakePresets.json.
+build() {
+  say "Building the preset '$1' into build/$1"
+  cmake --preset "$1" >"build-$1.log" 2>&1 || {
+    tail -n 25 "build-$1.log" >&2
+    fail "cmake could not configure; see build-$1.log, or remove build/$1 and try again"
+  }
+  rm -f "build-$1.log"
+  cmake --build --preset "$1" -- --quiet ||
+    fail "the build failed; the compiler's first error is above"
+}

@@ -1,0 +1,222 @@
+#include "harness/episode/episode.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/episode/assembly.hpp"
+#include "harness/scenario/scenario_file.hpp"
+
+namespace qsmpc {
+namespace {
+
+/// The shipped default, made small enough to run many times.
+Scenario small_scenario(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides = {
+      "controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",
+      "limit.steps=12", "plant.kind=analytic"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return load_scenario("dubins_obstacles", overrides);
+}
+
+void expect_equal_steps(const StepRecord& a, const StepRecord& b) {
+  EXPECT_EQ(a.state, b.state);
+  EXPECT_EQ(a.input, b.input);
+  EXPECT_EQ(a.plan_inputs, b.plan_inputs);
+  EXPECT_EQ(a.belief_mean, b.belief_mean);
+  EXPECT_EQ(a.cost.total(), b.cost.total());
+  ASSERT_EQ(a.particles.size(), b.particles.size());
+  for (std::size_t k = 0; k < a.particles.size(); ++k) {
+    EXPECT_EQ(a.particles[k].locations, b.particles[k].locations);
+    EXPECT_EQ(a.certificates.at(k == 0 ? 0 : k - 1).value,
+              b.certificates.at(k == 0 ? 0 : k - 1).value);
+  }
+}
+
+TEST(Episode, the_same_seed_gives_the_same_trace_on_every_plant) {
+  for (const char* kind : {"analytic", "mujoco"}) {
+    const Scenario scenario = small_scenario({std::string("plant.kind=") + kind});
+    const Trace first = run_episode(scenario, {.seed = 7});
+    const Trace second = run_episode(scenario, {.seed = 7});
+    ASSERT_EQ(first.steps.size(), 12U);
+    ASSERT_EQ(second.steps.size(), 12U);
+    for (std::size_t k = 0; k < first.steps.size(); ++k) {
+      expect_equal_steps(first.steps[k], second.steps[k]);
+      EXPECT_EQ(first.steps[k].disturbance, second.steps[k].disturbance);
+    }
+    EXPECT_EQ(first.final_state, second.final_state);
+    ASSERT_EQ(first.motion.size(), second.motion.size());
+    for (std::size_t k = 0; k < first.motion.size(); ++k) {
+      EXPECT_EQ(first.motion[k].qpos, second.motion[k].qpos);
+    }
+  }
+}
+
+TEST(Episode, another_seed_gives_another_trace) {
+  const Scenario scenario = small_scenario();
+  const Trace first = run_episode(scenario, {.seed = 7});
+  const Trace second = run_episode(scenario, {.seed = 8});
+  EXPECT_NE(first.steps[0].state, second.steps[0].state);
+  EXPECT_NE(first.steps[0].disturbance, second.steps[0].disturbance);
+}
+
+// The plan of a period is a function of the belief, and the belief one of what was seen before:
+// with only the plant's disturbances changed, everything is the same until the first disturbed
+// state has been seen, and differs from there on.
+TEST(Episode, the_planner_does_not_see_the_disturbances) {
+  for (const char* kind : {"analytic", "mujoco"}) {
+    const Scenario scenario = small_scenario({std::string("plant.kind=") + kind});
+    const Trace first = run_episode(scenario, {.seed = 7, .plant_seed = 1});
+    const Trace second = run_episode(scenario, {.seed = 7, .plant_seed = 2});
+    expect_equal_steps(first.steps[0], second.steps[0]);
+    EXPECT_NE(first.steps[0].disturbance, second.steps[0].disturbance);
+    // Made before the state at step 1 is seen.
+    EXPECT_EQ(first.steps[1].plan_inputs, second.steps[1].plan_inputs);
+    EXPECT_EQ(first.steps[1].belief_mean, second.steps[1].belief_mean);
+    EXPECT_NE(first.steps[1].state, second.steps[1].state);
+    EXPECT_NE(first.steps[2].plan_inputs, second.steps[2].plan_inputs);
+  }
+}
+
+TEST(Episode, the_analytic_plant_moves_as_the_model_says) {
+  const Scenario scenario = small_scenario();
+  const Trace trace = run_episode(scenario, {.seed = 3});
+  const auto model = model_of(scenario);
+  for (std::size_t k = 0; k + 1 < trace.steps.size(); ++k) {
+    const StepRecord& step = trace.steps[k];
+    const StateBatch state = step.state;
+    const StateBatch input = step.input;
+    StateBatch next(3, 1);
+    model->step(state, input, next);
+    EXPECT_EQ(trace.steps[k + 1].belief_mean, next.col(0));
+    // One addition apart: exact to rounding of numbers of order 1.
+    EXPECT_TRUE(trace.steps[k + 1].state.isApprox(next.col(0) + step.disturbance, 1e-14));
+  }
+}
+
+TEST(Episode, inputs_stay_within_their_bounds) {
+  const Scenario scenario = small_scenario({"controller.input_bounds={yaw_rate: [-0.4, 0.7]}"});
+  for (const StepRecord& step : run_episode(scenario, {.seed = 1}).steps) {
+    EXPECT_GE(step.input[0], -0.4);
+    EXPECT_LE(step.input[0], 0.7);
+    EXPECT_GE(step.plan_inputs.minCoeff(), -0.4);
+    EXPECT_LE(step.plan_inputs.maxCoeff(), 0.7);
+  }
+}
+
+TEST(Episode, ends_at_the_target) {
+  const Scenario scenario = small_scenario({"target={state: [1, 0, 0], radius: 0.5}"});
+  const Trace trace = run_episode(scenario, {.seed = 2});
+  EXPECT_EQ(trace.outcome, Outcome::kReached);
+  EXPECT_LE((trace.final_state.head(2) - scenario.target.state.head(2)).norm(), 0.5);
+  for (const StepRecord& step : trace.steps) {
+    EXPECT_GT((step.state.head(2) - scenario.target.state.head(2)).norm(), 0.5);
+  }
+}
+
+TEST(Episode, ends_when_the_true_state_is_unsafe_unless_told_to_go_on) {
+  // Without a penalty the way to the target leads through the obstacle.
+  const std::vector<std::string> blind = {
+      "safe_set.obstacles=[{x: [0.6, 1.5], y: [-2, 2]}]", "target={state: [3, 0, 0], radius: 0.5}",
+      "controller.penalty={box: 0, obstacle: 0}", "limit.steps=20"};
+  const Trace stopped = run_episode(small_scenario(blind), {.seed = 2});
+  EXPECT_EQ(stopped.outcome, Outcome::kLeftSafeSet);
+  EXPECT_LE(clearance(stopped.final_state, stopped.scenario.safe_set), 0.0);
+
+  std::vector<std::string> on = blind;
+  on.emplace_back("limit.stop_when_unsafe=false");
+  const Trace through = run_episode(small_scenario(on), {.seed = 2});
+  EXPECT_GT(through.steps.size(), stopped.steps.size());
+  EXPECT_NE(through.outcome, Outcome::kLeftSafeSet);
+}
+
+TEST(Episode, times_out_after_its_limit) {
+  const Trace trace = run_episode(small_scenario({"limit.steps=3"}), {.seed = 2});
+  EXPECT_EQ(trace.outcome, Outcome::kTimeout);
+  EXPECT_EQ(trace.steps.size(), 3U);
+}
+
+TEST(Episode, an_interrupt_keeps_what_was_driven) {
+  int asked = 0;
+  EpisodeOptions options{.seed = 2};
+  options.should_stop = [&asked] { return ++asked > 4; };
+  const Trace trace = run_episode(small_scenario(), options);
+  EXPECT_EQ(trace.outcome, Outcome::kInterrupted);
+  EXPECT_EQ(trace.steps.size(), 4U);
+  EXPECT_EQ(trace.final_state.size(), 3);
+}
+
+TEST(Episode, an_open_loop_policy_ignores_the_measured_state) {
+  const Scenario scenario = small_scenario({"controller.policy=open_loop"});
+  for (const StepRecord& step : run_episode(scenario, {.seed = 4}).steps) {
+    EXPECT_EQ(step.input, step.plan_inputs.col(0));
+  }
+}
+
+TEST(Episode, a_given_gain_steers_by_the_deviation) {
+  const Scenario scenario = small_scenario({"controller.feedback_gain=[[0.3, -0.2, -0.5]]"});
+  for (const StepRecord& step : run_episode(scenario, {.seed = 4}).steps) {
+    const Eigen::VectorXd deviation = step.state - step.belief_mean;
+    const double wanted =
+        step.plan_inputs(0, 0) + 0.3 * deviation[0] - 0.2 * deviation[1] - 0.5 * deviation[2];
+    EXPECT_NEAR(step.input[0], std::clamp(wanted, -2.0, 2.0), 1e-12);  // rounding
+  }
+}
+
+TEST(Episode, leaving_the_noise_out_of_the_prediction_keeps_the_belief_only) {
+  const Trace trace =
+      run_episode(small_scenario({"controller.propagate_noise=false", "limit.steps=2"}), {});
+  for (const StageParticles& stage : trace.steps[0].particles) {
+    EXPECT_EQ(stage.weights, trace.steps[0].particles[0].weights);
+  }
+}
+
+// A trace is what reports and videos are made from: every stage must be there, and consistent.
+TEST(Episode, records_every_stage) {
+  const Trace trace = run_episode(small_scenario(), {.seed = 5});
+  for (const StepRecord& step : trace.steps) {
+    ASSERT_EQ(step.particles.size(), 6U);
+    ASSERT_EQ(step.budgets.size(), 6U);
+    ASSERT_EQ(step.certificates.size(), 5U);
+    EXPECT_EQ(step.plan_states.cols(), 6);
+    for (const StageParticles& stage : step.particles) {
+      EXPECT_NEAR(stage.weights.sum(), 1.0, 1e-12);  // rounding of at most 400 terms
+      EXPECT_GE(stage.weights.minCoeff(), 0.0);
+    }
+    for (const StageCertificate& certificate : step.certificates) {
+      EXPECT_EQ(certificate.value,
+                std::min({certificate.particles, certificate.mixture, certificate.surrogate}));
+      EXPECT_GE(certificate.value, 0.0);
+      EXPECT_LE(certificate.value, 1.0);
+    }
+  }
+}
+
+TEST(Episode, a_plant_that_breaks_is_an_outcome_with_the_simulators_words) {
+  const Scenario scenario =
+      small_scenario({"plant.kind=mujoco", "disturbance.covariance=[1e24, 1e24, 0]"});
+  const Trace trace = run_episode(scenario, {.seed = 1});
+  EXPECT_EQ(trace.outcome, Outcome::kFault);
+  EXPECT_FALSE(trace.fault.empty());
+  EXPECT_TRUE(trace.final_state.allFinite());
+}
+
+TEST(Episode, an_xml_file_that_mujoco_refuses_is_a_fault_in_its_own_words) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() / "qsmpc_episode_bad.xml";
+  std::ofstream(file) << "<mujoco><worldbody><no_such_element/></worldbody></mujoco>";
+  const Scenario scenario = small_scenario({"plant.kind=mujoco", "plant.mjcf=" + file.string()});
+  const Trace trace = run_episode(scenario, {.seed = 1});
+  std::filesystem::remove(file);
+  EXPECT_EQ(trace.outcome, Outcome::kFault);
+  EXPECT_TRUE(trace.steps.empty());
+  EXPECT_THAT(trace.fault, testing::HasSubstr("no_such_element"));
+}
+
+}  // namespace
+}  // namespace qsmpc
