@@ -1,0 +1,60 @@
+// Every system of the table, for tests that each system must pass.
+#pragma once
+
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::testing {
+
+inline constexpr double kTimeStep = 0.1;  // s
+
+inline StateBatch random_batch(std::mt19937_64& generator, Eigen::Index rows, Eigen::Index cols,
+                               double scale) {
+  std::uniform_real_distribution<double> uniform(-scale, scale);
+  return StateBatch::NullaryExpr(rows, cols, [&] { return uniform(generator); });
+}
+
+class EverySystem : public ::testing::TestWithParam<std::string> {
+ protected:
+  EverySystem() : dynamics_(make_dynamics(GetParam(), {}, kTimeStep)) {}
+
+  [[nodiscard]] const Dynamics& dynamics() const { return *dynamics_; }
+  [[nodiscard]] StateBatch states(Eigen::Index count) {
+    return random_batch(generator_, dynamics().state_dim(), count, 4.0);
+  }
+  /// Within the system's own bounds.
+  [[nodiscard]] StateBatch inputs(Eigen::Index count) {
+    const SystemDescription& system = dynamics().description();
+    StateBatch batch = random_batch(generator_, dynamics().input_dim(), count, 1.0);
+    for (Eigen::Index axis = 0; axis < batch.rows(); ++axis) {
+      const double middle = 0.5 * (system.input_upper[axis] + system.input_lower[axis]);
+      const double half = 0.5 * (system.input_upper[axis] - system.input_lower[axis]);
+      batch.row(axis) = batch.row(axis).array() * half + middle;
+    }
+    return batch;
+  }
+  [[nodiscard]] StateBatch step(const StateBatch& state, const StateBatch& input) const {
+    StateBatch next = StateBatch::Constant(state.rows(), state.cols(), std::nan(""));
+    dynamics().step(state, input, next);
+    return next;
+  }
+
+  std::mt19937_64 generator_{20240607};
+
+ private:
+  std::unique_ptr<const Dynamics> dynamics_;
+};
+
+inline std::vector<std::string> system_names() {
+  std::vector<std::string> names;
+  for (const SystemEntry& entry : systems()) names.push_back(entry.name);
+  return names;
+}
+
+}  // namespace qsmpc::testing
