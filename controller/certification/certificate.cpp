@@ -1,6 +1,7 @@
 #include "controller/certification/certificate.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "controller/certification/smoothed_bound.hpp"
 #include "controller/certification/unicycle_surrogate.hpp"
@@ -17,6 +18,15 @@ double unsafe_mass(const DiscreteMeasure& measure, const SafeSet& safe_set) {
   return mass;
 }
 
+/// Whether being safe depends on the coordinate `axis`, through the bounds or through an obstacle.
+bool restricts(const SafeSet& safe_set, int axis) {
+  const auto bounded = [axis](const Box& box) {
+    return std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis]);
+  };
+  return bounded(safe_set.bounds) ||
+         std::any_of(safe_set.obstacles.begin(), safe_set.obstacles.end(), bounded);
+}
+
 /// C3 of all stages; 1 where it does not apply.
 std::vector<double> surrogate_bounds(const Planner& planner, const Gaussian& belief,
                                      const Plan& plan) {
@@ -27,11 +37,8 @@ std::vector<double> surrogate_bounds(const Planner& planner, const Gaussian& bel
   const bool open_loop = std::all_of(plan.policy.gains.begin(), plan.policy.gains.end(),
                                      [](const auto& gain) { return gain.isZero(0.0); });
   // The input of a stage moves the heading alone, so the position of stage 1 is that of open loop.
-  const bool heading_is_bounded =
-      planner.settings().safe_set.bounds.lower.array().isFinite()[unicycle->heading] ||
-      planner.settings().safe_set.bounds.upper.array().isFinite()[unicycle->heading];
   Eigen::Index stages = horizon;
-  if (!open_loop) stages = heading_is_bounded ? 0 : 1;
+  if (!open_loop) stages = restricts(planner.settings().safe_set, unicycle->heading) ? 0 : 1;
   const std::vector<GaussianSurrogate> surrogates =
       unicycle_surrogates(*unicycle, belief, plan.policy.inputs.row(unicycle->input).head(stages),
                           planner.settings().noise_covariance);
@@ -70,8 +77,11 @@ std::vector<StageCertificate> certify(const Planner& planner, const Gaussian& be
     const DiscreteMeasure stepped{.locations = plan.prediction.stepped[k],
                                   .weights = plan.prediction.stages[k].weights};
     certificate.particles = worst_case_probability(particles, safe_set, budgets[k + 1].total);
-    certificate.mixture = smoothed_probability(stepped, planner.settings().noise_covariance,
-                                               safe_set, budgets[k].lipschitz * budgets[k].total);
+    // Without an error before the step there is none after it, whatever the Lipschitz constant.
+    const double before_noise =
+        budgets[k].total == 0.0 ? 0.0 : budgets[k].lipschitz * budgets[k].total;
+    certificate.mixture =
+        smoothed_probability(stepped, planner.settings().noise_covariance, safe_set, before_noise);
     certificate.surrogate = surrogates[k];
     certificate.thesis = thesis_probability(particles, safe_set, radii[k + 1]);
     certificate.unsafe_mass = unsafe_mass(particles, safe_set);

@@ -1,8 +1,22 @@
 #include "controller/certification/error_budget.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace qsmpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// An error after a map with this Lipschitz constant. No error stays none, even where no constant
+/// is known (0 · ∞); what is not a number counts as infinite.
+double carried(double lipschitz, double error) {
+  if (error == 0.0) return 0.0;
+  const double product = lipschitz * error;
+  return std::isnan(product) ? kInfinity : product;
+}
+
+}  // namespace
 
 std::vector<StageBudget> error_budget(const Planner& planner, const Plan& plan) {
   const double noise_w2 = planner.propagator().noise_w2();
@@ -11,12 +25,16 @@ std::vector<StageBudget> error_budget(const Planner& planner, const Plan& plan) 
   budgets[0].total = plan.belief.w2;
   for (std::size_t k = 0; k + 1 < budgets.size(); ++k) {
     const double lipschitz = planner.dynamics().lipschitz(plan.policy.gains[k]);
-    const double lost = plan.prediction.maps[k].compression_w2;
+    // Particles that are not finite are infinitely far from any law.
+    const double compression = plan.prediction.maps[k].compression_w2;
+    const bool usable =
+        plan.prediction.stages[k + 1].locations.allFinite() && !std::isnan(compression);
+    const double lost = usable ? compression : kInfinity;
     budgets[k].lipschitz = lipschitz;
-    budgets[k + 1].belief = lipschitz * budgets[k].belief;
-    budgets[k + 1].noise = std::hypot(lipschitz * budgets[k].noise, noise_w2);
-    budgets[k + 1].compression = lipschitz * budgets[k].compression + lost;
-    budgets[k + 1].total = std::hypot(lipschitz * budgets[k].total, noise_w2) + lost;
+    budgets[k + 1].belief = carried(lipschitz, budgets[k].belief);
+    budgets[k + 1].noise = std::hypot(carried(lipschitz, budgets[k].noise), noise_w2);
+    budgets[k + 1].compression = carried(lipschitz, budgets[k].compression) + lost;
+    budgets[k + 1].total = std::hypot(carried(lipschitz, budgets[k].total), noise_w2) + lost;
   }
   return budgets;
 }

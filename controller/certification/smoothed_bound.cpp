@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <Eigen/Cholesky>
 
@@ -27,7 +28,8 @@ double before_wall(double wall, double deviation, double t) {
   if (wall - t > kTail * deviation || wall < -kTail * deviation) return kTailAllowance;
   const double low = (wall - t) / deviation;
   const double high = wall / deviation;
-  const double mass = normal_probability(low, high);
+  // Rounding of two neighbouring values of Φ must not make a mass negative.
+  const double mass = std::max(0.0, normal_probability(low, high));
   const double first = deviation * (normal_density(low) - normal_density(high));
   const double second =
       deviation * deviation * (mass + normal_density_moment(low) - normal_density_moment(high));
@@ -59,6 +61,22 @@ double separating_half_space(const Eigen::VectorXd& direction, const Eigen::Vect
   return std::isfinite(offset) ? soft_half_space(normal, offset, mean, covariance, t) : 1.0;
 }
 
+/// Σ⁻¹ `across` in the coordinates in which `box` is bounded, 0 in the others: the direction in
+/// which the box is the most standard deviations away.
+Eigen::VectorXd whitened_direction(const Eigen::VectorXd& across, const Eigen::MatrixXd& covariance,
+                                   const Box& box) {
+  std::vector<Eigen::Index> bounded;
+  for (Eigen::Index axis = 0; axis < across.size(); ++axis) {
+    if (std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis])) bounded.push_back(axis);
+  }
+  Eigen::VectorXd direction = Eigen::VectorXd::Zero(across.size());
+  const Eigen::MatrixXd marginal = covariance(bounded, bounded);
+  const Eigen::VectorXd offset = across(bounded);
+  const Eigen::VectorXd solution = marginal.ldlt().solve(offset);
+  direction(bounded) = solution;
+  return direction;
+}
+
 bool diagonal_on(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Box& box) {
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
     for (Eigen::Index j = 0; j < i; ++j) {
@@ -87,7 +105,7 @@ double soft_obstacle(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covaria
   if (independent) return product;
   const Eigen::VectorXd nearest = mean.cwiseMax(obstacle.lower).cwiseMin(obstacle.upper);
   const Eigen::VectorXd across = nearest - mean;
-  const Eigen::VectorXd whitened = covariance.ldlt().solve(across);
+  const Eigen::VectorXd whitened = whitened_direction(across, covariance, obstacle);
   return std::min({least, separating_half_space(across, mean, covariance, obstacle, t),
                    separating_half_space(whitened, mean, covariance, obstacle, t)});
 }
@@ -142,7 +160,7 @@ double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
 double smoothed_probability(const DiscreteMeasure& centres,
                             const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                             const SafeSet& safe_set, double radius) {
-  if (!std::isfinite(radius)) return 1.0;
+  if (!std::isfinite(radius) || !centres.locations.allFinite()) return 1.0;
   if (radius == 0.0) return mixture_value(centres, covariance, safe_set, kSmallestT);
   const auto value = [&](double t) {
     return radius * radius / (t * t) + mixture_value(centres, covariance, safe_set, t);

@@ -7,10 +7,13 @@ namespace qsmpc {
 namespace {
 
 /// E[r_i r̄_j] of the residuals of two headings, up to the factor e^{iΔ}: with v their variances and
-/// c their covariance, e^{−(v_i + v_j − 2c)/2} − e^{−(v_i + v_j)/2}(1 + c), written with expm1
-/// since both terms agree to second order.
+/// c their covariance, e^{−(v_i + v_j − 2c)/2} − e^{−(v_i + v_j)/2}(1 + c). Small covariances are
+/// written with expm1, since both terms agree to second order; large ones as they are, since e^c
+/// alone would overflow.
 double residual_covariance(double variance_i, double variance_j, double covariance) {
-  return std::exp(-0.5 * (variance_i + variance_j)) * (std::expm1(covariance) - covariance);
+  const double sum = 0.5 * (variance_i + variance_j);
+  if (covariance > 1.0) return std::exp(covariance - sum) - std::exp(-sum) * (1.0 + covariance);
+  return std::exp(-sum) * (std::expm1(covariance) - covariance);
 }
 
 }  // namespace

@@ -56,8 +56,9 @@ double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances
     throw std::invalid_argument("worst case: distances and weights must not be negative");
   }
   if (!(radius >= 0.0)) throw std::invalid_argument("worst case: the radius must not be negative");
-  if (std::isinf(radius)) return 1.0;
-  return greedy_transport(distances.cwiseAbs2(), weights, radius * radius);
+  const double budget = radius * radius;
+  if (std::isinf(budget)) return 1.0;
+  return greedy_transport(distances.cwiseAbs2(), weights, budget);
 }
 
 double worst_case_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
