@@ -22,10 +22,12 @@ class Sigmoid {
  public:
   Sigmoid(const InputBounds& bounds, Eigen::Index horizon)
       : lower_(bounds.lower.replicate(1, horizon)),
-        range_((bounds.upper - bounds.lower).replicate(1, horizon)) {}
+        upper_(bounds.upper.replicate(1, horizon)),
+        range_(upper_ - lower_) {}
 
   [[nodiscard]] Eigen::MatrixXd inputs(const Eigen::Ref<const Eigen::MatrixXd>& theta) const {
-    return lower_.array() + range_.array() * sigma(theta);
+    // Rounding may carry lower + (upper − lower) beyond upper.
+    return (lower_.array() + range_.array() * sigma(theta)).min(upper_.array());
   }
   [[nodiscard]] Eigen::MatrixXd slope(const Eigen::Ref<const Eigen::MatrixXd>& theta) const {
     const Eigen::ArrayXXd value = sigma(theta);
@@ -42,6 +44,7 @@ class Sigmoid {
     return (1.0 + (-theta.array()).exp()).inverse();
   }
   Eigen::MatrixXd lower_;
+  Eigen::MatrixXd upper_;
   Eigen::MatrixXd range_;
 };
 

@@ -17,6 +17,8 @@ constexpr double kSettled = 1e-4;
 // A guess must promise this fraction less cost to replace the shifted previous plan: switching
 // sides of an obstacle for less makes the vehicle waver.
 constexpr double kSwitchGain = 0.02;
+// Relative; what rounding leaves in a symmetric matrix that was computed.
+constexpr double kSymmetryTolerance = 1e-12;
 
 class Stopwatch {
  public:
@@ -42,6 +44,11 @@ void require_square(const Eigen::MatrixXd& matrix, Eigen::Index size, const std:
       name + " must be a finite matrix of " + std::to_string(size) + " x " + std::to_string(size));
 }
 
+/// The gradient of xᵀWx is written as 2Wx.
+void require_symmetric(const Eigen::MatrixXd& matrix, const std::string& name) {
+  require(matrix.isApprox(matrix.transpose(), kSymmetryTolerance), name + " must be symmetric");
+}
+
 void check_settings(const PlannerSettings& settings, int state_dim, int input_dim) {
   require(settings.horizon >= 1, "the horizon must be at least 1");
   require(settings.max_evaluations >= 1, "at least one evaluation of the cost is needed");
@@ -50,6 +57,9 @@ void check_settings(const PlannerSettings& settings, int state_dim, int input_di
   require_square(settings.cost.state, state_dim, "the state cost");
   require_square(settings.cost.terminal, state_dim, "the terminal cost");
   require_square(settings.cost.input, input_dim, "the input cost");
+  require_symmetric(settings.cost.state, "the state cost");
+  require_symmetric(settings.cost.terminal, "the terminal cost");
+  require_symmetric(settings.cost.input, "the input cost");
   require(settings.cost.target.size() == state_dim && settings.cost.target.allFinite(),
           "the target must be a finite state");
   require(settings.penalty.length > 0.0, "the penalty's length must be positive");
@@ -127,6 +137,7 @@ HorizonCostTerms Planner::terms(const Eigen::MatrixXd& noise_covariance,
 GaussianQuantisation Planner::quantise_belief(const Gaussian& belief) {
   require(belief.mean.size() == dynamics_.state_dim(),
           "the belief must be of the state's dimension");
+  require_square(belief.covariance, dynamics_.state_dim(), "the belief's covariance");
   require(belief.mean.allFinite(), "the belief's mean must be finite");
   if (!last_belief_ || last_covariance_ != belief.covariance) {
     const Gaussian centred{.mean = Eigen::VectorXd::Zero(belief.mean.size()),
@@ -173,7 +184,7 @@ Eigen::MatrixXd Planner::first_guess(const Gaussian& belief,
     const double warm_cost = cost_without_noise(belief, quantised, warm);
     if (!(warm_cost > least)) best = warm;
     least = std::min(least, warm_cost);
-    if (best == warm) least -= kSwitchGain * std::abs(least);
+    if (best == warm && std::isfinite(least)) least -= kSwitchGain * std::abs(least);
   }
   for (const double share : {-0.9, -0.45, 0.45, 0.9}) {
     for (Eigen::Index input = 0; input < middle.size(); ++input) {
@@ -197,7 +208,9 @@ double Planner::cost_without_noise(const Gaussian& belief, const GaussianQuantis
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(belief.mean.size(), belief.mean.size());
   HorizonCost cost(terms(none, quantised), prediction, policy);
   Eigen::MatrixXd gradient(inputs.rows(), inputs.cols());
-  return cost.evaluate(inputs, gradient);
+  const double value = cost.evaluate(inputs, gradient);
+  // A guess whose cost is not a number must lose every comparison.
+  return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
 }
 
 void Planner::optimise(const Gaussian& belief, Plan& plan) const {

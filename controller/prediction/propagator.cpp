@@ -1,6 +1,7 @@
 #include "controller/prediction/propagator.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -25,6 +26,7 @@ class CompressedPropagator final : public Propagator {
 
   [[nodiscard]] StageMap stage_map(const Points& stepped,
                                    const Eigen::VectorXd& weights) const override {
+    if (!stepped.allFinite()) return lost_map(stepped, weights);
     const DiscreteMeasure product = product_measure(stepped, weights);
     const Compression compression = compress(product, compressed_points_, /*refinements=*/0);
     return sparse_map(compression, weights);
@@ -33,6 +35,19 @@ class CompressedPropagator final : public Propagator {
   [[nodiscard]] double noise_w2() const override { return noise_.w2; }
 
  private:
+  /// The map of points that are not finite: all into one cluster, at infinite cost.
+  [[nodiscard]] static StageMap lost_map(const Points& stepped, const Eigen::VectorXd& weights) {
+    StageMap map;
+    map.row_begin = {0, static_cast<int>(weights.size())};
+    map.column.resize(weights.size());
+    std::iota(map.column.begin(), map.column.end(), 0);
+    map.coefficient.assign(weights.begin(), weights.end());
+    map.offset = Points::Zero(stepped.rows(), 1);
+    map.weights = Eigen::VectorXd::Constant(1, weights.sum());
+    map.compression_w2 = std::numeric_limits<double>::infinity();
+    return map;
+  }
+
   /// All sums f_i + d_j; the product of point i and noise j stands at i·m + j.
   [[nodiscard]] DiscreteMeasure product_measure(const Points& stepped,
                                                 const Eigen::VectorXd& weights) const {

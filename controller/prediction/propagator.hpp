@@ -41,7 +41,8 @@ class Propagator {
   virtual ~Propagator() = default;
 
   /// The map that takes up the noise and compresses, with the assignments that suit `stepped`
-  /// (d x n; weights: n).
+  /// (d x n; weights: n). Points that are not finite give a map of infinite compression_w2, never
+  /// an exception.
   [[nodiscard]] virtual StageMap stage_map(const Points& stepped,
                                            const Eigen::VectorXd& weights) const = 0;
 
