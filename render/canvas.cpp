@@ -11,7 +11,7 @@ namespace {
 unsigned char blended(unsigned char below, float above, float share) {
   const float value =
       static_cast<float>(below) + share * (255.0F * above - static_cast<float>(below));
-  return static_cast<unsigned char>(value + 0.5F);
+  return static_cast<unsigned char>(std::lround(value));
 }
 
 // `x` and `y` lie in the image.
@@ -133,7 +133,7 @@ void draw_text(Image& image, const Font& font, std::string_view text, const Pixe
       for (int column = 0; column < glyph.width; ++column) {
         const int x = left + column;
         const int y = baseline + glyph.top + row;
-        const float coverage = glyph.coverage[static_cast<std::size_t>(row * glyph.width + column)];
+        const float coverage = glyph.coverage[glyph.index(column, row)];
         if (coverage > 0.0F && x >= 0 && x < image.width && y >= 0 && y < image.height) {
           blend_pixel(image, x, y, colour, std::min(coverage, 1.0F));
         }

@@ -29,7 +29,7 @@ int base64_digit(char digit) {
 }
 
 bool raster_bit(int position) {
-  return ((base64_digit(kGlyphBits[position / 6]) >> (5 - position % 6)) & 1) != 0;
+  return ((base64_digit(glyph_bits[position / 6]) >> (5 - position % 6)) & 1) != 0;
 }
 
 // Length of the overlap of [a0, a1] and [b0, b1].
@@ -46,7 +46,8 @@ GlyphCoverage scaled_glyph(const GlyphMetrics& metrics, double scale, double shi
   glyph.top = static_cast<int>(std::floor(y0));
   glyph.width = static_cast<int>(std::ceil(x0 + metrics.width * scale)) - glyph.left;
   glyph.height = static_cast<int>(std::ceil(y0 + metrics.height * scale)) - glyph.top;
-  glyph.coverage.assign(static_cast<std::size_t>(glyph.width * glyph.height), 0.0F);
+  glyph.coverage.assign(
+      static_cast<std::size_t>(glyph.width) * static_cast<std::size_t>(glyph.height), 0.0F);
   for (int i = 0; i < metrics.width * metrics.height; ++i) {
     if (!raster_bit(metrics.first_bit + i)) {
       continue;
@@ -60,7 +61,7 @@ GlyphCoverage scaled_glyph(const GlyphMetrics& metrics, double scale, double shi
            x < std::min(glyph.width, static_cast<int>(left + scale) + 1); ++x) {
         const double area =
             overlap(left, left + scale, x, x + 1) * overlap(top, top + scale, y, y + 1);
-        glyph.coverage[static_cast<std::size_t>(y * glyph.width + x)] += static_cast<float>(area);
+        glyph.coverage[glyph.index(x, y)] += static_cast<float>(area);
       }
     }
   }
@@ -73,13 +74,13 @@ Font::Font(double size) : size_(size) {
   for (std::size_t i = 0; i < glyphs_.size(); ++i) {
     for (int shift = 0; shift < kShifts; ++shift) {
       glyphs_[i][static_cast<std::size_t>(shift)] =
-          scaled_glyph(kGlyphMetrics[i], size / kFontEm, static_cast<double>(shift) / kShifts);
+          scaled_glyph(glyph_metrics[i], size / kFontEm, static_cast<double>(shift) / kShifts);
     }
   }
 }
 
 double Font::advance(char character) const {
-  return kGlyphMetrics[glyph_index(character)].advance * size_ / kFontEm;
+  return glyph_metrics[glyph_index(character)].advance * size_ / kFontEm;
 }
 
 double Font::width(std::string_view text) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string_view>
 #include <vector>
 
@@ -14,6 +15,12 @@ struct GlyphCoverage {
   int width = 0;
   int height = 0;
   std::vector<float> coverage;  ///< width x height, row by row from the top, in [0, 1]
+
+  /// Where the pixel in `column` and `row` is in `coverage`.
+  [[nodiscard]] std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+           static_cast<std::size_t>(column);
+  }
 };
 
 class Font {

@@ -7,7 +7,7 @@
 namespace qsmpc {
 
 // clang-format off
-const std::array<GlyphMetrics, 95> kGlyphMetrics{{
+const std::array<GlyphMetrics, 95> glyph_metrics{{
     {20, 0, 1, 1, 1, 0},
     {26, 10, 47, 6, 47, 1},
     {29, 6, 47, 17, 18, 283},
@@ -105,7 +105,7 @@ const std::array<GlyphMetrics, 95> kGlyphMetrics{{
     {54, 7, 26, 40, 11, 120778},
 }};
 
-const char* const kGlyphBits =
+const char* const glyph_bits =
     "f//////////////////////////////fAAAAAAAf////////Af+A/8B/4D/wH/gP/Af+A/8B/4D/wH/gP/Af+A/8B/4D"
     "/wH/gPgAAfAHwAAAHwB8AAAD4AfAAAA+APgAAAPgD4AAAD4A+AAAB8APgAAAfAHwAAAHwB8AAAB8AfAAAA+AHwAAAPgD"
     "4AAAD4A+AA//////+P//////j//////4//////+P//////gAPgB8AAAD4A+AAAA+APgAAAPgD4AAAHwA+AAAB8AfAAAA"

@@ -12,7 +12,7 @@ struct GlyphMetrics {
   int top;        ///< from the baseline up to the upper edge of the raster's first row
   int width;      ///< columns of the raster
   int height;     ///< rows of the raster
-  int first_bit;  ///< where its raster begins in `kGlyphBits`
+  int first_bit;  ///< where its raster begins in `glyph_bits`
 };
 
 constexpr int kFontEm = 64;  ///< pixels
@@ -20,9 +20,9 @@ constexpr char kFirstGlyph = ' ';
 constexpr char kLastGlyph = '~';
 
 /// Printable ASCII, from kFirstGlyph to kLastGlyph.
-extern const std::array<GlyphMetrics, 95> kGlyphMetrics;
+extern const std::array<GlyphMetrics, 95> glyph_metrics;
 
 /// All rasters, one bit a pixel, row by row from the top, six bits a base64 digit.
-extern const char* const kGlyphBits;
+extern const char* const glyph_bits;
 
 }  // namespace qsmpc

@@ -244,7 +244,7 @@ void draw_path(const std::vector<PlanarPoint>& points, double height, double wid
 
 void draw_points(const View& view, const std::vector<GlPoint>& points) {
   constexpr int kSides = 12;
-  static const std::array<PlanarPoint, kSides + 1> kUnitCircle = [] {
+  static const std::array<PlanarPoint, kSides + 1> unit_circle = [] {
     std::array<PlanarPoint, kSides + 1> circle;
     for (int side = 0; side <= kSides; ++side) {
       const double angle = 2.0 * std::numbers::pi * side / kSides;
@@ -260,8 +260,8 @@ void draw_points(const View& view, const std::vector<GlPoint>& points) {
     set_colour(point.colour);
     for (std::size_t side = 0; side < kSides; ++side) {
       glVertex3dv(point.position.data());
-      facing_vertex(view, point.position, radius, kUnitCircle[side]);
-      facing_vertex(view, point.position, radius, kUnitCircle[side + 1]);
+      facing_vertex(view, point.position, radius, unit_circle[side]);
+      facing_vertex(view, point.position, radius, unit_circle[side + 1]);
     }
   }
   glEnd();

@@ -1,6 +1,7 @@
 #include "render/offscreen_context.hpp"
 
 #include <array>
+#include <cstddef>
 #include <stdexcept>
 
 #include <GL/gl.h>
@@ -10,7 +11,7 @@ namespace qsmpc {
 namespace {
 
 // MuJoCo draws into a framebuffer object of its own; the context's buffer only has to exist.
-constexpr int kBufferSide = 16;  // pixels
+constexpr std::size_t kBufferSide = 16;  // pixels
 constexpr int kDepthBits = 24;
 constexpr int kStencilBits = 8;
 
@@ -36,8 +37,8 @@ OffscreenContext::OffscreenContext() : handle_(std::make_unique<Handle>()) {
   if (handle_->context == nullptr) {
     throw std::runtime_error("off-screen rendering: OSMesa cannot make a context");
   }
-  if (OSMesaMakeCurrent(handle_->context, handle_->pixels.data(), GL_UNSIGNED_BYTE, kBufferSide,
-                        kBufferSide) == GL_FALSE) {
+  if (OSMesaMakeCurrent(handle_->context, handle_->pixels.data(), GL_UNSIGNED_BYTE,
+                        GLsizei{kBufferSide}, GLsizei{kBufferSide}) == GL_FALSE) {
     throw std::runtime_error("off-screen rendering: OSMesa cannot make its context current");
   }
   // Where another OpenGL library comes first in the link order, calls end there and return nothing.

@@ -123,7 +123,7 @@ class EdgeFilter {
     const Rgb& chosen = astray ? near : wide;
     unsigned char* const pixel = &image_.rgb[3 * index(x, y)];
     for (std::size_t i = 0; i < 3; ++i) {
-      pixel[i] = static_cast<unsigned char>(chosen[i] + 0.5F);
+      pixel[i] = static_cast<unsigned char>(std::lround(chosen[i]));
     }
   }
 

@@ -16,7 +16,7 @@ namespace qsmpc {
 struct VideoOptions {
   std::string preset = "veryfast";  ///< x264's trade of time against size
   int quality = 20;                 ///< x264's constant rate factor: 0 lossless … 51 worst
-  /// Encoder threads. Fixed, because x264's output depends on their number.
+  /// Encoder threads. The pictures do not depend on them; this x264's bytes differ from run to run.
   int threads = 2;
 };
 

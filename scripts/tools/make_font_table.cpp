@@ -62,8 +62,8 @@ int main(int argc, char** argv) {
       "licence\n"
       "// allows to use, copy, embed and change it, under another name, with this notice.\n"
       "#include \"render/font_table.hpp\"\n\nnamespace qsmpc {\n\n// clang-format off\n"
-      "const std::array<GlyphMetrics, 95> kGlyphMetrics{{\n%s}};\n\n"
-      "const char* const kGlyphBits =\n",
+      "const std::array<GlyphMetrics, 95> glyph_metrics{{\n%s}};\n\n"
+      "const char* const glyph_bits =\n",
       glyphs.c_str());
   const std::string text = base64(bits);
   for (std::size_t i = 0; i < text.size(); i += 92) {
