@@ -14,6 +14,7 @@ namespace qsmpc {
 namespace {
 
 constexpr double kObstacleHeight = 0.40;    // m
+constexpr double kEdgeClearance = 0.004;    // m, or lines are half hidden by their own box
 constexpr double kWallHeight = 0.10;        // m
 constexpr double kWallThickness = 0.06;     // m
 constexpr double kPostHeight = 0.75;        // m, the target's flag
@@ -25,6 +26,8 @@ constexpr double kGridReach = 40.0;         // cells beyond the region
 constexpr double kFogBegin = 2.2;           // of the camera's distance
 constexpr double kFogEnd = 9.0;             // of the camera's distance
 constexpr double kReferenceHeight = 720.0;  // pixels, for which the sizes below are
+constexpr double kNearScale = 150.0;        // pixels a metre, from which on marks have full size
+constexpr double kLeastShrinking = 0.55;    // of full size
 constexpr double kPathWidth = 3.0;          // pixels
 constexpr double kPlanWidth = 2.2;          // pixels
 constexpr double kCasingWidth = 5.0;        // pixels
@@ -89,6 +92,13 @@ std::vector<PlanarRectangle> boundary_walls(const PlanarRectangle& bounds,
     walls.push_back({inner.x_lower, inner.x_upper, inner.y_upper, outer.y_upper});
   }
   return walls;
+}
+
+// Marks shrink with the vehicle, or seen from afar they would cover it; but not below recognition.
+double mark_scale(const View& view) {
+  const double metre =
+      kReferenceHeight * view.near_plane / (2.0 * view.half_height * view.distance);  // pixels
+  return view.height / kReferenceHeight * std::clamp(metre / kNearScale, kLeastShrinking, 1.0);
 }
 
 void append_stage(const ParticleStage& stage, const Colour& colour, double scale,
@@ -181,7 +191,7 @@ void ScenePainter::paint_solids() const {
 // After the ground: smooth lines blend with what is below.
 void ScenePainter::paint_edges(double scale) const {
   for (const PlanarRectangle& o : world_.obstacles) {
-    const double z = kObstacleHeight;
+    const double z = kObstacleHeight + kEdgeClearance;
     const SpacePoint a{o.x_lower, o.y_lower, z};
     const SpacePoint b{o.x_upper, o.y_lower, z};
     const SpacePoint c{o.x_upper, o.y_upper, z};
@@ -246,8 +256,8 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   paint_target_mark();
   paint_shadows(vehicle_shadows);
   draw_path(frame.driven_path, kMarkHeight, kPathWidth * scale, palette::kDrivenPath);
-  paint_particles(view, frame.particles, scale);
-  paint_plan(view, frame.planned_path, scale);
+  paint_particles(view, frame.particles, mark_scale(view));
+  paint_plan(view, frame.planned_path, mark_scale(view));
   paint_edges(scale);
   paint_target_post();
 }
