@@ -118,10 +118,11 @@ TEST(renderer, area_of_a_particle_grows_with_its_weight) {
     frame.particles.push_back({.points = {{1.0, 0.0}}, .weights = {weight}});
     Image image;
     renderer.draw(frame, image);
+    const PixelPoint centre = *renderer.locate(frame, {1.0, 0.0});
     int count = 0;
-    for (int y = 0; y < image.height; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        const Pixel pixel = pixel_at(image, {x + 0.5, y + 0.5});
+    for (double dy = -15.0; dy <= 15.0; ++dy) {
+      for (double dx = -15.0; dx <= 15.0; ++dx) {
+        const Pixel pixel = pixel_at(image, {centre.x + dx, centre.y + dy});
         count += colour_difference(pixel, stage_colour(0, 1)) < kSameColour ? 1 : 0;
       }
     }
