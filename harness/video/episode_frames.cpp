@@ -26,14 +26,6 @@ PlanarRectangle planar_box(const SystemDescription& system, const Box& box, doub
           side(box.lower, system.position_y, -1.0), side(box.upper, system.position_y, 1.0)};
 }
 
-double worst_certificate(const StepRecord& step) {
-  double worst = 0.0;
-  for (const StageCertificate& certificate : step.certificates) {
-    worst = std::max(worst, certificate.value);
-  }
-  return worst;
-}
-
 double next_certificate(const StepRecord& step) {
   return step.certificates.empty() ? std::numeric_limits<double>::quiet_NaN()
                                    : step.certificates.front().value;
@@ -180,7 +172,8 @@ std::vector<HudRow> EpisodeFrames::rows(const StepRecord& step, double time) con
   rows.push_back({"cost of plan", fmt::format("{:.1f}", step.cost.total())});
   if (!step.certificates.empty()) {
     rows.push_back({"P(unsafe) next step", fmt::format("<= {:.2e}", next_certificate(step))});
-    rows.push_back({"P(unsafe) worst stage", fmt::format("<= {:.2e}", worst_certificate(step))});
+    rows.push_back(
+        {"P(unsafe) whole plan", fmt::format("<= {:.2e}", horizon_bound(step.certificates))});
   }
   rows.push_back({"planning time", fmt::format("{:.0f} ms{}", step.timing.total,
                                                step.fallback ? ", fallback" : "")});

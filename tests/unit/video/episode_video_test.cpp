@@ -124,7 +124,7 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   ASSERT_EQ(frame.particles.size(), 3U);
   EXPECT_DOUBLE_EQ(frame.particles[1].points[0].x, 3.0 * kStride);
   EXPECT_THAT(row_of(frame, "P(unsafe) next step"), HasSubstr("3.00e-03"));
-  EXPECT_THAT(row_of(frame, "P(unsafe) worst stage"), HasSubstr("2.50e-01"));
+  EXPECT_THAT(row_of(frame, "P(unsafe) whole plan"), HasSubstr("2.53e-01"));
   EXPECT_THAT(row_of(frame, "speed"), HasSubstr("1.50"));
   ASSERT_EQ(frame.charts.size(), 2U);
   EXPECT_THAT(frame.charts[0].values, testing::ElementsAre(0.0, 0.1, 0.2));
