@@ -130,6 +130,9 @@ double soft_interval_probability(double mean, double deviation, double lower, do
     const double distance = std::max({lower - mean, mean - upper, 0.0});
     return std::max(0.0, 1.0 - distance * distance / (t * t));
   }
+  // Most points are far from most faces: both what is inside and what is within t of it is tail.
+  const double gap = std::max(lower - mean, mean - upper);
+  if (gap - t > kTail * deviation) return 2.0 * kTailAllowance;
   const double inside = normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
   const double below = std::isinf(lower) ? 0.0 : before_wall(lower - mean, deviation, t);
   const double above = std::isinf(upper) ? 0.0 : before_wall(mean - upper, deviation, t);
@@ -169,11 +172,13 @@ double smoothed_probability(const DiscreteMeasure& centres,
   double best = 1.0;
   double t = best_t;
   for (int octave = 0; octave <= kOctaves; ++octave, t *= 2.0) {
-    const double here = value(t);
+    const double spread = mixture_value(centres, covariance, safe_set, t);
+    const double here = radius * radius / (t * t) + spread;
     if (here < best) {
       best = here;
       best_t = t;
     }
+    if (spread >= best) break;  // it grows with t: no larger t can be better
   }
   double ratio = std::sqrt(2.0);
   for (int step = 0; step < kBisections; ++step, ratio = std::sqrt(ratio)) {

@@ -1,0 +1,213 @@
+#include "harness/trace/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "controller/planning/safe_set.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kMillisecondsPerSecond = 1e3;
+
+/// The smallest value that at least the share `quantile` of the sorted values does not exceed.
+double nearest_rank(const std::vector<double>& sorted, double quantile) {
+  if (sorted.empty()) return 0.0;
+  const auto rank =
+      static_cast<std::size_t>(std::ceil(quantile * static_cast<double>(sorted.size())));
+  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
+}
+
+template <class Value>
+std::vector<double> sorted_values(const Trace& trace, const Value& value) {
+  std::vector<double> values;
+  for (const StepRecord& step : trace.steps) values.push_back(value(step));
+  std::sort(values.begin(), values.end());
+  return values;
+}
+
+template <class Value>
+double median_of(const Trace& trace, const Value& value) {
+  return nearest_rank(sorted_values(trace, value), 0.5);
+}
+
+Distribution distribution_of(const std::vector<double>& sorted) {
+  if (sorted.empty()) return {};
+  double sum = 0.0;
+  for (const double value : sorted) sum += value;
+  return {.median = nearest_rank(sorted, 0.5),
+          .p95 = nearest_rank(sorted, 0.95),
+          .p99 = nearest_rank(sorted, 0.99),
+          .max = sorted.back(),
+          .mean = sum / static_cast<double>(sorted.size())};
+}
+
+/// The true states at the control instants, the last one included where it is known.
+std::vector<Eigen::VectorXd> true_states(const Trace& trace) {
+  std::vector<Eigen::VectorXd> states;
+  for (const StepRecord& step : trace.steps) states.push_back(step.state);
+  if (trace.final_state.size() > 0) states.push_back(trace.final_state);
+  return states;
+}
+
+void add_clearance(const Trace& trace, Summary& summary) {
+  summary.min_clearance = std::numeric_limits<double>::infinity();
+  for (const Eigen::VectorXd& state : true_states(trace)) {
+    summary.min_clearance =
+        std::min(summary.min_clearance, clearance(state, trace.scenario.safe_set));
+  }
+  summary.collision = summary.min_clearance <= 0.0;
+}
+
+void add_cost(const Trace& trace, Summary& summary) {
+  const Scenario::Cost& cost = trace.scenario.controller.cost;
+  for (const StepRecord& step : trace.steps) {
+    const Eigen::VectorXd offset = step.state - trace.scenario.target.state;
+    summary.closed_loop_cost +=
+        0.5 * offset.dot(cost.state * offset) + step.input.dot(cost.input * step.input);
+  }
+}
+
+void add_timing(const Trace& trace, Summary& summary) {
+  const auto total = [](const StepRecord& step) { return step.timing.total; };
+  summary.ocp_ms = distribution_of(sorted_values(trace, total));
+  summary.breakdown.quantise = median_of(trace, [](const auto& s) { return s.timing.quantise; });
+  summary.breakdown.propagate = median_of(trace, [](const auto& s) { return s.timing.propagate; });
+  summary.breakdown.optimise = median_of(trace, [](const auto& s) { return s.timing.optimise; });
+  summary.breakdown.certify = median_of(trace, [](const auto& s) { return s.timing.certify; });
+  const double deadline = kMillisecondsPerSecond * trace.scenario.time_step;
+  for (const StepRecord& step : trace.steps) {
+    if (step.timing.total > deadline) ++summary.deadline_misses;
+    if (step.fallback) ++summary.fallbacks;
+  }
+  summary.iterations_median =
+      median_of(trace, [](const auto& s) { return static_cast<double>(s.iterations); });
+}
+
+void add_certificates(const Trace& trace, Summary& summary) {
+  for (const StepRecord& step : trace.steps) {
+    if (step.certificates.empty()) continue;
+    const double next = step.certificates.front().value;
+    summary.next_step_max = std::max(summary.next_step_max, next);
+    summary.next_step_sum += next;
+    summary.horizon_max = std::max(summary.horizon_max, horizon_bound(step.certificates));
+    for (const StageCertificate& certificate : step.certificates) {
+      summary.thesis_max = std::max(summary.thesis_max, certificate.thesis);
+    }
+  }
+  if (summary.steps > 0) summary.next_step_mean = summary.next_step_sum / summary.steps;
+}
+
+void add_mismatch(const Trace& trace, Summary& summary) {
+  const Scenario& scenario = trace.scenario;
+  const auto model =
+      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const int dim = model->state_dim();
+  const std::vector<Eigen::VectorXd> states = true_states(trace);
+  // A period that broke has no result.
+  std::size_t periods = states.empty() ? 0 : states.size() - 1;
+  if (trace.outcome == Outcome::kFault && periods == trace.steps.size() && periods > 0) --periods;
+  Eigen::MatrixXd residuals(dim, static_cast<Eigen::Index>(periods));
+  StateBatch predicted(dim, 1);
+  for (std::size_t k = 0; k < periods; ++k) {
+    const StateBatch state = states[k];
+    const StateBatch input = trace.steps[k].input;
+    model->step(state, input, predicted);
+    residuals.col(static_cast<Eigen::Index>(k)) =
+        states[k + 1] - trace.steps[k].disturbance - predicted.col(0);
+  }
+  summary.mismatch_mean = Eigen::VectorXd::Zero(dim);
+  summary.mismatch_rmse = Eigen::VectorXd::Zero(dim);
+  summary.mismatch_covariance = Eigen::MatrixXd::Zero(dim, dim);
+  if (periods == 0) return;
+  const auto count = static_cast<double>(periods);
+  summary.mismatch_mean = residuals.rowwise().mean();
+  summary.mismatch_rmse = (residuals.array().square().rowwise().sum() / count).sqrt();
+  const Eigen::MatrixXd centred = residuals.colwise() - summary.mismatch_mean;
+  summary.mismatch_covariance = centred * centred.transpose() / count;
+}
+
+nlohmann::ordered_json as_json(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
+nlohmann::ordered_json as_json(const Eigen::MatrixXd& matrix) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(as_json(Eigen::VectorXd(row)));
+  return rows;
+}
+
+nlohmann::ordered_json timing_json(const Summary& summary) {
+  return {{"median", summary.ocp_ms.median},
+          {"p95", summary.ocp_ms.p95},
+          {"p99", summary.ocp_ms.p99},
+          {"max", summary.ocp_ms.max},
+          {"mean", summary.ocp_ms.mean},
+          {"breakdown",
+           {{"quantise", summary.breakdown.quantise},
+            {"propagate", summary.breakdown.propagate},
+            {"optimise", summary.breakdown.optimise},
+            {"certify", summary.breakdown.certify}}}};
+}
+
+}  // namespace
+
+Summary summarise(const Trace& trace) {
+  Summary summary;
+  summary.scenario = trace.scenario.name;
+  summary.seed = trace.seed;
+  summary.version = trace.version;
+  summary.outcome = outcome_name(trace.outcome);
+  summary.fault = trace.fault;
+  summary.steps = static_cast<int>(trace.steps.size());
+  if (trace.outcome == Outcome::kReached) {
+    summary.time_to_target = summary.steps * trace.scenario.time_step;
+  }
+  add_clearance(trace, summary);
+  add_cost(trace, summary);
+  add_timing(trace, summary);
+  add_certificates(trace, summary);
+  add_mismatch(trace, summary);
+  return summary;
+}
+
+std::string summary_json(const Trace& trace, const SummaryOptions& options) {
+  const Summary summary = summarise(trace);
+  nlohmann::ordered_json json;
+  json["scenario"] = summary.scenario;
+  json["seed"] = summary.seed;
+  json["version"] = summary.version;
+  json["outcome"] = summary.outcome;
+  if (!summary.fault.empty()) json["fault"] = summary.fault;
+  json["steps"] = summary.steps;
+  json["time_to_target"] = nullptr;
+  if (summary.time_to_target) json["time_to_target"] = *summary.time_to_target;
+  json["collision"] = summary.collision;
+  json["min_clearance"] = summary.min_clearance;
+  json["cost"] = {{"closed_loop", summary.closed_loop_cost}};
+  json["ocp_ms"] = timing_json(summary);
+  json["deadline_misses"] = summary.deadline_misses;
+  json["ocp"] = {{"iterations", {{"median", summary.iterations_median}}},
+                 {"fallbacks", summary.fallbacks}};
+  json["certificate"] = {{"next_step",
+                          {{"max", summary.next_step_max},
+                           {"mean", summary.next_step_mean},
+                           {"sum", summary.next_step_sum}}},
+                         {"horizon", {{"max", summary.horizon_max}}},
+                         {"thesis", {{"max", summary.thesis_max}}}};
+  json["mismatch"] = {{"one_step",
+                       {{"rmse", as_json(summary.mismatch_rmse)},
+                        {"mean", as_json(summary.mismatch_mean)},
+                        {"covariance", as_json(summary.mismatch_covariance)}}}};
+  json["video"] = nullptr;
+  if (!options.video_file.empty()) json["video"] = options.video_file;
+  // Names come from files: what is no UTF-8 is replaced, not thrown about.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace qsmpc

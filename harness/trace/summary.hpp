@@ -1,0 +1,61 @@
+// The numbers that an episode is judged by, computed from its trace alone.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc {
+
+/// Quantiles (nearest rank) and mean of a sample; all 0 where it is empty.
+struct Distribution {
+  double median = 0.0;
+  double p95 = 0.0;
+  double p99 = 0.0;
+  double max = 0.0;
+  double mean = 0.0;
+};
+
+struct Summary {
+  std::string scenario;
+  std::uint64_t seed = 0;
+  std::string version;
+  std::string outcome;
+  std::string fault;  ///< the simulator's words; empty without a fault
+  int steps = 0;
+  std::optional<double> time_to_target;  ///< s
+  bool collision = false;                ///< the true state entered the unsafe set
+  double min_clearance = 0.0;            ///< m, over all true states at the control instants
+  double closed_loop_cost = 0.0;         ///< Σ ½ |x − r|²_Q + |u|²_R along the true states
+  Distribution ocp_ms;                   ///< wall clock of a step: quantise … certify
+  StepTiming breakdown;                  ///< medians of the parts, ms
+  int deadline_misses = 0;               ///< steps whose wall clock exceeded the control period
+  double iterations_median = 0.0;        ///< evaluations of cost and gradient
+  int fallbacks = 0;
+  double next_step_max = 0.0;  ///< of the certificates of stage 1
+  double next_step_mean = 0.0;
+  double next_step_sum = 0.0;  ///< along the drive
+  double horizon_max = 0.0;    ///< of the plans' sums over their stages
+  double thesis_max = 0.0;     ///< of the published value; not a bound
+  /// One-step residual x_{k+1} − w_k − f(x_k, u_k) of the plant against the model, by state.
+  Eigen::VectorXd mismatch_rmse;
+  Eigen::VectorXd mismatch_mean;
+  Eigen::MatrixXd mismatch_covariance;
+};
+
+/// Throws std::invalid_argument if the trace's system is unknown.
+[[nodiscard]] Summary summarise(const Trace& trace);
+
+struct SummaryOptions {
+  std::string video_file{};  ///< beside the summary; empty: none
+};
+
+/// `summary.json`: stable keys, one object, ending in a new line. Numbers that are not finite are
+/// null.
+[[nodiscard]] std::string summary_json(const Trace& trace, const SummaryOptions& options = {});
+
+}  // namespace qsmpc

@@ -1,0 +1,48 @@
+// Runs the built program as a user does and looks at what it prints, returns and leaves behind.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace qsmpc::testing {
+
+struct ProcessResult {
+  int exit_code = -1;  ///< 128 + signal where a signal ended it
+  std::string output;  ///< standard output
+  std::string errors;  ///< standard error
+};
+
+struct ProcessOptions {
+  std::string folder{};  ///< current folder of the process
+  /// Called with the process's number while it runs, again and again until it returns true.
+  std::function<bool(pid_t)> meanwhile{};
+  std::vector<std::string> unset{};  ///< environment variables to remove
+  long file_size_limit = -1;         ///< bytes; writing more fails as on a full disk
+};
+
+/// Starts qsmpc with `arguments` and waits for its end.
+[[nodiscard]] ProcessResult run_qsmpc(const std::vector<std::string>& arguments,
+                                      const ProcessOptions& options = {});
+
+/// A folder that is removed with all that is in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  [[nodiscard]] const std::string& path() const { return path_; }
+  /// Writes `text` to a file in it and returns its path.
+  [[nodiscard]] std::string file(const std::string& name, const std::string& text) const;
+
+ private:
+  std::string path_;
+};
+
+/// The whole content of a file; empty where there is none.
+[[nodiscard]] std::string read_text(const std::string& path);
+
+}  // namespace qsmpc::testing
