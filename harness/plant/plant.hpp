@@ -3,12 +3,12 @@
 // period.
 #pragma once
 
-#include <Eigen/Core>
-
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <Eigen/Core>
 
 namespace qsmpc {
 
@@ -20,9 +20,10 @@ struct MotionSample {
 
 /// What one control period brought.
 struct PlantStep {
-  Eigen::VectorXd state;              ///< true state after the disturbance, state_dim
-  std::vector<MotionSample> motion;   ///< samples within the period, oldest first
-  std::optional<std::string> fault;   ///< the simulator's own words when it broke; state is then the last good one
+  Eigen::VectorXd state;             ///< true state after the disturbance, state_dim
+  std::vector<MotionSample> motion;  ///< samples within the period, oldest first
+  std::optional<std::string>
+      fault;  ///< the simulator's own words when it broke; state is then the last good one
 };
 
 class Plant {

@@ -1,0 +1,52 @@
+// Random vectors that depend on nothing but their key: whatever the order of calls or the number of
+// threads, a key gives the same numbers. Counter-based generator: Philox4x64-10 (Salmon, Moraes,
+// Dror, Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC 2011).
+//
+//   const GaussianSampler noise(Eigen::VectorXd::Zero(3), covariance);
+//   const Eigen::VectorXd w = noise.sample({.seed = 1, .episode = 7,
+//                                           .stream = RandomStream::kDisturbance, .step = k});
+#pragma once
+
+#include <cstdint>
+
+#include <Eigen/Core>
+
+namespace qsmpc {
+
+/// What random numbers are for. Values are part of what a seed means: never renumber.
+enum class RandomStream : std::uint64_t {
+  kInitialState = 0,
+  kDisturbance = 1,
+  kInput = 2,  ///< random inputs, as for measuring the mismatch between plant and model
+};
+
+struct RandomKey {
+  std::uint64_t seed = 0;
+  std::uint64_t episode = 0;
+  RandomStream stream = RandomStream::kDisturbance;
+  std::uint64_t step = 0;
+};
+
+/// `count` independent standard normal numbers.
+[[nodiscard]] Eigen::VectorXd standard_normal_sample(Eigen::Index count, const RandomKey& key);
+
+/// `count` independent numbers, uniform in (0, 1].
+[[nodiscard]] Eigen::VectorXd uniform_sample(Eigen::Index count, const RandomKey& key);
+
+/// N(mean, covariance), its covariance's root computed once.
+class GaussianSampler {
+ public:
+  /// mean: n; covariance: n x n, symmetric positive semidefinite up to rounding.
+  /// Throws std::invalid_argument on other sizes, numbers that are not finite, or a covariance that
+  /// is not symmetric positive semidefinite.
+  GaussianSampler(Eigen::VectorXd mean, const Eigen::MatrixXd& covariance);
+
+  /// mean + Σ^½ z with the symmetric root and z = standard_normal_sample(n, key).
+  [[nodiscard]] Eigen::VectorXd sample(const RandomKey& key) const;
+
+ private:
+  Eigen::VectorXd mean_;
+  Eigen::MatrixXd root_;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,58 @@
+#include "harness/plant/mujoco_model.hpp"
+
+#include <array>
+#include <fstream>
+#include <mutex>
+#include <regex>
+
+#include <mujoco/mujoco.h>
+
+#include "harness/errors.hpp"
+#include "harness/plant/mujoco_errors.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kExpectedModel = "a MuJoCo model (MJCF) that loads without a warning";
+
+// MuJoCo writes "line 4", "line = 4" or "Line number=4"; its parser says 0 where it knows none.
+int line_in(const std::string& text) {
+  static const std::regex pattern("[Ll]ine(?: number)?(?: |=| = )([0-9]{1,8})");
+  std::smatch match;
+  return std::regex_search(text, match, pattern) ? std::stoi(match[1].str()) : 0;
+}
+
+InputError model_error(const std::string& path, std::string text) {
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  return InputError(
+      {.file = path, .line = line_in(text), .found = text, .expected = kExpectedModel});
+}
+
+}  // namespace
+
+void MujocoModelDeleter::operator()(mjModel_* model) const { mj_deleteModel(model); }
+
+MujocoModelPtr load_mujoco_model(const std::string& path) {
+  if (!std::ifstream(path).good()) {
+    throw InputError({.file = path, .found = "no readable file", .expected = kExpectedModel});
+  }
+  // The loader calls srand(), which is not safe on several threads.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  const MujocoTrap trap;
+  std::array<char, 1000> text{};
+  MujocoModelPtr model;
+  try {
+    model.reset(mj_loadXML(path.c_str(), nullptr, text.data(), static_cast<int>(text.size())));
+  } catch (const MujocoError& error) {
+    throw model_error(path, error.what());
+  }
+  // The first warning is the cause; the text may tell only what followed from it.
+  if (model != nullptr && !trap.warnings().empty()) {
+    throw model_error(path, trap.warnings().front());
+  }
+  if (model == nullptr || text.front() != '\0') throw model_error(path, text.data());
+  return model;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,22 @@
+// Loading a MuJoCo model from its XML file, with errors that say where.
+#pragma once
+
+#include <memory>
+#include <string>
+
+struct mjModel_;
+
+namespace qsmpc {
+
+struct MujocoModelDeleter {
+  void operator()(mjModel_* model) const;
+};
+/// MuJoCo's own model; its type stays opaque here.
+using MujocoModelPtr = std::unique_ptr<mjModel_, MujocoModelDeleter>;
+
+/// Loads and compiles the MJCF file `path`. Thread-safe; never null.
+/// Throws InputError with file and line (where MuJoCo tells it) on a file that is missing, that is
+/// no valid model, or that MuJoCo warns of.
+[[nodiscard]] MujocoModelPtr load_mujoco_model(const std::string& path);
+
+}  // namespace qsmpc

@@ -1,0 +1,26 @@
+// The table of plants that a scenario may name.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "harness/plant/plant.hpp"
+#include "harness/scenario/scenario.hpp"
+
+namespace qsmpc {
+
+/// What `qsmpc list plants` prints.
+struct PlantEntry {
+  std::string name;
+  std::string summary;  ///< one line
+};
+
+[[nodiscard]] const std::vector<PlantEntry>& plants();
+
+/// The plant that `scenario.plant` names, for the scenario's system and control period.
+/// Throws InputError on an unknown kind, and whatever the plant's own maker throws: see
+/// make_mujoco_plant and make_dynamics.
+[[nodiscard]] std::unique_ptr<Plant> make_plant(const Scenario& scenario);
+
+}  // namespace qsmpc

@@ -1,0 +1,177 @@
+// Faults of the simulator, and models that are refused.
+#include <filesystem>
+#include <limits>
+#include <string>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/errors.hpp"
+#include "harness/plant/mujoco_errors.hpp"
+#include "harness/plant/mujoco_model.hpp"
+#include "tests/unit/plant/plant_fixture.hpp"
+
+namespace qsmpc {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+InputError::Where refusal(const std::string& mjcf, double control_period = kControlPeriod) {
+  try {
+    make_car(mjcf, control_period);
+  } catch (const InputError& error) {
+    return error.where();
+  }
+  ADD_FAILURE() << "not refused";
+  return {};
+}
+
+/// Runs in a folder of its own, where MuJoCo would leave its log.
+class MujocoPlantFault : public ::testing::Test {
+ protected:
+  MujocoPlantFault() { std::filesystem::current_path(folder_.path()); }
+  ~MujocoPlantFault() override {
+    EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT"));
+    std::filesystem::current_path(before_);
+  }
+
+  std::filesystem::path before_ = std::filesystem::current_path();
+  TemporaryFolder folder_;
+};
+
+TEST_F(MujocoPlantFault, input_or_disturbance_that_is_not_finite) {
+  const auto car = make_car();
+  for (const double bad : {kNan, kInfinity, -kInfinity}) {
+    car->reset(pose(1.0, 2.0, 3.0));
+    const PlantStep step = car->advance(yaw_rate(bad), no_disturbance());
+    ASSERT_TRUE(step.fault.has_value());
+    EXPECT_EQ(*step.fault, "input that is not finite at 0.000 s");
+    EXPECT_EQ(step.state, pose(1.0, 2.0, 3.0));
+    EXPECT_TRUE(step.motion.empty());
+
+    car->reset(pose(1.0, 2.0, 3.0));
+    EXPECT_TRUE(car->advance(yaw_rate(0.0), pose(0.0, bad, 0.0)).fault.has_value());
+  }
+}
+
+TEST_F(MujocoPlantFault, lasts_until_reset_and_is_then_forgotten) {
+  const auto car = make_car();
+  car->reset(pose(0.0, 0.0, 0.0));
+  const PlantStep healthy = car->advance(yaw_rate(1.0), no_disturbance());
+  const PlantStep broken = car->advance(yaw_rate(kNan), no_disturbance());
+  const PlantStep after = car->advance(yaw_rate(1.0), no_disturbance());
+  EXPECT_EQ(after.fault, broken.fault);
+  EXPECT_EQ(after.state, healthy.state);
+  car->reset(pose(0.0, 0.0, 0.0));
+  const PlantStep again = car->advance(yaw_rate(1.0), no_disturbance());
+  EXPECT_FALSE(again.fault.has_value());
+  EXPECT_EQ(again.state, healthy.state);
+}
+
+TEST_F(MujocoPlantFault, a_simulation_that_explodes_stops_at_its_last_good_state) {
+  // A torque without a bound, in place of the servo: nothing while driving straight, then
+  // everything.
+  const std::string text = altered_car(
+      "<position class=\"steering\" name=\"steer_left\" joint=\"front_left_steering\"/>",
+      "<motor name=\"steer_left\" joint=\"front_left_steering\" gear=\"1e13\"/>");
+  const auto car = make_car(folder_.write("car.xml", text));
+  car->reset(pose(0.0, 0.0, 0.0));
+  const PlantStep straight = car->advance(yaw_rate(0.0), no_disturbance());
+  ASSERT_FALSE(straight.fault.has_value()) << *straight.fault;
+  const PlantStep step = car->advance(yaw_rate(1.0), no_disturbance());
+  ASSERT_TRUE(step.fault.has_value());
+  EXPECT_THAT(*step.fault, AllOf(HasSubstr("The simulation is unstable"), HasSubstr(" at 0.1")));
+  // A silent reset would be at the origin.
+  EXPECT_NEAR(step.state[0], 0.15, 0.05);
+  EXPECT_TRUE(step.state.allFinite());
+  for (const MotionSample& sample : step.motion) EXPECT_LT(std::abs(sample.qpos[0]), 1.0);
+}
+
+TEST_F(MujocoPlantFault, a_kick_out_of_the_simulators_range) {
+  const auto car = make_car();
+  car->reset(pose(0.0, 0.0, 0.0));
+  const PlantStep step = car->advance(yaw_rate(0.0), pose(1e11, 0.0, 0.0));
+  ASSERT_TRUE(step.fault.has_value());
+  EXPECT_THAT(*step.fault, AllOf(HasSubstr("QPOS at DOF 0"), HasSubstr("at 0.100 s")));
+  EXPECT_NEAR(step.state[0], 0.15, 1e-4);
+}
+
+TEST_F(MujocoPlantFault, refuses_a_model_whose_buffers_are_too_small) {
+  // Four wheels touch and there is room for three: refused at settling.
+  const auto where =
+      refusal(folder_.write("car.xml", altered_car("nconmax=\"50\"", "nconmax=\"3\"")));
+  EXPECT_THAT(where.found, HasSubstr("contact"));
+}
+
+TEST_F(MujocoPlantFault, arguments_of_a_wrong_size_throw) {
+  const auto car = make_car();
+  EXPECT_THROW(car->reset(Eigen::VectorXd::Zero(2)), std::invalid_argument);
+  EXPECT_THROW(car->reset(pose(kNan, 0.0, 0.0)), std::invalid_argument);
+  EXPECT_THROW(car->advance(Eigen::VectorXd::Zero(2), no_disturbance()), std::invalid_argument);
+  EXPECT_THROW(car->advance(yaw_rate(0.0), Eigen::VectorXd::Zero(2)), std::invalid_argument);
+}
+
+TEST_F(MujocoPlantFault, refuses_a_missing_file) {
+  const auto where = refusal("no_such_car.xml");
+  EXPECT_EQ(where.file, "no_such_car.xml");
+  EXPECT_EQ(where.found, "no readable file");
+}
+
+TEST_F(MujocoPlantFault, refuses_xml_that_is_malformed_or_no_model_and_says_the_line) {
+  const std::string malformed = folder_.write("a.xml", "<mujoco>\n<worldbody>\n</mujoco>\n");
+  EXPECT_EQ(refusal(malformed).file, malformed);
+  EXPECT_EQ(refusal(malformed).line, 2);
+  const auto unknown = refusal(folder_.write("b.xml", "<mujoco>\n\n<wordlbody/>\n</mujoco>\n"));
+  EXPECT_EQ(unknown.line, 3);
+  EXPECT_THAT(unknown.found, HasSubstr("unrecognized element"));
+  const auto massless = refusal(folder_.write(
+      "c.xml", "<mujoco><worldbody>\n<body><freejoint/></body>\n</worldbody></mujoco>"));
+  EXPECT_EQ(massless.line, 2);
+  EXPECT_THAT(massless.found, HasSubstr("mass and inertia"));
+  EXPECT_FALSE(refusal(folder_.write("d.xml", "")).found.empty());
+}
+
+TEST_F(MujocoPlantFault, refuses_a_model_that_loads_with_a_warning) {
+  const std::string file =
+      folder_.write("car.xml", altered_car("pos=\"0 0.11 0\"", "pos=\"0 0.11 nan\""));
+  EXPECT_THAT(refusal(file).found, HasSubstr("NaN"));
+}
+
+TEST_F(MujocoPlantFault, refuses_a_model_without_the_names_that_the_mapping_needs) {
+  const auto joint = refusal(folder_.write("a.xml", altered_car("\"root\"", "\"base\"")));
+  EXPECT_EQ(joint.key, "joint root");
+  EXPECT_THAT(joint.expected, AllOf(HasSubstr("base"), HasSubstr("front_left_steering")));
+  const auto actuator =
+      refusal(folder_.write("b.xml", altered_car("name=\"steer_right\"", "name=\"steer_rihgt\"")));
+  EXPECT_EQ(actuator.key, "actuator steer_right");
+  EXPECT_THAT(actuator.expected, AllOf(HasSubstr("steer_left"), HasSubstr("steer_rihgt")));
+}
+
+TEST_F(MujocoPlantFault, refuses_a_vehicle_that_cannot_hold_its_speed) {
+  const auto where = refusal(folder_.write(
+      "car.xml", altered_car("tendon=\"drive\" kv=\"3\"", "tendon=\"drive\" kv=\"0.0001\"")));
+  EXPECT_THAT(where.found, HasSubstr("m/s after settling"));
+}
+
+TEST_F(MujocoPlantFault, refuses_a_period_that_is_no_multiple_of_the_timestep) {
+  EXPECT_EQ(refusal(kCarFile, 0.101).key, "option timestep");
+  EXPECT_EQ(refusal(kCarFile, 0.001).key, "option timestep");
+  EXPECT_NO_THROW(make_car(kCarFile, 0.05));
+}
+
+TEST_F(MujocoPlantFault, a_warning_goes_to_the_innermost_trap_of_its_own_thread) {
+  const std::string nan_model =
+      folder_.write("car.xml", altered_car("pos=\"0 0.11 0\"", "pos=\"0 0.11 nan\""));
+  const MujocoTrap outer;
+  EXPECT_THROW((void)load_mujoco_model(nan_model), InputError);
+  std::thread([&] { EXPECT_THROW((void)load_mujoco_model(nan_model), InputError); }).join();
+  EXPECT_TRUE(outer.warnings().empty()) << "the loader's own trap collects its warnings";
+}
+
+}  // namespace
+}  // namespace qsmpc

@@ -1,0 +1,82 @@
+// What the tests of plants share: the shipped car, altered copies of it, and its numbers.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/Core>
+#include <gtest/gtest.h>
+
+#include "harness/plant/mujoco_plant.hpp"
+
+namespace qsmpc {
+
+inline constexpr double kSpeed = 1.5;          // m/s
+inline constexpr double kControlPeriod = 0.1;  // s
+inline constexpr const char* kCarFile = QSMPC_SOURCE_DIR "/models/mjcf/dubins_car.xml";
+
+inline std::unique_ptr<Plant> make_car(const std::string& mjcf = kCarFile,
+                                       double control_period = kControlPeriod) {
+  return make_mujoco_plant(
+      {.mjcf = mjcf, .control_period = control_period, .mapping = dubins_car_mapping(kSpeed)});
+}
+
+inline Eigen::VectorXd pose(double x, double y, double heading) {
+  return Eigen::Vector3d(x, y, heading);
+}
+
+inline Eigen::VectorXd yaw_rate(double value) { return Eigen::VectorXd::Constant(1, value); }
+
+inline Eigen::VectorXd no_disturbance() { return Eigen::VectorXd::Zero(3); }
+
+/// `vector` (x, y, heading) turned by `angle` in the plane.
+inline Eigen::Vector3d turned(const Eigen::Vector3d& vector, double angle) {
+  return {std::cos(angle) * vector.x() - std::sin(angle) * vector.y(),
+          std::sin(angle) * vector.x() + std::cos(angle) * vector.y(), vector.z()};
+}
+
+/// A folder of its own for the running test, empty at first and gone afterwards.
+class TemporaryFolder {
+ public:
+  TemporaryFolder() {
+    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    path_ = std::filesystem::path(::testing::TempDir()) /
+            (std::string("qsmpc_") + test->test_suite_name() + "_" + test->name());
+    std::filesystem::remove_all(path_);
+    std::filesystem::create_directories(path_);
+  }
+  ~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+    return path_ / name;
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The shipped car's XML with every `from` replaced by `to`; throws unless there is one.
+inline std::string altered_car(const std::string& from, const std::string& to) {
+  std::ostringstream stream;
+  stream << std::ifstream(kCarFile).rdbuf();
+  std::string text = stream.str();
+  std::size_t at = text.find(from);
+  if (at == std::string::npos) throw std::logic_error("the car's XML lacks " + from);
+  for (; at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+}  // namespace qsmpc
