@@ -22,9 +22,9 @@ int line_in(const std::string& text) {
   return std::regex_search(text, match, pattern) ? std::stoi(match[1].str()) : 0;
 }
 
-InputError model_error(const std::string& path, std::string text) {
+SimulatorError model_error(const std::string& path, std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  return InputError(
+  return SimulatorError(
       {.file = path, .line = line_in(text), .found = text, .expected = kExpectedModel});
 }
 

@@ -137,9 +137,10 @@ MujocoPlant::MujocoPlant(const MujocoPlantSetup& setup)
     bind(setup.mapping);
     settle();
   } catch (const MujocoError& error) {
-    throw InputError({.file = file_,
-                      .found = fmt::format("{} (at {:.3f} s of settling)", error.what(), time()),
-                      .expected = "a vehicle that rolls straight at its speed"});
+    throw SimulatorError(
+        {.file = file_,
+         .found = fmt::format("{} (at {:.3f} s of settling)", error.what(), time()),
+         .expected = "a vehicle that rolls straight at its speed"});
   }
   reset(Eigen::VectorXd::Zero(kPoseDim));
 }
@@ -172,9 +173,9 @@ void MujocoPlant::settle() {
     if (hold == nullptr) continue;
     const double speed = pose_.speed(*data_);
     if (std::abs(speed - hold->speed()) > kSettledSpeedError * hold->speed()) {
-      throw InputError({.file = file_,
-                        .found = fmt::format("{:.4g} m/s after settling", speed),
-                        .expected = fmt::format("{:.4g} m/s within 1 %", hold->speed())});
+      throw SimulatorError({.file = file_,
+                            .found = fmt::format("{:.4g} m/s after settling", speed),
+                            .expected = fmt::format("{:.4g} m/s within 1 %", hold->speed())});
     }
     hold->calibrate(speed);
   }
