@@ -87,9 +87,10 @@ std::vector<StageCertificate> certify(const Planner& planner, const Gaussian& be
     certificate.unsafe_mass = unsafe_mass(particles, safe_set);
     certificate.value =
         std::min({certificate.particles, certificate.mixture, certificate.surrogate});
-    certificate.kind = certificate.value == certificate.surrogate ? "c3"
+    // Of equal bounds the simplest is named.
+    certificate.kind = certificate.value == certificate.particles ? "c1"
                        : certificate.value == certificate.mixture ? "c2"
-                                                                  : "c1";
+                                                                  : "c3";
   }
   return certificates;
 }

@@ -18,7 +18,7 @@ constexpr double kTail = 8.6;
 constexpr double kTailAllowance = 1e-17;
 constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 // t is searched over radius · 1.02 … radius · 1.02 · 2^kOctaves, then about the best of these.
-constexpr int kOctaves = 12;
+constexpr int kOctaves = 24;
 constexpr int kBisections = 5;
 // With no error at all the bound tends to the probability itself as t → 0.
 constexpr double kSmallestT = 1e-4;

@@ -24,8 +24,8 @@ namespace qsmpc {
 
 /// Algorithms 3 and 4 of the thesis as printed, for comparison only: NOT an upper bound. The
 /// distance is a norm over the dimensions of the distances to the faces, which overestimates it,
-/// obstacles do not count, and d·m instead of d²·m is spent against the radius instead of its
-/// square.
+/// and obstacles do not count. (Spending d·m against the radius, instead of d²·m against its
+/// square, is loose only.)
 [[nodiscard]] double thesis_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
                                         double radius);
 

@@ -22,9 +22,9 @@ struct GaussianQuantisation {
 };
 
 /// Levels n_j ≥ 1 with Π n_j ≤ budget that minimise Σ variances_j D(n_j), D the distortion of the
-/// optimal one-dimensional quantiser: by exhaustive search over shapes whose levels do not grow
-/// where the variance falls. Axes of zero variance get one level.
-/// Throws std::invalid_argument if budget < 1 or a variance is negative or not finite.
+/// optimal one-dimensional quantiser (beyond kExactDistortions points its asymptote): by exhaustive
+/// search over shapes whose levels do not grow where the variance falls. Axes of zero variance get
+/// one level. Throws std::invalid_argument if budget < 1 or a variance is negative or not finite.
 [[nodiscard]] std::vector<int> allot_levels(const Eigen::Ref<const Eigen::VectorXd>& variances,
                                             int budget);
 

@@ -6,7 +6,7 @@
 // gradient by one pass forward and one backward.
 //
 // With f_i the stepped points and w the noise, the stage cost of Eq. 4-18 (its first line) is taken
-// before the compression, where no second moment has been lost:
+// before this stage's compression, which would lose a part of the second moment:
 //     ½ E|x − r|²_Q = ½ Σ_i ρ_i |f_i − r|²_Q + ½ tr(Q Σ_w),
 // and the terminal cost (Eq. 4-19) likewise, without the ½. Penalties act on the compressed points.
 #pragma once

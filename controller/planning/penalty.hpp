@@ -2,7 +2,8 @@
 //
 // `thesis` is Algorithm 2 and Eq. 4-10 as printed: flat inside an obstacle, so that a particle in
 // it is not pushed out, and with a halo of one unit whatever the unit is. `smooth` is the default:
-// with s the signed distance to the unsafe set (negative inside) and ℓ a stated length,
+// with s the signed distance to a face of the bounds or to an obstacle (negative beyond or inside)
+// and ℓ a stated length, the sum over all of them of
 //
 //     h(s) = 0 for s ≥ ℓ,  ½ (1 − s/ℓ)² for 0 ≤ s ≤ ℓ,  ½ − s/ℓ for s ≤ 0:
 //

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace qsmpc {
 namespace {
@@ -177,25 +178,29 @@ Eigen::MatrixXd Planner::first_guess(const Gaussian& belief,
                                      const GaussianQuantisation& quantised) const {
   const InputBounds& bounds = settings_.bounds;
   const Eigen::VectorXd middle = 0.5 * (bounds.lower + bounds.upper);
+  std::vector<Eigen::VectorXd> constants = {middle};
+  for (const double share : {-0.9, -0.45, 0.45, 0.9}) {
+    for (Eigen::Index input = 0; input < middle.size(); ++input) {
+      constants.push_back(middle);
+      constants.back()[input] += 0.5 * share * (bounds.upper[input] - bounds.lower[input]);
+    }
+  }
   Eigen::MatrixXd best = middle.replicate(1, settings_.horizon);
-  double least = cost_without_noise(belief, quantised, best);
+  double least = std::numeric_limits<double>::infinity();
   if (plan_) {
     const Eigen::MatrixXd warm = shifted(plan_->policy.inputs);
     const double warm_cost = cost_without_noise(belief, quantised, warm);
-    if (!(warm_cost > least)) best = warm;
-    least = std::min(least, warm_cost);
-    if (best == warm && std::isfinite(least)) least -= kSwitchGain * std::abs(least);
+    if (std::isfinite(warm_cost)) {
+      best = warm;
+      least = warm_cost - kSwitchGain * std::abs(warm_cost);
+    }
   }
-  for (const double share : {-0.9, -0.45, 0.45, 0.9}) {
-    for (Eigen::Index input = 0; input < middle.size(); ++input) {
-      Eigen::VectorXd constant = middle;
-      constant[input] += 0.5 * share * (bounds.upper[input] - bounds.lower[input]);
-      const Eigen::MatrixXd guess = constant.replicate(1, settings_.horizon);
-      const double cost = cost_without_noise(belief, quantised, guess);
-      if (cost < least) {
-        least = cost;
-        best = guess;
-      }
+  for (const Eigen::VectorXd& constant : constants) {
+    const Eigen::MatrixXd guess = constant.replicate(1, settings_.horizon);
+    const double cost = cost_without_noise(belief, quantised, guess);
+    if (cost < least) {
+      least = cost;
+      best = guess;
     }
   }
   return best;
