@@ -108,6 +108,7 @@ struct Hdf5File::Impl {
                      const void* value) const;
   void read_scalar(const std::string& object, const std::string& name, hid_t type,
                    void* value) const;
+  [[nodiscard]] std::size_t text_bytes(const std::string& object, const std::string& name) const;
   void append_rows(const std::string& name, hid_t type, const void* values, std::size_t count);
   [[nodiscard]] hsize_t readable_elements(const std::string& name, H5T_class_t wanted);
 };
@@ -153,6 +154,23 @@ void Hdf5File::Impl::read_scalar(const std::string& object, const std::string& n
                       .expected = H5Tget_class(type) == H5T_STRING ? "one text" : "one integer"});
   }
   check(H5Aread(attribute.get(), type, value), what);
+}
+
+std::size_t Hdf5File::Impl::text_bytes(const std::string& object, const std::string& name) const {
+  const std::string what = object + "@" + name;
+  const Handle attribute =
+      checked(H5Aopen_by_name(file.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+              H5Aclose, what);
+  const Handle stored = checked(H5Aget_type(attribute.get()), H5Tclose, what);
+  const bool fixed = H5Tget_class(stored.get()) == H5T_STRING &&
+                     H5Tis_variable_str(stored.get()) == 0 && H5Tget_size(stored.get()) > 0;
+  if (!fixed || H5Tget_size(stored.get()) > kElementLimit) {
+    throw InputError({.file = path,
+                      .key = what,
+                      .found = "another type of attribute",
+                      .expected = "one text of fixed length"});
+  }
+  return H5Tget_size(stored.get());
 }
 
 void Hdf5File::Impl::append_rows(const std::string& name, hid_t type, const void* values,
@@ -214,8 +232,11 @@ Hdf5File Hdf5File::create(const std::string& path) {
   impl->writing = true;
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   impl->check(H5Pset_obj_track_times(creation.get(), false), "/");
-  impl->file = Handle(
-      H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), hdf5::file_access().get()), H5Fclose);
+  // Attributes in a heap of their own: in the header a text could have 64 KiB at most.
+  impl->check(H5Pset_attr_phase_change(creation.get(), 0, 0), "/");
+  const Handle access = hdf5::file_access();
+  impl->file =
+      Handle(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
   if (!impl->file.ok()) {
     const std::string words = hdf5::error_words();
     H5Eclear2(H5E_DEFAULT);
@@ -281,26 +302,29 @@ void Hdf5File::create_dataset(const DatasetSpec& spec) {
   if (!spec.comment.empty()) set_text(spec.path, "comment", spec.comment);
 }
 
+// Texts have a fixed length: those of variable length live in a global heap, the one part of a file
+// that has no checksum, and a damaged one can make the library run in circles.
 void Hdf5File::set_text(const std::string& object, const std::string& name,
                         const std::string& value) {
   const Lock lock;
-  const Handle type = text_type(H5T_VARIABLE);
+  const Handle type = text_type(std::max<std::size_t>(1, value.size()));
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);
-  const char* const pointer = value.c_str();
-  impl_->set_attribute(object, name, type.get(), space.get(), static_cast<const void*>(&pointer));
+  impl_->set_attribute(object, name, type.get(), space.get(), value.c_str());
 }
 
 void Hdf5File::set_texts(const std::string& object, const std::string& name,
                          const std::vector<std::string>& values) {
   const Lock lock;
-  const Handle type = text_type(H5T_VARIABLE);
+  std::size_t longest = 1;
+  for (const std::string& value : values) longest = std::max(longest, value.size());
+  std::string padded(values.size() * longest, '\0');
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    std::copy(values[i].begin(), values[i].end(), padded.begin() + i * longest);
+  }
+  const Handle type = text_type(longest);
   const hsize_t count = values.size();
   const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
-  std::vector<const char*> pointers;
-  pointers.reserve(values.size());
-  for (const std::string& value : values) pointers.push_back(value.c_str());
-  impl_->set_attribute(object, name, type.get(), space.get(),
-                       static_cast<const void*>(pointers.data()));
+  impl_->set_attribute(object, name, type.get(), space.get(), padded.data());
 }
 
 void Hdf5File::set_integer(const std::string& object, const std::string& name, std::int64_t value) {
@@ -381,10 +405,10 @@ bool Hdf5File::has_attribute(const std::string& object, const std::string& name)
 
 std::string Hdf5File::text(const std::string& object, const std::string& name) const {
   const Lock lock;
-  char* pointer = nullptr;
-  impl_->read_scalar(object, name, text_type(H5T_VARIABLE).get(), static_cast<void*>(&pointer));
-  std::string value = pointer == nullptr ? "" : pointer;
-  H5free_memory(pointer);
+  const std::size_t bytes = impl_->text_bytes(object, name);
+  std::string value(bytes, '\0');
+  impl_->read_scalar(object, name, text_type(bytes).get(), value.data());
+  value.resize(::strnlen(value.data(), bytes));
   return value;
 }
 

@@ -14,8 +14,12 @@ std::recursive_mutex& mutex() {
 }  // namespace
 
 Lock::Lock() : lock_(mutex()) {
-  static const herr_t kSilenced = H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-  static_cast<void>(kSilenced);
+  static const bool kPrepared = [] {
+    // The library's own clean-up at exit writes once more what a full disk refused, and crashes.
+    H5dont_atexit();
+    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+  }();
+  static_cast<void>(kPrepared);
 }
 
 std::string error_words() {

@@ -65,7 +65,7 @@ struct Trace {
   std::uint64_t seed = 0;
   std::string version;
   std::vector<StepRecord> steps;
-  Eigen::VectorXd final_state;       ///< true state after the last period, state_dim
+  Eigen::VectorXd final_state;  ///< true state after the last period, state_dim; empty if not known
   std::vector<MotionSample> motion;  ///< of the whole episode, oldest first
   Outcome outcome = Outcome::kTimeout;
   std::string fault;  ///< the simulator's words where the outcome is kFault

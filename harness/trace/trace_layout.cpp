@@ -1,0 +1,213 @@
+#include "harness/trace/trace_layout.hpp"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+
+namespace qsmpc {
+namespace {
+
+using Type = DatasetSpec::Type;
+
+/// Points stored together: small enough that the last, partly filled chunk, which is written anew
+/// with every step, wastes little; large enough to compress.
+constexpr std::size_t kPointChunk = 512;
+constexpr std::size_t kMotionChunk = 256;
+
+/// The sizes and names that shapes and attributes are made from.
+struct Sizes {
+  std::size_t states;
+  std::size_t inputs;
+  std::size_t horizon;
+  std::vector<std::string> state_names{};
+  std::vector<std::string> state_units{};
+  std::vector<std::string> input_names{};
+  std::vector<std::string> input_units{};
+};
+
+Sizes sizes_of(const Scenario& scenario) {
+  const auto dynamics =
+      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const SystemDescription& description = dynamics->description();
+  Sizes sizes{.states = description.states.size(),
+              .inputs = description.inputs.size(),
+              .horizon = static_cast<std::size_t>(scenario.controller.horizon)};
+  for (const Coordinate& state : description.states) {
+    sizes.state_names.push_back(state.name);
+    sizes.state_units.push_back(state.unit);
+  }
+  for (const Coordinate& input : description.inputs) {
+    sizes.input_names.push_back(input.name);
+    sizes.input_units.push_back(input.unit);
+  }
+  return sizes;
+}
+
+void add_plant(std::vector<DatasetSpec>& layout, const Sizes& n) {
+  layout.push_back({.path = "/plant/time",
+                    .axes = {"step"},
+                    .units = {"s"},
+                    .comment = "when the control period begins"});
+  layout.push_back({.path = "/plant/state",
+                    .row_shape = {n.states},
+                    .axes = {"step", "state"},
+                    .units = n.state_units,
+                    .columns = n.state_names,
+                    .comment = "true state at the beginning of the period"});
+  layout.push_back({.path = "/plant/input",
+                    .row_shape = {n.inputs},
+                    .axes = {"step", "input"},
+                    .units = n.input_units,
+                    .columns = n.input_names,
+                    .comment = "applied during the period"});
+  layout.push_back({.path = "/plant/disturbance",
+                    .row_shape = {n.states},
+                    .axes = {"step", "state"},
+                    .units = n.state_units,
+                    .columns = n.state_names,
+                    .comment = "added to the state at the end of the period"});
+  layout.push_back({.path = "/plant/final_state",
+                    .axes = {"state"},
+                    .units = n.state_units,
+                    .columns = n.state_names,
+                    .comment = "true state after the last period; empty if the run was killed",
+                    .chunk_rows = n.states});
+  layout.push_back({.path = "/plant/motion/time",
+                    .axes = {"sample"},
+                    .units = {"s"},
+                    .chunk_rows = kMotionChunk});
+  layout.push_back({.path = "/plant/motion/qpos",
+                    .row_shape = {0},
+                    .axes = {"sample", "coordinate"},
+                    .units = {"SI"},
+                    .comment = "generalised position of the MuJoCo model, for drawing",
+                    .chunk_rows = kMotionChunk});
+}
+
+void add_belief_and_plan(std::vector<DatasetSpec>& layout, const Sizes& n) {
+  layout.push_back({.path = "/belief/mean",
+                    .row_shape = {n.states},
+                    .axes = {"step", "state"},
+                    .units = n.state_units,
+                    .columns = n.state_names});
+  layout.push_back({.path = "/belief/covariance",
+                    .row_shape = {n.states, n.states},
+                    .axes = {"step", "state", "state"},
+                    .units = n.state_units,
+                    .columns = n.state_names,
+                    .comment = "an entry has the unit of its row times that of its column"});
+  layout.push_back({.path = "/plan/inputs",
+                    .row_shape = {n.horizon, n.inputs},
+                    .axes = {"step", "stage", "input"},
+                    .units = n.input_units,
+                    .columns = n.input_names});
+  layout.push_back({.path = "/plan/states",
+                    .row_shape = {n.horizon + 1, n.states},
+                    .axes = {"step", "stage", "state"},
+                    .units = n.state_units,
+                    .columns = n.state_names,
+                    .comment = "nominal states, the present one first"});
+  layout.push_back({.path = "/plan/cost",
+                    .row_shape = {5},
+                    .axes = {"step", "part"},
+                    .units = {"1"},
+                    .columns = {"state", "input", "terminal", "box", "obstacle"}});
+  layout.push_back({.path = "/plan/status",
+                    .type = Type::kText,
+                    .axes = {"step"},
+                    .units = {"1"},
+                    .comment = "what the solver said"});
+  layout.push_back({.path = "/plan/fallback",
+                    .type = Type::kInt64,
+                    .axes = {"step"},
+                    .units = {"1"},
+                    .comment = "1 where the shifted previous plan was applied instead"});
+  layout.push_back({.path = "/plan/iterations",
+                    .type = Type::kInt64,
+                    .axes = {"step"},
+                    .units = {"1"},
+                    .comment = "evaluations of the cost and its gradient"});
+}
+
+void add_particles(std::vector<DatasetSpec>& layout, const Sizes& n) {
+  const std::string slices =
+      "the points of step k and stage s (0 is the present) are the rows offsets[k, s] up to, "
+      "without, offsets[k, s + 1], counted from 0";
+  layout.push_back({.path = "/particles/locations",
+                    .row_shape = {n.states},
+                    .axes = {"point", "state"},
+                    .units = n.state_units,
+                    .columns = n.state_names,
+                    .comment = slices,
+                    .chunk_rows = kPointChunk,
+                    .compress = true});
+  layout.push_back({.path = "/particles/weights",
+                    .axes = {"point"},
+                    .units = {"1"},
+                    .comment = slices,
+                    .chunk_rows = kPointChunk,
+                    .compress = true});
+  layout.push_back({.path = "/particles/offsets",
+                    .type = Type::kInt64,
+                    .row_shape = {n.horizon + 2},
+                    .axes = {"step", "stage"},
+                    .units = {"row of locations and weights"},
+                    .comment = slices});
+}
+
+void add_certificate(std::vector<DatasetSpec>& layout, const Sizes& n) {
+  layout.push_back({.path = "/certificate/budget",
+                    .row_shape = {n.horizon + 1, 4},
+                    .axes = {"step", "stage", "source"},
+                    .units = {"Euclidean norm of the state"},
+                    .columns = {"belief", "noise", "compression", "total"},
+                    .comment = "bounds of the W2 distance between the model's law and the "
+                               "particles; stage 0 is the present"});
+  const std::vector<std::pair<std::string, std::string>> probabilities = {
+      {"value",
+       "the least of the sound upper bounds of the probability that the model's state is "
+       "unsafe; the first column is stage 1"},
+      {"particles", "c1: worst case over the W2 ball around the particles; sound"},
+      {"mixture", "c2: the same before the last noise, which stays Gaussian; sound"},
+      {"thesis", "the reference algorithm as printed; not sound"},
+      {"unsafe_mass", "weight of the particles that are unsafe; no bound"}};
+  for (const auto& [name, meaning] : probabilities) {
+    layout.push_back({.path = "/certificate/" + name,
+                      .row_shape = {n.horizon},
+                      .axes = {"step", "stage"},
+                      .units = {"1"},
+                      .comment = meaning});
+  }
+  layout.push_back({.path = "/certificate/kind",
+                    .type = Type::kText,
+                    .row_shape = {n.horizon},
+                    .axes = {"step", "stage"},
+                    .units = {"1"},
+                    .comment = "which bound the value is"});
+}
+
+void add_timing(std::vector<DatasetSpec>& layout) {
+  for (const char* const phase :
+       {"quantise", "propagate", "optimise", "certify", "total", "simulate"}) {
+    // Never compressed: other times must not move what comes after them in the file.
+    layout.push_back({.path = std::string("/timing/") + phase,
+                      .axes = {"step"},
+                      .units = {"ms"},
+                      .comment = "wall-clock time; differs from run to run"});
+  }
+}
+
+}  // namespace
+
+std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
+  const Sizes sizes = sizes_of(scenario);
+  std::vector<DatasetSpec> layout;
+  add_plant(layout, sizes);
+  add_belief_and_plan(layout, sizes);
+  add_particles(layout, sizes);
+  add_certificate(layout, sizes);
+  add_timing(layout);
+  return layout;
+}
+
+}  // namespace qsmpc

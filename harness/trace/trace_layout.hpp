@@ -1,0 +1,20 @@
+// What a trace file consists of: every dataset, its shape, units and axes. The writer makes these,
+// the reader checks them, and docs/trace.md is written from them.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "harness/scenario/scenario.hpp"
+#include "harness/trace/hdf5_file.hpp"
+
+namespace qsmpc {
+
+/// Grows with every change that an older reader would misread.
+inline constexpr std::int64_t kTraceSchema = 1;
+
+/// The datasets of a trace of `scenario`. A dataset whose first axis is "step" has one row a
+/// control period. Throws std::invalid_argument on an unknown system.
+[[nodiscard]] std::vector<DatasetSpec> trace_layout(const Scenario& scenario);
+
+}  // namespace qsmpc

@@ -1,0 +1,253 @@
+// read_trace: the reading side of trace_file.hpp.
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "harness/errors.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_layout.hpp"
+
+namespace qsmpc {
+namespace {
+
+using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Reads one file's groups into `trace`; a step is believed once it has a time.
+class TraceReader {
+ public:
+  explicit TraceReader(const std::string& path) : file_(Hdf5File::open(path)) {}
+
+  Trace read();
+
+ private:
+  [[noreturn]] void refuse(const std::string& key, const std::string& found,
+                           const std::string& expected) const {
+    throw InputError({.file = file_.path(), .key = key, .found = found, .expected = expected});
+  }
+  void read_header();
+  void check_shapes();
+  void read_motion();
+  void read_final_state();
+  void read_plant_and_belief();
+  void read_plan();
+  void read_particles();
+  void read_certificates();
+  void read_timing();
+
+  /// The numbers of step `k` in a dataset with `row` numbers a step.
+  [[nodiscard]] static const double* row_of(const std::vector<double>& values, std::size_t k,
+                                            Eigen::Index row) {
+    return values.data() + k * static_cast<std::size_t>(row);
+  }
+
+  Hdf5File file_;
+  Trace trace_;
+  Eigen::Index state_dim_ = 0;
+  Eigen::Index input_dim_ = 0;
+  Eigen::Index horizon_ = 0;
+};
+
+Trace TraceReader::read() {
+  read_header();
+  check_shapes();
+  read_motion();
+  read_final_state();
+  read_plant_and_belief();
+  read_plan();
+  read_particles();
+  read_certificates();
+  read_timing();
+  return std::move(trace_);
+}
+
+void TraceReader::read_header() {
+  const std::string schema = "schema " + std::to_string(kTraceSchema);
+  if (!file_.has_attribute("/", "schema")) {
+    refuse("/@schema", "no such attribute", "a trace of " + schema);
+  }
+  if (const std::int64_t found = file_.integer("/", "schema"); found != kTraceSchema) {
+    refuse("/@schema", "schema " + std::to_string(found), "a trace of " + schema);
+  }
+  trace_.version = file_.text("/", "version");
+  trace_.scenario_text = file_.text("/", "scenario");
+  trace_.seed = file_.unsigned_integer("/", "seed");
+  trace_.fault = file_.text("/", "fault");
+  const std::string outcome = file_.text("/", "outcome");
+  try {
+    trace_.outcome = outcome_from_name(outcome);
+  } catch (const std::invalid_argument&) {
+    refuse("/@outcome", outcome, "reached, timeout, left_safe_set, fault or interrupted");
+  }
+  const std::string& path = file_.path();
+  trace_.scenario = parse_scenario(
+      trace_.scenario_text,
+      {.file = path, .folder = path.substr(0, path.rfind('/') + 1), .files_must_exist = false});
+  state_dim_ = trace_.scenario.initial_state.mean.size();
+  input_dim_ = trace_.scenario.controller.input_lower.size();
+  horizon_ = trace_.scenario.controller.horizon;
+}
+
+void TraceReader::check_shapes() {
+  const auto shape_of_time = file_.shape("/plant/time");
+  const std::size_t steps = shape_of_time.empty() ? 0 : shape_of_time.front();
+  for (const DatasetSpec& spec : trace_layout(trace_.scenario)) {
+    const std::vector<std::size_t> found = file_.shape(spec.path);
+    if (found.size() != spec.row_shape.size() + 1) {
+      refuse(spec.path, std::to_string(found.size()) + " dimensions",
+             std::to_string(spec.row_shape.size() + 1));
+    }
+    if (spec.axes.front() == "step" && found.front() < steps) {
+      refuse(spec.path, std::to_string(found.front()) + " rows", std::to_string(steps));
+    }
+    for (std::size_t i = 0; i < spec.row_shape.size(); ++i) {
+      if (spec.row_shape[i] != 0 && spec.row_shape[i] != found[i + 1]) {
+        refuse(spec.path, std::to_string(found[i + 1]) + " along " + spec.axes[i + 1],
+               std::to_string(spec.row_shape[i]));
+      }
+    }
+  }
+  trace_.steps.resize(steps);
+}
+
+void TraceReader::read_motion() {
+  const std::vector<double> times = file_.doubles("/plant/motion/time");
+  const std::vector<double> positions = file_.doubles("/plant/motion/qpos");
+  const std::size_t coordinates = file_.shape("/plant/motion/qpos")[1];
+  if (positions.size() < times.size() * coordinates) {
+    refuse("/plant/motion/qpos", "too few rows", std::to_string(times.size()));
+  }
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto begin = positions.begin() + static_cast<std::ptrdiff_t>(i * coordinates);
+    trace_.motion.push_back(
+        {.time = times[i], .qpos = {begin, begin + static_cast<std::ptrdiff_t>(coordinates)}});
+  }
+}
+
+void TraceReader::read_final_state() {
+  const std::vector<double> state = file_.doubles("/plant/final_state");
+  if (!state.empty() && state.size() != static_cast<std::size_t>(state_dim_)) {
+    refuse("/plant/final_state", std::to_string(state.size()) + " numbers",
+           std::to_string(state_dim_));
+  }
+  trace_.final_state = Eigen::Map<const Eigen::VectorXd>(state.data(), std::ssize(state));
+}
+
+void TraceReader::read_plant_and_belief() {
+  const auto times = file_.doubles("/plant/time");
+  const auto states = file_.doubles("/plant/state");
+  const auto inputs = file_.doubles("/plant/input");
+  const auto disturbances = file_.doubles("/plant/disturbance");
+  const auto means = file_.doubles("/belief/mean");
+  const auto covariances = file_.doubles("/belief/covariance");
+  using Vector = Eigen::Map<const Eigen::VectorXd>;
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    StepRecord& step = trace_.steps[k];
+    step.time = times[k];
+    step.state = Vector(row_of(states, k, state_dim_), state_dim_);
+    step.input = Vector(row_of(inputs, k, input_dim_), input_dim_);
+    step.disturbance = Vector(row_of(disturbances, k, state_dim_), state_dim_);
+    step.belief_mean = Vector(row_of(means, k, state_dim_), state_dim_);
+    step.belief_covariance = Eigen::Map<const RowMajor>(
+        row_of(covariances, k, state_dim_ * state_dim_), state_dim_, state_dim_);
+  }
+}
+
+void TraceReader::read_plan() {
+  const auto inputs = file_.doubles("/plan/inputs");
+  const auto states = file_.doubles("/plan/states");
+  const auto costs = file_.doubles("/plan/cost");
+  const auto statuses = file_.texts("/plan/status");
+  const auto fallbacks = file_.integers("/plan/fallback");
+  const auto iterations = file_.integers("/plan/iterations");
+  // A stage is a row in the file and a column in memory.
+  using Columns = Eigen::Map<const Eigen::MatrixXd>;
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    StepRecord& step = trace_.steps[k];
+    step.plan_inputs = Columns(row_of(inputs, k, input_dim_ * horizon_), input_dim_, horizon_);
+    step.plan_states =
+        Columns(row_of(states, k, state_dim_ * (horizon_ + 1)), state_dim_, horizon_ + 1);
+    const double* const cost = row_of(costs, k, 5);
+    step.cost = {.state = cost[0],
+                 .input = cost[1],
+                 .terminal = cost[2],
+                 .box = cost[3],
+                 .obstacle = cost[4]};
+    step.solver_status = statuses[k];
+    step.fallback = fallbacks[k] != 0;
+    step.iterations = static_cast<int>(iterations[k]);
+  }
+}
+
+void TraceReader::read_particles() {
+  const auto locations = file_.doubles("/particles/locations");
+  const auto weights = file_.doubles("/particles/weights");
+  const auto offsets = file_.integers("/particles/offsets");
+  const auto points = static_cast<std::int64_t>(
+      std::min(weights.size(), locations.size() / static_cast<std::size_t>(state_dim_)));
+  const auto boundaries = static_cast<std::size_t>(horizon_) + 2;
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    const std::int64_t* const bounds = offsets.data() + k * boundaries;
+    for (std::size_t s = 0; s + 1 < boundaries; ++s) {
+      const std::int64_t begin = bounds[s];
+      const std::int64_t count = bounds[s + 1] - begin;
+      if (begin < 0 || begin > points || count < 0 || count > points - begin) {
+        refuse("/particles/offsets", std::to_string(begin) + " to " + std::to_string(bounds[s + 1]),
+               "rising offsets up to " + std::to_string(points));
+      }
+      const auto first = static_cast<std::size_t>(begin);
+      trace_.steps[k].particles.push_back(
+          {.locations = Eigen::Map<const Eigen::MatrixXd>(row_of(locations, first, state_dim_),
+                                                          state_dim_, count),
+           .weights = Eigen::Map<const Eigen::VectorXd>(weights.data() + first, count)});
+    }
+  }
+}
+
+void TraceReader::read_certificates() {
+  const auto budgets = file_.doubles("/certificate/budget");
+  const auto values = file_.doubles("/certificate/value");
+  const auto kinds = file_.texts("/certificate/kind");
+  const auto particles = file_.doubles("/certificate/particles");
+  const auto mixtures = file_.doubles("/certificate/mixture");
+  const auto thesis = file_.doubles("/certificate/thesis");
+  const auto unsafe = file_.doubles("/certificate/unsafe_mass");
+  const auto horizon = static_cast<std::size_t>(horizon_);
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    for (std::size_t s = 0; s <= horizon; ++s) {
+      const double* const budget = row_of(budgets, k * (horizon + 1) + s, 4);
+      trace_.steps[k].budgets.push_back(
+          {.belief = budget[0], .noise = budget[1], .compression = budget[2], .total = budget[3]});
+    }
+    for (std::size_t i = k * horizon; i < (k + 1) * horizon; ++i) {
+      trace_.steps[k].certificates.push_back({.value = values[i],
+                                              .kind = kinds[i],
+                                              .particles = particles[i],
+                                              .mixture = mixtures[i],
+                                              .thesis = thesis[i],
+                                              .unsafe_mass = unsafe[i]});
+    }
+  }
+}
+
+void TraceReader::read_timing() {
+  const auto read_one = [&](const char* path, double StepTiming::*member) {
+    const auto values = file_.doubles(path);
+    for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+      trace_.steps[k].timing.*member = values[k];
+    }
+  };
+  read_one("/timing/quantise", &StepTiming::quantise);
+  read_one("/timing/propagate", &StepTiming::propagate);
+  read_one("/timing/optimise", &StepTiming::optimise);
+  read_one("/timing/certify", &StepTiming::certify);
+  read_one("/timing/total", &StepTiming::total);
+  read_one("/timing/simulate", &StepTiming::simulate);
+}
+
+}  // namespace
+
+Trace read_trace(const std::string& path) { return TraceReader(path).read(); }
+
+}  // namespace qsmpc

@@ -1,0 +1,221 @@
+// TraceWriter: the writing side of trace_file.hpp.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "harness/errors.hpp"
+#include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_layout.hpp"
+
+namespace qsmpc {
+namespace {
+
+void require(bool condition, const char* what) {
+  if (!condition) throw std::invalid_argument(std::string("step record: ") + what);
+}
+
+/// `matrix` with its rows one after the other.
+template <class Matrix>
+std::vector<double> by_rows(const Matrix& matrix) {
+  std::vector<double> values;
+  values.reserve(static_cast<std::size_t>(matrix.size()));
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
+  }
+  return values;
+}
+
+void add(std::vector<double>& to, const std::vector<double>& values) {
+  to.insert(to.end(), values.begin(), values.end());
+}
+
+void synchronise(const std::string& path, int flags) {
+  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
+  const bool done = descriptor >= 0 && ::fsync(descriptor) == 0;
+  const int error = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!done) throw IoError(path + ": cannot make it durable: " + std::strerror(error));
+}
+
+void write_header(Hdf5File& file, const Trace& header) {
+  file.set_integer("/", "schema", kTraceSchema);
+  file.set_text("/", "version", header.version);
+  file.set_text("/", "scenario", header.scenario_text);
+  file.set_text("/", "scenario_name", header.scenario.name);
+  file.set_unsigned("/", "seed", header.seed);
+  // What a reader shall see if nothing is ever added.
+  file.set_text("/", "outcome", outcome_name(Outcome::kInterrupted));
+  file.set_text("/", "fault", "");
+}
+
+}  // namespace
+
+TraceWriter::TraceWriter(std::string path, const Trace& header)
+    : path_(std::move(path)),
+      file_(Hdf5File::create(path_ + ".partial")),
+      state_dim_(header.scenario.initial_state.mean.size()),
+      input_dim_(header.scenario.controller.input_lower.size()),
+      horizon_(header.scenario.controller.horizon) {
+  write_header(file_, header);
+  for (const DatasetSpec& spec : trace_layout(header.scenario)) file_.create_dataset(spec);
+  file_.flush();
+  file_.begin_streaming();
+}
+
+void TraceWriter::append(const StepRecord& record, std::span<const MotionSample> motion) {
+  if (broken_) throw IoError(path_ + ": an earlier step could not be written");
+  check_sizes(record);
+  broken_ = true;
+  append_motion(motion);
+  append_vectors(record);
+  append_particles(record);
+  append_certificates(record);
+  append_timing(record.timing);
+  // The time is the step's seal: it reaches the file only after everything else of the step, and
+  // the reader believes as many steps as there are times.
+  file_.flush();
+  file_.append("/plant/time", std::vector<double>{record.time});
+  file_.flush();
+  broken_ = false;
+}
+
+void TraceWriter::check_sizes(const StepRecord& record) const {
+  require(record.state.size() == state_dim_, "state is not state_dim");
+  require(record.input.size() == input_dim_, "input is not input_dim");
+  require(record.disturbance.size() == state_dim_, "disturbance is not state_dim");
+  require(record.belief_mean.size() == state_dim_, "belief_mean is not state_dim");
+  require(record.belief_covariance.rows() == state_dim_ &&
+              record.belief_covariance.cols() == state_dim_,
+          "belief_covariance is not state_dim x state_dim");
+  require(record.plan_inputs.rows() == input_dim_ && record.plan_inputs.cols() == horizon_,
+          "plan_inputs are not input_dim x horizon");
+  require(record.plan_states.rows() == state_dim_ && record.plan_states.cols() == horizon_ + 1,
+          "plan_states are not state_dim x (horizon + 1)");
+  const auto horizon = static_cast<std::size_t>(horizon_);
+  require(record.particles.size() == horizon + 1, "particles are not horizon + 1");
+  require(record.budgets.size() == horizon + 1, "budgets are not horizon + 1");
+  require(record.certificates.size() == horizon, "certificates are not horizon");
+  for (const StageParticles& stage : record.particles) {
+    require(stage.locations.rows() == state_dim_, "particles are not of state_dim");
+    require(stage.locations.cols() == stage.weights.size(), "particles without a weight");
+  }
+}
+
+void TraceWriter::append_motion(std::span<const MotionSample> motion) {
+  if (motion.empty()) return;
+  if (!motion_begun_) {
+    motion_begun_ = true;
+    qpos_size_ = motion.front().qpos.size();
+    file_.set_columns("/plant/motion/qpos", qpos_size_);
+  }
+  std::vector<double> times;
+  std::vector<double> positions;
+  for (const MotionSample& sample : motion) {
+    require(sample.qpos.size() == qpos_size_, "motion samples differ in size");
+    times.push_back(sample.time);
+    add(positions, sample.qpos);
+  }
+  file_.append("/plant/motion/qpos", positions);
+  file_.append("/plant/motion/time", times);
+}
+
+void TraceWriter::append_vectors(const StepRecord& record) {
+  file_.append("/plant/state", by_rows(record.state));
+  file_.append("/plant/input", by_rows(record.input));
+  file_.append("/plant/disturbance", by_rows(record.disturbance));
+  file_.append("/belief/mean", by_rows(record.belief_mean));
+  file_.append("/belief/covariance", by_rows(record.belief_covariance));
+  // A stage is a column in memory and a row in the file.
+  file_.append("/plan/inputs", by_rows(record.plan_inputs.transpose()));
+  file_.append("/plan/states", by_rows(record.plan_states.transpose()));
+  const CostParts& cost = record.cost;
+  file_.append("/plan/cost",
+               std::vector<double>{cost.state, cost.input, cost.terminal, cost.box, cost.obstacle});
+  file_.append("/plan/status", std::vector<std::string>{record.solver_status});
+  file_.append("/plan/fallback", std::vector<std::int64_t>{record.fallback ? 1 : 0});
+  file_.append("/plan/iterations", std::vector<std::int64_t>{record.iterations});
+}
+
+void TraceWriter::append_particles(const StepRecord& record) {
+  std::vector<std::int64_t> offsets = {points_};
+  std::vector<double> locations;
+  std::vector<double> weights;
+  for (const StageParticles& stage : record.particles) {
+    add(locations, by_rows(stage.locations.transpose()));
+    add(weights, by_rows(stage.weights));
+    points_ += stage.weights.size();
+    offsets.push_back(points_);
+  }
+  file_.append("/particles/locations", locations);
+  file_.append("/particles/weights", weights);
+  file_.append("/particles/offsets", offsets);
+}
+
+void TraceWriter::append_certificates(const StepRecord& record) {
+  std::vector<double> budgets;
+  for (const StageBudget& stage : record.budgets) {
+    add(budgets, {stage.belief, stage.noise, stage.compression, stage.total});
+  }
+  file_.append("/certificate/budget", budgets);
+  std::vector<std::string> kinds;
+  for (const StageCertificate& stage : record.certificates) kinds.push_back(stage.kind);
+  file_.append("/certificate/kind", kinds);
+  const auto append_all = [&](const char* path, double StageCertificate::*member) {
+    std::vector<double> values;
+    for (const StageCertificate& stage : record.certificates) values.push_back(stage.*member);
+    file_.append(path, values);
+  };
+  append_all("/certificate/value", &StageCertificate::value);
+  append_all("/certificate/particles", &StageCertificate::particles);
+  append_all("/certificate/mixture", &StageCertificate::mixture);
+  append_all("/certificate/thesis", &StageCertificate::thesis);
+  append_all("/certificate/unsafe_mass", &StageCertificate::unsafe_mass);
+}
+
+void TraceWriter::append_timing(const StepTiming& timing) {
+  const auto append_one = [&](const char* path, double value) {
+    file_.append(path, std::vector<double>{value});
+  };
+  append_one("/timing/quantise", timing.quantise);
+  append_one("/timing/propagate", timing.propagate);
+  append_one("/timing/optimise", timing.optimise);
+  append_one("/timing/certify", timing.certify);
+  append_one("/timing/total", timing.total);
+  append_one("/timing/simulate", timing.simulate);
+}
+
+void TraceWriter::finish(const Trace& trace) {
+  if (broken_) throw IoError(path_ + ": an earlier step could not be written");
+  if (trace.final_state.size() != 0 && trace.final_state.size() != state_dim_) {
+    throw std::invalid_argument("final_state is not state_dim");
+  }
+  file_.append("/plant/final_state", by_rows(trace.final_state));
+  file_.end_streaming();
+  file_.set_text("/", "outcome", outcome_name(trace.outcome));
+  file_.set_text("/", "fault", trace.fault);
+  file_.close();
+  synchronise(file_.path(), O_RDWR);
+  if (std::rename(file_.path().c_str(), path_.c_str()) != 0) {
+    throw IoError(path_ + ": cannot give the finished file its name: " + std::strerror(errno));
+  }
+  const auto slash = path_.rfind('/');
+  synchronise(slash == std::string::npos ? "." : path_.substr(0, slash + 1), O_RDONLY);
+}
+
+void write_trace(const std::string& path, const Trace& trace) {
+  TraceWriter writer(path, trace);
+  bool first = true;
+  for (const StepRecord& step : trace.steps) {
+    writer.append(step, first ? std::span(trace.motion) : std::span<const MotionSample>());
+    first = false;
+  }
+  writer.finish(trace);
+}
+
+}  // namespace qsmpc

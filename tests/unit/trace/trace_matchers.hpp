@@ -1,0 +1,74 @@
+// Bit-exact comparison of traces.
+#pragma once
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc::testing {
+
+/// Whether two vectors or matrices have the same shape and the same bits, NaN and -0 included.
+template <class Matrix>
+[[nodiscard]] bool same_bits(const Matrix& a, const Matrix& b) {
+  return a.rows() == b.rows() && a.cols() == b.cols() &&
+         (a.size() == 0 || std::memcmp(a.data(), b.data(),
+                                       sizeof(double) * static_cast<std::size_t>(a.size())) == 0);
+}
+
+[[nodiscard]] inline bool same_bits(double a, double b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
+  ASSERT_EQ(a.particles.size(), b.particles.size());
+  for (std::size_t s = 0; s < a.particles.size(); ++s) {
+    EXPECT_TRUE(same_bits(a.particles[s].locations, b.particles[s].locations));
+    EXPECT_TRUE(same_bits(a.particles[s].weights, b.particles[s].weights));
+  }
+  ASSERT_EQ(a.budgets.size(), b.budgets.size());
+  for (std::size_t s = 0; s < a.budgets.size(); ++s) {
+    EXPECT_TRUE(same_bits(a.budgets[s].belief, b.budgets[s].belief));
+    EXPECT_TRUE(same_bits(a.budgets[s].noise, b.budgets[s].noise));
+    EXPECT_TRUE(same_bits(a.budgets[s].compression, b.budgets[s].compression));
+    EXPECT_TRUE(same_bits(a.budgets[s].total, b.budgets[s].total));
+  }
+  ASSERT_EQ(a.certificates.size(), b.certificates.size());
+  for (std::size_t s = 0; s < a.certificates.size(); ++s) {
+    EXPECT_TRUE(same_bits(a.certificates[s].value, b.certificates[s].value));
+    EXPECT_EQ(a.certificates[s].kind, b.certificates[s].kind);
+    EXPECT_TRUE(same_bits(a.certificates[s].particles, b.certificates[s].particles));
+    EXPECT_TRUE(same_bits(a.certificates[s].mixture, b.certificates[s].mixture));
+    EXPECT_TRUE(same_bits(a.certificates[s].thesis, b.certificates[s].thesis));
+    EXPECT_TRUE(same_bits(a.certificates[s].unsafe_mass, b.certificates[s].unsafe_mass));
+  }
+}
+
+inline void expect_same_step(const StepRecord& a, const StepRecord& b) {
+  EXPECT_TRUE(same_bits(a.time, b.time));
+  EXPECT_TRUE(same_bits(a.state, b.state));
+  EXPECT_TRUE(same_bits(a.input, b.input));
+  EXPECT_TRUE(same_bits(a.disturbance, b.disturbance));
+  EXPECT_TRUE(same_bits(a.belief_mean, b.belief_mean));
+  EXPECT_TRUE(same_bits(a.belief_covariance, b.belief_covariance));
+  EXPECT_TRUE(same_bits(a.plan_inputs, b.plan_inputs));
+  EXPECT_TRUE(same_bits(a.plan_states, b.plan_states));
+  EXPECT_TRUE(same_bits(a.cost.state, b.cost.state));
+  EXPECT_TRUE(same_bits(a.cost.input, b.cost.input));
+  EXPECT_TRUE(same_bits(a.cost.terminal, b.cost.terminal));
+  EXPECT_TRUE(same_bits(a.cost.box, b.cost.box));
+  EXPECT_TRUE(same_bits(a.cost.obstacle, b.cost.obstacle));
+  EXPECT_EQ(a.solver_status, b.solver_status);
+  EXPECT_EQ(a.fallback, b.fallback);
+  EXPECT_EQ(a.iterations, b.iterations);
+  EXPECT_TRUE(same_bits(a.timing.quantise, b.timing.quantise));
+  EXPECT_TRUE(same_bits(a.timing.propagate, b.timing.propagate));
+  EXPECT_TRUE(same_bits(a.timing.optimise, b.timing.optimise));
+  EXPECT_TRUE(same_bits(a.timing.certify, b.timing.certify));
+  EXPECT_TRUE(same_bits(a.timing.total, b.timing.total));
+  EXPECT_TRUE(same_bits(a.timing.simulate, b.timing.simulate));
+  expect_same_stages(a, b);
+}
+
+}  // namespace qsmpc::testing
