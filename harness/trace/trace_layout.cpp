@@ -163,12 +163,19 @@ void add_certificate(std::vector<DatasetSpec>& layout, const Sizes& n) {
                     .columns = {"belief", "noise", "compression", "total"},
                     .comment = "bounds of the W2 distance between the model's law and the "
                                "particles; stage 0 is the present"});
+  layout.push_back({.path = "/certificate/lipschitz",
+                    .row_shape = {n.horizon + 1},
+                    .axes = {"step", "stage"},
+                    .units = {"1"},
+                    .comment = "bound of the closed loop's Lipschitz constant from this stage to "
+                               "the next; 1 at the last"});
   const std::vector<std::pair<std::string, std::string>> probabilities = {
       {"value",
        "the least of the sound upper bounds of the probability that the model's state is "
        "unsafe; the first column is stage 1"},
       {"particles", "c1: worst case over the W2 ball around the particles; sound"},
       {"mixture", "c2: the same before the last noise, which stays Gaussian; sound"},
+      {"surrogate", "c3: affine-Gaussian surrogate, 1 where it does not apply; sound"},
       {"thesis", "the reference algorithm as printed; not sound"},
       {"unsafe_mass", "weight of the particles that are unsafe; no bound"}};
   for (const auto& [name, meaning] : probabilities) {

@@ -207,24 +207,30 @@ void TraceReader::read_particles() {
 
 void TraceReader::read_certificates() {
   const auto budgets = file_.doubles("/certificate/budget");
+  const auto lipschitz = file_.doubles("/certificate/lipschitz");
   const auto values = file_.doubles("/certificate/value");
   const auto kinds = file_.texts("/certificate/kind");
   const auto particles = file_.doubles("/certificate/particles");
   const auto mixtures = file_.doubles("/certificate/mixture");
+  const auto surrogates = file_.doubles("/certificate/surrogate");
   const auto thesis = file_.doubles("/certificate/thesis");
   const auto unsafe = file_.doubles("/certificate/unsafe_mass");
   const auto horizon = static_cast<std::size_t>(horizon_);
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
     for (std::size_t s = 0; s <= horizon; ++s) {
       const double* const budget = row_of(budgets, k * (horizon + 1) + s, 4);
-      trace_.steps[k].budgets.push_back(
-          {.belief = budget[0], .noise = budget[1], .compression = budget[2], .total = budget[3]});
+      trace_.steps[k].budgets.push_back({.belief = budget[0],
+                                         .noise = budget[1],
+                                         .compression = budget[2],
+                                         .total = budget[3],
+                                         .lipschitz = lipschitz[k * (horizon + 1) + s]});
     }
     for (std::size_t i = k * horizon; i < (k + 1) * horizon; ++i) {
       trace_.steps[k].certificates.push_back({.value = values[i],
                                               .kind = kinds[i],
                                               .particles = particles[i],
                                               .mixture = mixtures[i],
+                                              .surrogate = surrogates[i],
                                               .thesis = thesis[i],
                                               .unsafe_mass = unsafe[i]});
     }

@@ -163,6 +163,9 @@ void TraceWriter::append_certificates(const StepRecord& record) {
     add(budgets, {stage.belief, stage.noise, stage.compression, stage.total});
   }
   file_.append("/certificate/budget", budgets);
+  std::vector<double> lipschitz;
+  for (const StageBudget& stage : record.budgets) lipschitz.push_back(stage.lipschitz);
+  file_.append("/certificate/lipschitz", lipschitz);
   std::vector<std::string> kinds;
   for (const StageCertificate& stage : record.certificates) kinds.push_back(stage.kind);
   file_.append("/certificate/kind", kinds);
@@ -174,6 +177,7 @@ void TraceWriter::append_certificates(const StepRecord& record) {
   append_all("/certificate/value", &StageCertificate::value);
   append_all("/certificate/particles", &StageCertificate::particles);
   append_all("/certificate/mixture", &StageCertificate::mixture);
+  append_all("/certificate/surrogate", &StageCertificate::surrogate);
   append_all("/certificate/thesis", &StageCertificate::thesis);
   append_all("/certificate/unsafe_mass", &StageCertificate::unsafe_mass);
 }

@@ -33,6 +33,7 @@ inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
     EXPECT_TRUE(same_bits(a.budgets[s].noise, b.budgets[s].noise));
     EXPECT_TRUE(same_bits(a.budgets[s].compression, b.budgets[s].compression));
     EXPECT_TRUE(same_bits(a.budgets[s].total, b.budgets[s].total));
+    EXPECT_TRUE(same_bits(a.budgets[s].lipschitz, b.budgets[s].lipschitz));
   }
   ASSERT_EQ(a.certificates.size(), b.certificates.size());
   for (std::size_t s = 0; s < a.certificates.size(); ++s) {
@@ -40,6 +41,7 @@ inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
     EXPECT_EQ(a.certificates[s].kind, b.certificates[s].kind);
     EXPECT_TRUE(same_bits(a.certificates[s].particles, b.certificates[s].particles));
     EXPECT_TRUE(same_bits(a.certificates[s].mixture, b.certificates[s].mixture));
+    EXPECT_TRUE(same_bits(a.certificates[s].surrogate, b.certificates[s].surrogate));
     EXPECT_TRUE(same_bits(a.certificates[s].thesis, b.certificates[s].thesis));
     EXPECT_TRUE(same_bits(a.certificates[s].unsafe_mass, b.certificates[s].unsafe_mass));
   }
