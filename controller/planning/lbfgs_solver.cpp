@@ -56,6 +56,7 @@ struct Problem {
   nlopt_opt handle = nullptr;
   Eigen::Index rows = 0;
   Eigen::Index cols = 0;
+  int max_evaluations = 1;
   Eigen::MatrixXd gradient{};
   SolverResult best{};
   bool trouble = false;
@@ -69,6 +70,10 @@ double stop(Problem& problem) {
 
 double evaluate(unsigned /*n*/, const double* theta_data, double* gradient_data, void* data) {
   Problem& problem = *static_cast<Problem*>(data);
+  // NLopt may ask once more after its limit, and after a forced stop.
+  if (problem.trouble || problem.thrown || problem.best.evaluations >= problem.max_evaluations) {
+    return stop(problem);
+  }
   try {
     const Eigen::Map<const Eigen::MatrixXd> theta(theta_data, problem.rows, problem.cols);
     const Eigen::MatrixXd inputs = problem.sigmoid.inputs(theta);
@@ -95,7 +100,9 @@ double evaluate(unsigned /*n*/, const double* theta_data, double* gradient_data,
 
 SolverStatus status_of(nlopt_result result, bool trouble) {
   if (trouble) return SolverStatus::kNumericalTrouble;
-  if (result == NLOPT_MAXEVAL_REACHED) return SolverStatus::kIterationLimit;
+  if (result == NLOPT_MAXEVAL_REACHED || result == NLOPT_FORCED_STOP) {
+    return SolverStatus::kIterationLimit;
+  }
   return result > 0 ? SolverStatus::kConverged : SolverStatus::kStalled;
 }
 
@@ -107,6 +114,7 @@ SolverResult LbfgsSolver::minimise(const CostFunction& cost, const Eigen::Matrix
   Problem problem{.cost = cost, .sigmoid = sigmoid};
   problem.rows = start.rows();
   problem.cols = start.cols();
+  problem.max_evaluations = options.max_evaluations;
   problem.gradient.resize(start.rows(), start.cols());
   problem.best.inputs = start;
   problem.best.value = std::numeric_limits<double>::infinity();
