@@ -1,0 +1,164 @@
+#include "controller/prediction/propagator.hpp"
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "controller/measure/compression.hpp"
+#include "tests/unit/controller/random_measures.hpp"
+
+namespace qsmpc::testing {
+namespace {
+
+// Sums of some thousand terms of the order of one.
+constexpr double kRounding = 1e-12;
+
+PropagatorSettings random_settings(Generator& generator, int noise_points, int compressed_points) {
+  return {.noise = {.mean = Eigen::VectorXd::Zero(3), .covariance = random_spd(generator, 3, 0.1)},
+          .noise_points = noise_points,
+          .compressed_points = compressed_points};
+}
+
+/// All sums of a stepped point and a noise point, point by point.
+DiscreteMeasure all_sums(const DiscreteMeasure& stepped, const DiscreteMeasure& noise) {
+  DiscreteMeasure sums{.locations = Points(stepped.dim(), stepped.size() * noise.size()),
+                       .weights = Eigen::VectorXd(stepped.size() * noise.size())};
+  Eigen::Index at = 0;
+  for (Eigen::Index i = 0; i < stepped.size(); ++i) {
+    for (Eigen::Index j = 0; j < noise.size(); ++j, ++at) {
+      sums.locations.col(at) = stepped.locations.col(i) + noise.locations.col(j);
+      sums.weights[at] = stepped.weights[i] * noise.weights[j];
+    }
+  }
+  return sums;
+}
+
+TEST(CompressedPropagator, map_gives_the_cluster_means_of_all_sums) {
+  Generator generator(41);
+  for (const int kept : {1, 7, 40}) {
+    const PropagatorSettings settings = random_settings(generator, 12, kept);
+    const auto propagator = make_propagator("compressed", settings);
+    const DiscreteMeasure stepped = random_measure(generator, 3, 25);
+    const StageMap map = propagator->stage_map(stepped.locations, stepped.weights);
+
+    const GaussianQuantisation noise = quantise(settings.noise, settings.noise_points);
+    const Compression expected = compress(all_sums(stepped, noise.measure), kept, 0);
+    Points out = Points::Constant(3, map.clusters(), std::nan(""));
+    apply_stage_map(map, stepped.locations, out);
+    ASSERT_EQ(map.clusters(), expected.measure.size());
+    EXPECT_LE((out - expected.measure.locations).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_LE((map.weights - expected.measure.weights).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_NEAR(map.compression_w2, expected.w2, kRounding);
+    EXPECT_EQ(propagator->noise_w2(), noise.w2);
+  }
+}
+
+TEST(CompressedPropagator, map_stays_exact_when_the_points_move_and_the_assignments_do_not) {
+  Generator generator(42);
+  const PropagatorSettings settings = random_settings(generator, 10, 8);
+  const DiscreteMeasure stepped = random_measure(generator, 3, 15);
+  const StageMap map =
+      make_propagator("compressed", settings)->stage_map(stepped.locations, stepped.weights);
+  const GaussianQuantisation noise = quantise(settings.noise, settings.noise_points);
+  const Compression frozen = compress(all_sums(stepped, noise.measure), 8, 0);
+
+  const DiscreteMeasure shifted{
+      .locations = stepped.locations + Points(random_matrix(generator, 3, 15)),
+      .weights = stepped.weights};
+  const DiscreteMeasure sums = all_sums(shifted, noise.measure);
+  Points means = Points::Zero(3, map.clusters());
+  for (Eigen::Index i = 0; i < sums.size(); ++i) {
+    const int n = frozen.assignment[i];
+    means.col(n) += sums.weights[i] / frozen.measure.weights[n] * sums.locations.col(i);
+  }
+  Points out(3, map.clusters());
+  apply_stage_map(map, shifted.locations, out);
+  EXPECT_LE((out - means).cwiseAbs().maxCoeff(), kRounding);
+}
+
+TEST(Propagator, keeps_mass_and_mean) {
+  Generator generator(43);
+  for (const PropagatorEntry& entry : propagators()) {
+    const auto propagator = make_propagator(entry.name, random_settings(generator, 30, 20));
+    const DiscreteMeasure stepped = random_measure(generator, 3, 50);
+    const StageMap map = propagator->stage_map(stepped.locations, stepped.weights);
+    DiscreteMeasure next{.locations = Points(3, map.clusters()), .weights = map.weights};
+    apply_stage_map(map, stepped.locations, next.locations);
+    EXPECT_NEAR(map.weights.sum(), 1.0, kRounding) << entry.name;
+    EXPECT_LE((mean_of(next) - mean_of(stepped)).norm(), kRounding) << entry.name;
+  }
+}
+
+TEST(Propagator, pullback_is_the_transpose_and_overwrites) {
+  Generator generator(44);
+  for (const PropagatorEntry& entry : propagators()) {
+    const auto propagator = make_propagator(entry.name, random_settings(generator, 20, 15));
+    const DiscreteMeasure stepped = random_measure(generator, 3, 30);
+    const StageMap map = propagator->stage_map(stepped.locations, stepped.weights);
+    const Points direction = random_matrix(generator, 3, 30);
+    const Points adjoint = random_matrix(generator, 3, map.clusters());
+    Points there(3, map.clusters());
+    apply_stage_map(map, direction, there);
+    there -= map.offset;  // the linear part
+    Points back = Points::Constant(3, 30, std::nan(""));
+    pullback_stage_map(map, adjoint, back);
+    EXPECT_NEAR(there.cwiseProduct(adjoint).sum(), direction.cwiseProduct(back).sum(), kRounding)
+        << entry.name;
+  }
+}
+
+TEST(NoiseFreePropagator, leaves_the_points_alone_and_counts_the_noise_as_error) {
+  Generator generator(45);
+  const PropagatorSettings settings = random_settings(generator, 20, 15);
+  const auto propagator = make_propagator("noise_free", settings);
+  const DiscreteMeasure stepped = random_measure(generator, 3, 30);
+  const StageMap map = propagator->stage_map(stepped.locations, stepped.weights);
+  Points out(3, 30);
+  apply_stage_map(map, stepped.locations, out);
+  EXPECT_EQ(out, stepped.locations);
+  EXPECT_EQ(map.weights, stepped.weights);
+  EXPECT_EQ(map.compression_w2, 0.0);
+  EXPECT_DOUBLE_EQ(propagator->noise_w2(), std::sqrt(settings.noise.covariance.trace()));
+}
+
+TEST(CompressedPropagator, points_that_are_not_finite_cost_infinitely_much_and_do_not_throw) {
+  Generator generator(46);
+  const auto propagator = make_propagator("compressed", random_settings(generator, 20, 15));
+  DiscreteMeasure stepped = random_measure(generator, 3, 30);
+  stepped.locations(1, 7) = std::nan("");
+  const StageMap map = propagator->stage_map(stepped.locations, stepped.weights);
+  EXPECT_TRUE(std::isinf(map.compression_w2));
+  Points out(3, map.clusters());
+  apply_stage_map(map, stepped.locations, out);
+  EXPECT_TRUE(out.row(1).hasNaN());
+}
+
+TEST(MakePropagator, refuses_unknown_names_and_senseless_settings) {
+  Generator generator(47);
+  PropagatorSettings settings = random_settings(generator, 20, 15);
+  try {
+    (void)make_propagator("telepathy", settings);
+    FAIL() << "an unknown propagator was made";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("telepathy"));
+    for (const PropagatorEntry& entry : propagators()) {
+      EXPECT_THAT(error.what(), ::testing::HasSubstr(entry.name));
+    }
+  }
+  settings.compressed_points = 0;
+  EXPECT_THROW((void)make_propagator("compressed", settings), std::invalid_argument);
+  settings = random_settings(generator, 0, 15);
+  EXPECT_THROW((void)make_propagator("compressed", settings), std::invalid_argument);
+  settings = random_settings(generator, 20, 15);
+  settings.noise.mean[0] = 0.1;
+  EXPECT_THROW((void)make_propagator("compressed", settings), std::invalid_argument);
+  settings = random_settings(generator, 20, 15);
+  settings.noise.covariance(0, 0) = -1.0;
+  EXPECT_THROW((void)make_propagator("noise_free", settings), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace qsmpc::testing
