@@ -137,15 +137,15 @@ const NormalQuantiser& normal_quantiser(int count) {
 }
 
 double approximate_distortion(int count) {
-  static const std::array<double, kExactDistortions + 1> kTable = [] {
-    std::array<double, kExactDistortions + 1> table{};
-    table[0] = kInfinity;
-    for (int n = 1; n <= kExactDistortions; ++n) table[n] = make_quantiser(n).distortion;
-    return table;
+  static const std::array<double, kExactDistortions + 1> table = [] {
+    std::array<double, kExactDistortions + 1> exact{};
+    exact[0] = kInfinity;
+    for (int n = 1; n <= kExactDistortions; ++n) exact[n] = make_quantiser(n).distortion;
+    return exact;
   }();
-  if (count <= kExactDistortions) return kTable.at(count);
+  if (count <= kExactDistortions) return table.at(count);
   const double ratio = static_cast<double>(kExactDistortions) / count;
-  return kTable.back() * ratio * ratio;
+  return table.back() * ratio * ratio;
 }
 
 }  // namespace qsmpc

@@ -90,7 +90,7 @@ HorizonCost::HorizonCost(HorizonCostTerms terms, const Prediction& prediction, c
 }
 
 double HorizonCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                             Eigen::Ref<Eigen::MatrixXd> gradient) {
+                             Eigen::MatrixXd& gradient) {
   forward(inputs);
   backward(gradient);
   return parts_.total();
@@ -126,7 +126,7 @@ void HorizonCost::forward(const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   }
 }
 
-void HorizonCost::backward(Eigen::Ref<Eigen::MatrixXd> gradient) {
+void HorizonCost::backward(Eigen::MatrixXd& gradient) {
   gradient.setZero();
   nominal_adjoint_.setZero();
   stages_[0].adjoint.setZero();
@@ -145,7 +145,7 @@ void HorizonCost::backward(Eigen::Ref<Eigen::MatrixXd> gradient) {
   }
 }
 
-void HorizonCost::backward_policy(Eigen::Index k, Eigen::Ref<Eigen::MatrixXd> gradient) {
+void HorizonCost::backward_policy(Eigen::Index k, Eigen::MatrixXd& gradient) {
   Stage& stage = stages_[k];
   const Eigen::MatrixXd& gain = policy_.gains[k];
   // Through the nominal step: x̄_{k+1} = f(x̄_k, v_k).

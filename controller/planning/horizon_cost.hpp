@@ -69,10 +69,9 @@ class HorizonCost {
   HorizonCost(HorizonCostTerms terms, const Prediction& prediction, const Policy& policy);
 
   /// Expected cost under the nominal inputs `inputs` (input_dim x horizon) and its gradient with
-  /// respect to them (overwritten, same shape). Where an input saturates, the derivative of the
-  /// clamp is zero.
-  double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                  Eigen::Ref<Eigen::MatrixXd> gradient);
+  /// respect to them (overwritten; same shape, sized by the caller). Where an input saturates, the
+  /// derivative of the clamp is zero.
+  double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::MatrixXd& gradient);
 
   /// The parts of the value last computed.
   [[nodiscard]] const CostParts& parts() const { return parts_; }
@@ -91,8 +90,8 @@ class HorizonCost {
   };
 
   void forward(const Eigen::Ref<const Eigen::MatrixXd>& inputs);
-  void backward(Eigen::Ref<Eigen::MatrixXd> gradient);
-  void backward_policy(Eigen::Index k, Eigen::Ref<Eigen::MatrixXd> gradient);
+  void backward(Eigen::MatrixXd& gradient);
+  void backward_policy(Eigen::Index k, Eigen::MatrixXd& gradient);
 
   HorizonCostTerms terms_;
   const Prediction& prediction_;

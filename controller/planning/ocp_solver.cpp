@@ -21,10 +21,10 @@ const char* solver_status_name(SolverStatus status) {
 }
 
 const std::vector<SolverEntry>& solvers() {
-  static const std::vector<SolverEntry> kTable = {
+  static const std::vector<SolverEntry> table = {
       {"lbfgs", "NLopt's limited-memory BFGS; inputs bounded by a sigmoid (Eq. 5-3)"},
   };
-  return kTable;
+  return table;
 }
 
 std::unique_ptr<const OcpSolver> make_solver(std::string_view name) {

@@ -150,11 +150,11 @@ void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& step
 }
 
 const std::vector<PropagatorEntry>& propagators() {
-  static const std::vector<PropagatorEntry> kTable = {
+  static const std::vector<PropagatorEntry> table = {
       {kCompressed, "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)"},
       {kNoiseFree, "the belief's points only; the noise counts as error of the certificate"},
   };
-  return kTable;
+  return table;
 }
 
 std::unique_ptr<const Propagator> make_propagator(std::string_view name,

@@ -16,10 +16,10 @@ struct Registration {
 };
 
 const std::vector<Registration>& registrations() {
-  static const std::vector<Registration> kTable = {
+  static const std::vector<Registration> table = {
       {dubins_entry(), make_dubins},
   };
-  return kTable;
+  return table;
 }
 
 std::string joined_names(const ParameterMap& parameters) {
@@ -37,12 +37,12 @@ int SystemDescription::state_index(std::string_view wanted) const {
 }
 
 const std::vector<SystemEntry>& systems() {
-  static const std::vector<SystemEntry> kEntries = [] {
-    std::vector<SystemEntry> entries;
-    for (const Registration& registration : registrations()) entries.push_back(registration.entry);
-    return entries;
+  static const std::vector<SystemEntry> entries = [] {
+    std::vector<SystemEntry> all;
+    for (const Registration& registration : registrations()) all.push_back(registration.entry);
+    return all;
   }();
-  return kEntries;
+  return entries;
 }
 
 std::unique_ptr<const Dynamics> make_dynamics(std::string_view name, const ParameterMap& parameters,
