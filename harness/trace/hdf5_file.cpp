@@ -65,19 +65,32 @@ struct Hdf5File::Impl {
   std::string path;
   bool writing = false;
   bool left_open = false;
+  mutable bool failed = false;  ///< a write failed
   Handle file;
   std::map<std::string, Handle, std::less<>> datasets;  ///< opened so far
 
   ~Impl() {
     const Lock lock;
-    datasets.clear();
-    file.reset();
+    // Closing a file whose disk is full makes HDF5 write again what it could not, fail again and
+    // free half of what it holds; such a file is left to the end of the process.
+    for (auto& [name, dataset] : datasets) let_go(dataset);
+    let_go(file);
+  }
+  void let_go(Handle& handle) const {
+    if (failed) {
+      handle.release();
+    } else {
+      handle.reset();
+    }
   }
 
   [[noreturn]] void fail(const std::string& object) const {
     const std::string words = hdf5::error_words();
     H5Eclear2(H5E_DEFAULT);
-    if (writing) throw IoError(path + ": cannot write " + object + ": " + words);
+    if (writing) {
+      failed = true;
+      throw IoError(path + ": cannot write " + object + ": " + words);
+    }
     throw InputError(
         {.file = path, .key = object, .found = words, .expected = "a trace that is not damaged"});
   }

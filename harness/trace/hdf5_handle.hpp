@@ -35,6 +35,8 @@ class Handle {
 
   [[nodiscard]] hid_t get() const { return id_; }
   [[nodiscard]] bool ok() const { return id_ >= 0; }
+  /// Gives the identifier up without closing it.
+  void release() { id_ = -1; }
   herr_t reset() { return ok() ? close_(std::exchange(id_, -1)) : 0; }
 
  private:
