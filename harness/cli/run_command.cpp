@@ -89,15 +89,16 @@ int run(const RunArguments& arguments) {
   if (trace.outcome == Outcome::kFault) {
     std::cerr << "qsmpc: the plant broke: " << printable(trace.fault, 1000) << '\n';
   }
-  if (arguments.video) {
+  // An episode that ended before it began, e.g. because its plant's file is broken, shows nothing.
+  const bool with_video = arguments.video && !trace.steps.empty();
+  if (with_video) {
     make_video(trace, folder, video_options(scenario), arguments.quiet);
-    write_summary(trace, folder, /*with_video=*/true);
+    write_summary(trace, folder, with_video);
   }
-  write_page(trace, folder, arguments.video);
+  write_page(trace, folder, with_video);
 
-  print_result(arguments.json
-                   ? summary_json(trace, {.video_file = arguments.video ? kVideoFile : ""})
-                   : summary_table(trace, folder, arguments.video));
+  print_result(arguments.json ? summary_json(trace, {.video_file = with_video ? kVideoFile : ""})
+                              : summary_table(trace, folder, with_video));
   if (trace.outcome == Outcome::kInterrupted) return kInterruptedExit;
   return asked_to_tell(arguments.fail_on, summarise(trace)) ? kToldFailure : kDone;
 }

@@ -76,14 +76,18 @@ void EpisodeTrack::add_poses(const Trace& trace, const SystemDescription& system
   for (const StepRecord& step : trace.steps) {
     add_instant(step.time, planar_pose(system, step.state));
   }
-  add_instant(duration_, planar_pose(system, trace.final_state));
+  // A killed episode has no last state: its vehicle stands still for the last period.
+  const bool end_is_known = trace.final_state.size() > 0;
+  add_instant(duration_,
+              planar_pose(system, end_is_known ? trace.final_state : trace.steps.back().state));
 
   // Within a period: from the state at its beginning to the one at its end before the disturbance.
   const double ease_share = std::min(kEaseTime / trace.scenario.time_step, 0.5);
   drawn_.push_back(instants_.front());
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
     PlanarPose end = instants_[k + 1].pose;
-    if (trace.steps[k].disturbance.size() == trace.steps[k].state.size()) {
+    const bool disturbed = end_is_known || k + 1 < trace.steps.size();
+    if (disturbed && trace.steps[k].disturbance.size() == trace.steps[k].state.size()) {
       const PlanarPose jump = planar_pose(system, trace.steps[k].disturbance);
       end = {end.x - jump.x, end.y - jump.y, end.heading - jump.heading};
     }

@@ -102,6 +102,14 @@ TEST(episode_frames, camera_follows_smoothly_without_lag) {
   }
 }
 
+TEST(episode_frames, a_killed_episode_is_drawn_as_far_as_it_came) {
+  Trace trace = straight_trace();
+  trace.final_state.resize(0);
+  const EpisodeFrames frames(trace);
+  const Eigen::VectorXd& last = trace.steps.back().state;
+  EXPECT_DOUBLE_EQ(frames.at(frames.duration()).pose.x, last[0]);
+}
+
 TEST(episode_frames, qpos_comes_from_the_recorded_motion) {
   Trace trace = straight_trace();
   trace.motion = {{0.0, {0.0, 0.0}},   {0.05, {1.0, 10.0}},
