@@ -1,0 +1,202 @@
+#include "harness/report/episode_charts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "controller/certification/certificate.hpp"
+#include "controller/planning/safe_set.hpp"
+#include "harness/report/page_style.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kMillisecondsPerSecond = 1e3;
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  // interrupts a line
+constexpr const char* kTimeLabel = "time (s)";
+
+std::vector<double> times_of(const Trace& trace) {
+  std::vector<double> times;
+  times.reserve(trace.steps.size());
+  for (const StepRecord& step : trace.steps) times.push_back(step.time);
+  return times;
+}
+
+/// A line through `value` of each step.
+template <class Value>
+Series series_of(const Trace& trace, const std::string& name, int colour, const Value& value) {
+  Series series{.name = name, .colour = colour, .x = times_of(trace)};
+  series.y.reserve(trace.steps.size());
+  for (const StepRecord& step : trace.steps) series.y.push_back(value(step));
+  return series;
+}
+
+Chart input_chart(const Trace& trace, const SystemDescription& system, Eigen::Index input) {
+  const Coordinate& coordinate = system.inputs[static_cast<std::size_t>(input)];
+  const Scenario::Controller& controller = trace.scenario.controller;
+  Series series = series_of(trace, "applied", kBlue, [input](const StepRecord& step) {
+    return input < step.input.size() ? step.input[input] : kMissing;
+  });
+  series.mark = Mark::kSteps;
+  if (!series.x.empty()) {  // held to the end of the last period
+    series.x.push_back(series.x.back() + trace.scenario.time_step);
+    series.y.push_back(series.y.back());
+  }
+  Chart chart{.title = "Input: " + coordinate.name,
+              .x_label = kTimeLabel,
+              .y_label = coordinate.name + " (" + coordinate.unit + ")",
+              .series = {std::move(series)}};
+  if (input < controller.input_lower.size() && input < controller.input_upper.size()) {
+    chart.rules = {{"bounds", controller.input_lower[input]}, {"", controller.input_upper[input]}};
+  }
+  return chart;
+}
+
+Chart certificate_chart(const Trace& trace) {
+  const auto next_step = [](const StepRecord& step) {
+    return step.certificates.empty() ? kMissing : step.certificates.front().value;
+  };
+  const auto plan = [](const StepRecord& step) {
+    return step.certificates.empty() ? kMissing : horizon_bound(step.certificates);
+  };
+  const auto thesis = [](const StepRecord& step) {
+    double largest = kMissing;
+    for (const StageCertificate& stage : step.certificates) {
+      largest = std::fmax(largest, stage.thesis);
+    }
+    return largest;
+  };
+  Chart chart{
+      .title = "Certificates: bounds of the probability of being unsafe",
+      .note = "Values below 10⁻¹² are drawn at the foot.",
+      .x_label = kTimeLabel,
+      .y_label = "probability (–)",
+      .y_scale = Scale::kLog,
+      .y_includes = {1.0},
+      .series = {series_of(trace, "next step", kBlue, next_step),
+                 series_of(trace, "plan: sum over its stages", kVermilion, plan),
+                 series_of(trace, "published method, worst stage: not a bound", kPurple, thesis)}};
+  chart.series.back().dashed = true;
+  return chart;
+}
+
+Chart clearance_chart(const Trace& trace, const SystemDescription& system) {
+  const SafeSet& safe_set = trace.scenario.safe_set;
+  const auto of = [&safe_set](const Eigen::VectorXd& state) {
+    return state.size() == safe_set.dim() ? clearance(state, safe_set) : kMissing;
+  };
+  Series series = series_of(trace, "true state", kBlue,
+                            [&of](const StepRecord& step) { return of(step.state); });
+  if (!trace.steps.empty() && trace.final_state.size() > 0) {
+    series.x.push_back(series.x.back() + trace.scenario.time_step);
+    series.y.push_back(of(trace.final_state));
+  }
+  return {.title = "Clearance: distance to the unsafe set",
+          .x_label = kTimeLabel,
+          .y_label = "clearance (" + clearance_unit(safe_set, system) + ")",
+          .series = {std::move(series)},
+          .rules = {{"edge of the unsafe set", 0.0}}};
+}
+
+Chart budget_chart(const Trace& trace) {
+  const auto last = [](auto part) {
+    return [part](const StepRecord& step) {
+      return step.budgets.empty() ? kMissing : step.budgets.back().*part;
+    };
+  };
+  Chart chart{
+      .title =
+          fmt::format("Error budget at the last stage ({})", trace.scenario.controller.horizon),
+      .note =
+          "Bound of the 2-Wasserstein distance between the model's law and its particles; what "
+          "each source alone would give, and their total.",
+      .x_label = kTimeLabel,
+      .y_label = "W₂ distance (state units)",
+      .y_includes = {0.0},
+      .series = {series_of(trace, "total", kBlue, last(&StageBudget::total)),
+                 series_of(trace, "compression", kOrange, last(&StageBudget::compression)),
+                 series_of(trace, "noise", kGreen, last(&StageBudget::noise)),
+                 series_of(trace, "belief", kPurple, last(&StageBudget::belief))}};
+  for (std::size_t i = 1; i < chart.series.size(); ++i) chart.series[i].dashed = i % 2 == 0;
+  return chart;
+}
+
+Chart cost_chart(const Trace& trace) {
+  const auto part = [](auto member) {
+    return [member](const StepRecord& step) { return step.cost.*member; };
+  };
+  Chart chart{
+      .title = "Expected cost of the plan, by part",
+      .note = "Parts below 0.001 are drawn at the foot.",
+      .x_label = kTimeLabel,
+      .y_label = "cost (–)",
+      .y_scale = Scale::kLog,
+      .least_shown = 1e-3,
+      .series = {series_of(trace, "state", kBlue, part(&CostParts::state)),
+                 series_of(trace, "terminal", kOrange, part(&CostParts::terminal)),
+                 series_of(trace, "input", kGreen, part(&CostParts::input)),
+                 series_of(trace, "obstacle penalty", kVermilion, part(&CostParts::obstacle)),
+                 series_of(trace, "bounds penalty", kPurple, part(&CostParts::box))}};
+  chart.series[3].dashed = true;
+  chart.series[4].dashed = true;
+  return chart;
+}
+
+Chart timing_chart(const Trace& trace) {
+  const auto part = [](auto member) {
+    return [member](const StepRecord& step) { return step.timing.*member; };
+  };
+  Series fallbacks{.name = "last plan kept instead", .colour = kVermilion, .mark = Mark::kPoints};
+  for (const StepRecord& step : trace.steps) {
+    if (!step.fallback) continue;
+    fallbacks.x.push_back(step.time);
+    fallbacks.y.push_back(step.timing.total);
+  }
+  Chart chart{.title = "Solve time against the control period",
+              .x_label = kTimeLabel,
+              .y_label = "wall clock (ms)",
+              .y_includes = {0.0},
+              .series = {series_of(trace, "whole step", kBlue, part(&StepTiming::total)),
+                         series_of(trace, "optimise", kOrange, part(&StepTiming::optimise)),
+                         series_of(trace, "certify", kGreen, part(&StepTiming::certify)),
+                         series_of(trace, "predict", kPurple, part(&StepTiming::propagate))},
+              .rules = {{"control period", kMillisecondsPerSecond * trace.scenario.time_step}}};
+  chart.series[2].dashed = true;
+  chart.series[3].dashed = true;
+  if (!fallbacks.x.empty()) chart.series.push_back(std::move(fallbacks));
+  return chart;
+}
+
+}  // namespace
+
+std::vector<Chart> episode_charts(const Trace& trace, const SystemDescription& system) {
+  std::vector<Chart> charts;
+  charts.push_back(certificate_chart(trace));
+  charts.push_back(clearance_chart(trace, system));
+  for (Eigen::Index input = 0; input < std::ssize(system.inputs); ++input) {
+    charts.push_back(input_chart(trace, system, input));
+  }
+  charts.push_back(timing_chart(trace));
+  charts.push_back(cost_chart(trace));
+  charts.push_back(budget_chart(trace));
+  return charts;
+}
+
+std::string clearance_unit(const SafeSet& safe_set, const SystemDescription& system) {
+  std::set<std::string> units;
+  const auto add = [&](const Box& box) {
+    for (Eigen::Index i = 0; i < std::min(box.lower.size(), std::ssize(system.states)); ++i) {
+      if (!std::isfinite(box.lower[i]) && !std::isfinite(box.upper[i])) continue;
+      units.insert(system.states[static_cast<std::size_t>(i)].unit);
+    }
+  };
+  add(safe_set.bounds);
+  for (const Box& obstacle : safe_set.obstacles) add(obstacle);
+  return units.size() == 1 ? *units.begin() : "state units";
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,22 @@
+// What happened along an episode, as charts over time.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/report/svg_chart.hpp"
+#include "harness/trace/trace.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// Certificates, clearance, each input against its bounds, solve time, parts of the cost, error
+/// budget. Of a trace without steps, they have no points.
+[[nodiscard]] std::vector<Chart> episode_charts(const Trace& trace,
+                                                const SystemDescription& system);
+
+/// The unit of distances to the unsafe set: that of the states which the safe set restricts, or
+/// "state units" where they differ.
+[[nodiscard]] std::string clearance_unit(const SafeSet& safe_set, const SystemDescription& system);
+
+}  // namespace qsmpc

@@ -1,0 +1,23 @@
+// The report of one episode: one HTML page that needs nothing but itself and the video beside it.
+//
+//   write_file(folder + "/report.html", episode_page(trace, {.video_file = "episode.mp4"}));
+//
+// The page loads nothing from a network and runs no script, and its policy forbids both; texts of
+// the scenario are escaped.
+#pragma once
+
+#include <string>
+
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc {
+
+struct EpisodePageOptions {
+  std::string video_file{};  ///< beside the page; empty: none
+};
+
+/// The page as UTF-8 text. A trace without steps gives a page that says why. Throws
+/// std::invalid_argument if the trace's system is unknown.
+[[nodiscard]] std::string episode_page(const Trace& trace, const EpisodePageOptions& options);
+
+}  // namespace qsmpc

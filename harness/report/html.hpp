@@ -1,0 +1,17 @@
+// Text made safe for an HTML page.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace qsmpc {
+
+/// `text` as character data or as a quoted attribute's value: markup characters become references;
+/// bytes that are no UTF-8 and control characters other than tab and line feed become U+FFFD.
+[[nodiscard]] std::string escape_html(std::string_view text);
+
+/// A relative URL of the file called `name` beside the page. Everything but letters, digits,
+/// '-', '_', '.' and '~' is percent-encoded, so that it can name nothing else.
+[[nodiscard]] std::string url_beside(std::string_view name);
+
+}  // namespace qsmpc

@@ -1,0 +1,238 @@
+#include "harness/report/key_figures.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "harness/report/episode_charts.hpp"
+#include "harness/report/html.hpp"
+#include "harness/report/numbers.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kNone = "–";
+constexpr double kMillisecondsPerSecond = 1e3;
+
+enum class Verdict { kPlain, kGood, kWarn, kBad };
+
+const char* verdict_class(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::kGood:
+      return " good";
+    case Verdict::kWarn:
+      return " warn";
+    case Verdict::kBad:
+      return " bad";
+    case Verdict::kPlain:
+      break;
+  }
+  return "";
+}
+
+struct Tile {
+  std::string name;
+  std::string value;
+  std::string hint{};
+  Verdict verdict = Verdict::kPlain;
+};
+
+std::string tile_html(const Tile& tile) {
+  std::string html =
+      fmt::format("<div class=\"tile{}\"><dt>{}</dt><dd class=\"value\">{}</dd>",
+                  verdict_class(tile.verdict), escape_html(tile.name), escape_html(tile.value));
+  if (!tile.hint.empty()) html += "<dd class=\"hint\">" + escape_html(tile.hint) + "</dd>";
+  return html + "</div>\n";
+}
+
+bool has_true_state(const Trace& trace) {
+  return !trace.steps.empty() || trace.final_state.size() > 0;
+}
+
+std::string seconds(double value) { return format_short(value, 4) + " s"; }
+
+Tile time_tile(const Summary& summary) {
+  const bool reached = summary.time_to_target.has_value();
+  return {.name = "Time to target",
+          .value = reached ? seconds(*summary.time_to_target) : "not reached",
+          .hint = fmt::format("{} control steps", summary.steps),
+          .verdict = reached ? Verdict::kGood : Verdict::kWarn};
+}
+
+Tile unsafe_tile(const Trace& trace, const Summary& summary) {
+  constexpr const char* kHint = "true state at the control instants";
+  if (!has_true_state(trace)) {
+    return {.name = "Entered the unsafe set", .value = kNone, .hint = "no state is known"};
+  }
+  return {.name = "Entered the unsafe set",
+          .value = summary.collision ? "yes" : "no",
+          .hint = kHint,
+          .verdict = summary.collision ? Verdict::kBad : Verdict::kGood};
+}
+
+Tile clearance_tile(const Trace& trace, const Summary& summary, const SystemDescription& system) {
+  Tile tile{.name = "Minimum clearance",
+            .value = kNone,
+            .hint = "distance to the unsafe set; negative inside"};
+  if (!has_true_state(trace)) return tile;
+  tile.value =
+      format_number(summary.min_clearance) + " " + clearance_unit(trace.scenario.safe_set, system);
+  if (summary.collision) tile.verdict = Verdict::kBad;
+  return tile;
+}
+
+/// A tile of an upper bound of a probability.
+Tile bound_tile(const Summary& summary, const std::string& name, double bound,
+                const std::string& hint) {
+  Tile tile{.name = name, .value = kNone, .hint = hint};
+  if (summary.steps == 0) return tile;
+  tile.value = format_bound(bound);
+  if (!(bound < 1.0)) {
+    tile.hint += "; 1 or more says nothing";
+    tile.verdict = Verdict::kWarn;
+  }
+  return tile;
+}
+
+Tile thesis_tile(const Summary& summary) {
+  return {.name = "Published method, largest",
+          .value = summary.steps == 0 ? kNone : format_number(summary.thesis_max),
+          .hint = "for comparison: not a bound"};
+}
+
+Tile solve_tile(const Trace& trace, const Summary& summary) {
+  const double period = kMillisecondsPerSecond * trace.scenario.time_step;
+  Tile tile{.name = "Solve time, median / 99 %",
+            .value = kNone,
+            .hint = fmt::format("control period {} ms", format_short(period, 4))};
+  if (summary.steps == 0) return tile;
+  tile.value = fmt::format("{} / {} ms", format_number(summary.ocp_ms.median),
+                           format_number(summary.ocp_ms.p99));
+  tile.hint = fmt::format("at most {} ms; ", format_number(summary.ocp_ms.max)) + tile.hint;
+  return tile;
+}
+
+Tile deadline_tile(const Summary& summary) {
+  if (summary.steps == 0) return {.name = "Deadline misses", .value = kNone};
+  return {.name = "Deadline misses",
+          .value = fmt::format("{} of {}", summary.deadline_misses, summary.steps),
+          .hint = "steps that took longer than the control period",
+          .verdict = summary.deadline_misses > 0 ? Verdict::kWarn : Verdict::kGood};
+}
+
+Tile fallback_tile(const Summary& summary) {
+  if (summary.steps == 0) return {.name = "Fallbacks", .value = kNone};
+  return {.name = "Fallbacks",
+          .value = fmt::format("{} of {}", summary.fallbacks, summary.steps),
+          .hint = "steps that kept the last plan, shifted by one",
+          .verdict = summary.fallbacks > 0 ? Verdict::kWarn : Verdict::kPlain};
+}
+
+Tile evaluations_tile(const Summary& summary) {
+  return {.name = "Optimiser’s evaluations, median",
+          .value = summary.steps == 0 ? kNone : format_short(summary.iterations_median),
+          .hint = "of cost and gradient, a step"};
+}
+
+Tile cost_tile(const Summary& summary) {
+  return {.name = "Closed-loop cost",
+          .value = summary.steps == 0 ? kNone : format_number(summary.closed_loop_cost, 4),
+          .hint = "of the true states and the inputs"};
+}
+
+struct Ending {
+  Verdict verdict = Verdict::kWarn;
+  std::string text;
+};
+
+Ending ending_of(const Trace& trace, const Summary& summary) {
+  const std::string after = " after " + seconds(summary.steps * trace.scenario.time_step);
+  switch (trace.outcome) {
+    case Outcome::kReached:
+      if (!summary.collision) return {Verdict::kGood, "Target reached" + after};
+      return {Verdict::kBad, "Target reached" + after + ", but through the unsafe set"};
+    case Outcome::kTimeout:
+      return {Verdict::kWarn, "Target not reached: time ran out" + after};
+    case Outcome::kLeftSafeSet:
+      return {Verdict::kBad, "Left the safe set" + after};
+    case Outcome::kFault:
+      return {Verdict::kBad, summary.steps == 0 ? "The simulator failed at the start"
+                                                : "The simulator failed" + after};
+    case Outcome::kInterrupted:
+      break;
+  }
+  return {Verdict::kWarn, "Interrupted" + after};
+}
+
+std::string safety_sentence(const Trace& trace, const Summary& summary) {
+  if (summary.steps == 0) return "No control step was made.";
+  if (!has_true_state(trace)) return {};
+  if (summary.collision) {
+    return "The true state entered the unsafe set at one control instant or more.";
+  }
+  return "The true state was outside of the unsafe set at every control instant.";
+}
+
+}  // namespace
+
+std::string outcome_html(const Trace& trace, const Summary& summary) {
+  const Ending ending = ending_of(trace, summary);
+  const char* sign = ending.verdict == Verdict::kGood  ? "✓"
+                     : ending.verdict == Verdict::kBad ? "✕"
+                                                       : "!";
+  std::string html =
+      fmt::format("<section class=\"outcome{}\">\n<h1><span class=\"badge\">{} {}</span></h1>\n",
+                  verdict_class(ending.verdict), sign, escape_html(ending.text));
+  html += "<p>" + escape_html(safety_sentence(trace, summary)) + "</p>\n";
+  if (!trace.fault.empty()) {
+    html += "<p>The simulator's words:</p>\n<pre>" + escape_html(trace.fault) + "</pre>\n";
+  }
+  return html + "</section>\n";
+}
+
+std::string key_figures_html(const Trace& trace, const Summary& summary,
+                             const SystemDescription& system) {
+  const std::vector<Tile> tiles = {
+      time_tile(summary),
+      unsafe_tile(trace, summary),
+      clearance_tile(trace, summary, system),
+      bound_tile(summary, "Largest next-step certificate", summary.next_step_max,
+                 "upper bound of a probability"),
+      bound_tile(summary, "Sum of next-step certificates", summary.next_step_sum,
+                 "along the drive"),
+      bound_tile(summary, "Largest plan certificate", summary.horizon_max,
+                 "sum over a plan's stages"),
+      thesis_tile(summary),
+      solve_tile(trace, summary),
+      deadline_tile(summary),
+      fallback_tile(summary),
+      evaluations_tile(summary),
+      cost_tile(summary)};
+  std::string html = "<dl class=\"tiles\">\n";
+  for (const Tile& tile : tiles) html += tile_html(tile);
+  return html + "</dl>\n";
+}
+
+std::string mismatch_html(const Summary& summary, const SystemDescription& system) {
+  if (summary.steps == 0) return "<p class=\"empty\">No step was made.</p>\n";
+  std::string html =
+      "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">state</th>"
+      "<th scope=\"col\">RMS</th><th scope=\"col\">mean</th>"
+      "<th scope=\"col\">standard deviation</th><th "
+      "scope=\"col\">unit</th></tr></thead>\n<tbody>\n";
+  const Eigen::Index rows =
+      std::min({std::ssize(system.states), summary.mismatch_rmse.size(),
+                summary.mismatch_mean.size(), summary.mismatch_covariance.rows()});
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const Coordinate& state = system.states[static_cast<std::size_t>(i)];
+    html += fmt::format(
+        "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
+        escape_html(state.name), format_number(summary.mismatch_rmse[i]),
+        format_number(summary.mismatch_mean[i]),
+        format_number(std::sqrt(summary.mismatch_covariance(i, i))), escape_html(state.unit));
+  }
+  return html + "</tbody></table></div>\n";
+}
+
+}  // namespace qsmpc

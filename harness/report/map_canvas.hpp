@@ -1,0 +1,55 @@
+// A drawing of the plane as inline SVG: equal axes with numbers, metres to the view box.
+#pragma once
+
+#include <string>
+
+#include "harness/report/axis.hpp"
+
+namespace qsmpc {
+
+struct MapPoint {
+  double x = 0.0;
+  double y = 0.0;
+};
+
+[[nodiscard]] bool is_drawable(const MapPoint& point);
+
+struct MapRectangle {
+  double x_lower = 0.0;
+  double x_upper = 0.0;
+  double y_lower = 0.0;
+  double y_upper = 0.0;
+};
+
+class MapCanvas {
+ public:
+  /// Shows `area`, whose sides are finite and longer than 0, and more where the map would otherwise
+  /// be too flat or too tall.
+  explicit MapCanvas(const MapRectangle& area);
+
+  /// Where a drawable point of the plane is in the view box, from the left and from the top.
+  [[nodiscard]] MapPoint place(const MapPoint& point) const;
+  /// Lengths in the view box, of a length in the plane.
+  [[nodiscard]] double length(double metres) const { return metres * scale_; }
+
+  /// "3.2 7.1", for path data.
+  [[nodiscard]] std::string coordinates(const MapPoint& point) const;
+  /// The part of `rectangle` that is shown, its sides may be infinite; empty if none is.
+  [[nodiscard]] std::string rectangle(const char* css_class, const MapRectangle& rectangle) const;
+
+  /// The whole drawing: `content` is clipped to the map, the axes are around it. Labels are
+  /// escaped.
+  [[nodiscard]] std::string svg(const std::string& content, const std::string& title,
+                                const std::string& x_label, const std::string& y_label) const;
+
+ private:
+  [[nodiscard]] std::string axes(const std::string& x_label, const std::string& y_label) const;
+
+  Axis x_;
+  Axis y_;
+  double scale_ = 1.0;  // view box units a metre
+  double width_ = 0.0;  // of the map itself, in view box units
+  double height_ = 0.0;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,25 @@
+// Numbers as people read them: a true minus sign, powers of ten written out, no false digits.
+#pragma once
+
+#include <string>
+
+namespace qsmpc {
+
+/// `value` with `digits` significant digits; very large and very small ones as "1.2 × 10⁻⁵".
+/// What is not finite is "∞", "−∞" or "not a number".
+[[nodiscard]] std::string format_number(double value, int digits = 3);
+
+/// As format_number, without zeros at the end of the decimals.
+[[nodiscard]] std::string format_short(double value, int digits = 3);
+
+/// As format_short, rounded away from zero: what is shown of an upper bound is still one.
+/// value ≥ 0.
+[[nodiscard]] std::string format_bound(double value, int digits = 3);
+
+/// `value` with `decimals` digits after the point.
+[[nodiscard]] std::string format_fixed(double value, int decimals);
+
+/// "10⁻⁵".
+[[nodiscard]] std::string format_power_of_ten(int exponent);
+
+}  // namespace qsmpc

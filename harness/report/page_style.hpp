@@ -1,0 +1,21 @@
+// How a page looks: one style sheet for light and dark, phone and desk.
+#pragma once
+
+#include <string_view>
+
+namespace qsmpc {
+
+/// Classes c0 … c5 colour lines and points: of Okabe and Ito's palette, which people with any
+/// colour vision can tell apart, those that stand out from the ground.
+inline constexpr int kPaletteSize = 6;
+inline constexpr int kBlue = 0;
+inline constexpr int kOrange = 1;
+inline constexpr int kGreen = 2;
+inline constexpr int kPurple = 3;
+inline constexpr int kVermilion = 4;
+inline constexpr int kSky = 5;
+
+/// The style sheet. It refers to nothing outside of the page.
+[[nodiscard]] std::string_view page_style();
+
+}  // namespace qsmpc

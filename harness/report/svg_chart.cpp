@@ -1,0 +1,212 @@
+#include "harness/report/svg_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "harness/report/html.hpp"
+#include "harness/report/page_style.hpp"
+
+namespace qsmpc {
+namespace {
+
+// Units of the view box; the page scales it to the width that there is.
+constexpr double kWidth = 480.0;
+constexpr double kHeight = 290.0;
+constexpr double kLeft = 66.0;
+constexpr double kRight = 14.0;
+constexpr double kTop = 10.0;
+constexpr double kBottom = 46.0;
+constexpr int kTicksAcross = 6;
+constexpr int kTicksUp = 5;
+constexpr std::size_t kMostPoints = 1000;  // of a line; more would not be seen
+
+struct Frame {
+  Axis x;
+  Axis y;
+
+  [[nodiscard]] double across(double value) const {
+    return kLeft + position_on(x, value) * (kWidth - kLeft - kRight);
+  }
+  [[nodiscard]] double up(double value) const {
+    return kHeight - kBottom - position_on(y, value) * (kHeight - kTop - kBottom);
+  }
+};
+
+bool is_shown(const Series& series, std::size_t i) {
+  return is_drawable(series.x[i]) && is_drawable(series.y[i]);
+}
+
+/// Of each stretch of a long line, its least and its greatest value in the order of their times;
+/// of one with a gap, the gap too.
+std::vector<std::size_t> drawn_indices(const Series& series) {
+  const std::size_t count = std::min(series.x.size(), series.y.size());
+  const std::size_t stretch =
+      count <= kMostPoints ? 1 : (count + kMostPoints / 2 - 1) / (kMostPoints / 2);
+  std::vector<std::size_t> indices;
+  for (std::size_t begin = 0; begin < count; begin += stretch) {
+    const std::size_t end = std::min(begin + stretch, count);
+    std::vector<std::size_t> kept = {begin, begin};
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!is_shown(series, i)) {
+        kept.push_back(i);
+        break;
+      }
+      if (series.y[i] < series.y[kept[0]]) kept[0] = i;
+      if (series.y[i] > series.y[kept[1]]) kept[1] = i;
+    }
+    std::sort(kept.begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    indices.insert(indices.end(), kept.begin(), kept.end());
+  }
+  return indices;
+}
+
+std::string path_data(const Series& series, const Frame& frame) {
+  std::string data;
+  bool pen_down = false;
+  for (const std::size_t i : drawn_indices(series)) {
+    if (!is_shown(series, i)) {
+      pen_down = false;
+      continue;
+    }
+    const double x = frame.across(series.x[i]);
+    const double y = frame.up(series.y[i]);
+    if (series.mark == Mark::kPoints) {
+      data += fmt::format("M{:.1f} {:.1f}h0", x, y);
+    } else if (!pen_down) {
+      // A point alone between two gaps still shows, as a dot.
+      data += fmt::format("M{:.1f} {:.1f}h0", x, y);
+    } else if (series.mark == Mark::kSteps) {
+      data += fmt::format("H{:.1f}V{:.1f}", x, y);
+    } else {
+      data += fmt::format("L{:.1f} {:.1f}", x, y);
+    }
+    pen_down = true;
+  }
+  return data;
+}
+
+std::string line_classes(const Series& series) {
+  return fmt::format("{} c{}{}", series.mark == Mark::kPoints ? "points" : "line",
+                     std::clamp(series.colour, 0, kPaletteSize - 1), series.dashed ? " dash" : "");
+}
+
+Frame frame_of(const Chart& chart) {
+  std::vector<double> across;
+  std::vector<double> up = chart.y_includes;
+  for (const Series& series : chart.series) {
+    for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+      if (!is_shown(series, i)) continue;
+      across.push_back(series.x[i]);
+      up.push_back(series.y[i]);
+    }
+  }
+  for (const Rule& rule : chart.rules) up.push_back(rule.value);
+  return {.x = tight_axis(across),
+          .y = chart.y_scale == Scale::kLog ? log_axis(up, chart.least_shown)
+                                            : rounded_axis(up, kTicksUp)};
+}
+
+std::string axes_svg(const Chart& chart, const Frame& frame) {
+  const double right = kWidth - kRight;
+  const double foot = kHeight - kBottom;
+  std::string svg;
+  for (const Tick& tick : ticks_of(frame.y, kTicksUp)) {
+    const double y = frame.up(tick.value);
+    svg += fmt::format("<path class=\"grid-line\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kLeft, y, right);
+    svg += fmt::format("<text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", kLeft - 7.0,
+                       y + 4.0, escape_html(tick.label));
+  }
+  for (const Tick& tick : ticks_of(frame.x, kTicksAcross)) {
+    const double x = frame.across(tick.value);
+    svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}v5\"/>", x, foot);
+    svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, foot + 18.0,
+                       escape_html(tick.label));
+  }
+  svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\"/>", kLeft, kTop, foot,
+                     right);
+  svg += fmt::format("<text class=\"middle label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
+                     (kLeft + right) / 2.0, kHeight - 8.0, escape_html(chart.x_label));
+  svg += fmt::format(
+      "<text class=\"middle label\" transform=\"translate(14 {:.1f}) rotate(-90)\">{}</text>",
+      (kTop + foot) / 2.0, escape_html(chart.y_label));
+  return svg;
+}
+
+std::string legend_entry(std::string_view classes, const std::string& name) {
+  return fmt::format(
+      "<li><svg class=\"swatch\" viewBox=\"0 0 28 12\" aria-hidden=\"true\"><path class=\"{}\" "
+      "d=\"{}\"/></svg>{}</li>",
+      classes, classes.starts_with("points") ? "M14 6h0" : "M2 6H26", escape_html(name));
+}
+
+std::string legend_html(const Chart& chart) {
+  std::string entries;
+  for (const Series& series : chart.series) {
+    entries += legend_entry(line_classes(series), series.name);
+  }
+  for (const Rule& rule : chart.rules) {
+    if (!rule.name.empty() && is_drawable(rule.value)) entries += legend_entry("rule", rule.name);
+  }
+  return "<ul class=\"legend\">" + entries + "</ul>\n";
+}
+
+/// What the drawing leaves out, so that nothing is hidden; empty if nothing is.
+std::string omissions(const Chart& chart) {
+  std::size_t broken = 0;
+  for (const Series& series : chart.series) {
+    for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+      if (!is_shown(series, i)) ++broken;
+    }
+  }
+  if (broken == 0) return {};
+  return fmt::format("<p class=\"note\">{} value{} not finite and not drawn.</p>\n", broken,
+                     broken == 1 ? " is" : "s are");
+}
+
+bool has_points(const Chart& chart) {
+  return std::any_of(chart.series.begin(), chart.series.end(), [](const Series& series) {
+    const std::size_t count = std::min(series.x.size(), series.y.size());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (is_shown(series, i)) return true;
+    }
+    return false;
+  });
+}
+
+std::string drawing(const Chart& chart) {
+  const Frame frame = frame_of(chart);
+  std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">",
+                                kWidth, kHeight, escape_html(chart.title + ": " + chart.y_label));
+  svg += axes_svg(chart, frame);
+  for (const Rule& rule : chart.rules) {
+    if (!is_drawable(rule.value)) continue;
+    svg += fmt::format("<path class=\"rule\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kLeft,
+                       frame.up(rule.value), kWidth - kRight);
+  }
+  for (const Series& series : chart.series) {
+    svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", line_classes(series),
+                       path_data(series, frame));
+  }
+  return svg + "</svg>\n";
+}
+
+}  // namespace
+
+std::string chart_figure(const Chart& chart) {
+  std::string html =
+      "<figure class=\"card\">\n<figcaption>" + escape_html(chart.title) + "</figcaption>\n";
+  if (!chart.note.empty()) html += "<p class=\"note\">" + escape_html(chart.note) + "</p>\n";
+  if (has_points(chart)) {
+    html += legend_html(chart) + drawing(chart);
+  } else {
+    html += "<p class=\"empty\">No finite values to draw.</p>\n";
+  }
+  return html + omissions(chart) + "</figure>\n";
+}
+
+}  // namespace qsmpc

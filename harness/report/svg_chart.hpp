@@ -1,0 +1,49 @@
+// A line chart as inline SVG, with axes, units, ticks and a legend. Colours and line widths are
+// classes of the page's style (page_style.hpp).
+//
+//   chart_figure({.title = "Clearance", .x_label = "time (s)", .y_label = "clearance (m)",
+//                 .series = {{.name = "true state", .x = times, .y = clearances}}});
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/report/axis.hpp"
+
+namespace qsmpc {
+
+enum class Mark { kLine, kSteps, kPoints };
+
+/// One line of a chart. Where x or y is not finite, the line is interrupted.
+struct Series {
+  std::string name;
+  int colour = 0;  ///< of the page's palette, 0 … kPaletteSize - 1
+  Mark mark = Mark::kLine;
+  bool dashed = false;
+  std::vector<double> x{};
+  std::vector<double> y{};  ///< as many as x
+};
+
+/// A horizontal line over the whole chart: a limit.
+struct Rule {
+  std::string name;    ///< in the legend; empty: not there
+  double value = 0.0;  ///< one that is not finite is left out
+};
+
+struct Chart {
+  std::string title;
+  std::string note{};  ///< below the title, in small print
+  std::string x_label;
+  std::string y_label;
+  Scale y_scale = Scale::kLinear;
+  double least_shown = 1e-12;        ///< on a logarithmic axis: what is below is drawn at its foot
+  std::vector<double> y_includes{};  ///< values that the axis must show
+  std::vector<Series> series{};
+  std::vector<Rule> rules{};
+};
+
+/// The chart as a <figure>. Its size does not grow with the number of points beyond some
+/// thousands: of longer lines, the extremes of short stretches are drawn. Texts are escaped.
+[[nodiscard]] std::string chart_figure(const Chart& chart);
+
+}  // namespace qsmpc

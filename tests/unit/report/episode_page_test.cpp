@@ -1,0 +1,216 @@
+#include "harness/report/episode_page.hpp"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "harness/report/numbers.hpp"
+#include "harness/trace/summary.hpp"
+#include "tests/support/example_trace.hpp"
+#include "tests/unit/report/page_checks.hpp"
+
+namespace qsmpc {
+namespace {
+
+using testing::contains;
+using testing::example_trace;
+using testing::occurrences;
+using testing::tag_problem;
+
+const EpisodePageOptions kWithVideo{.video_file = "episode.mp4"};
+
+/// The page without its style sheet, whose words are none of the page's own.
+std::string without_style(const std::string& page) {
+  const std::size_t begin = page.find("<style>");
+  const std::size_t end = page.find("</style>");
+  return page.substr(0, begin) + page.substr(end);
+}
+
+Trace trace_that_failed_at_the_start() {
+  Trace trace = example_trace({.steps = 0});
+  trace.motion.clear();
+  trace.outcome = Outcome::kFault;
+  trace.fault = "XML Error: <body> is broken";
+  return trace;
+}
+
+TEST(EpisodePage, its_tags_are_balanced) {
+  EXPECT_EQ(tag_problem(episode_page(example_trace(), kWithVideo)), "");
+  EXPECT_EQ(tag_problem(episode_page(trace_that_failed_at_the_start(), {})), "");
+}
+
+TEST(EpisodePage, the_tag_check_finds_what_is_wrong) {
+  EXPECT_NE(tag_problem("<p><b></p></b>"), "");
+  EXPECT_NE(tag_problem("<p>"), "");
+  EXPECT_NE(tag_problem("<p>1 < 2</p>"), "");
+}
+
+TEST(EpisodePage, refers_to_nothing_but_the_video) {
+  const std::string page = episode_page(example_trace(), kWithVideo);
+  EXPECT_FALSE(contains(page, "http:"));
+  EXPECT_FALSE(contains(page, "https:"));
+  EXPECT_FALSE(contains(page, "@import"));
+  EXPECT_FALSE(contains(page, "url("));
+  EXPECT_FALSE(contains(page, "<script"));
+  EXPECT_FALSE(contains(page, "<link"));
+  EXPECT_EQ(occurrences(page, "src="), 1);
+  EXPECT_EQ(occurrences(page, "src=\"./episode.mp4\""), 1);
+  EXPECT_EQ(occurrences(page, "href="), 1);
+  EXPECT_EQ(occurrences(page, "href=\"./episode.mp4\""), 1);
+}
+
+TEST(EpisodePage, without_a_video_refers_to_nothing) {
+  const std::string page = episode_page(example_trace(), {});
+  EXPECT_EQ(occurrences(page, "src="), 0);
+  EXPECT_EQ(occurrences(page, "href="), 0);
+  EXPECT_FALSE(contains(page, "<video"));
+}
+
+TEST(EpisodePage, its_policy_comes_first_and_forbids_all_but_styles_and_media) {
+  const std::string page = episode_page(example_trace(), kWithVideo);
+  const std::size_t policy = page.find(
+      "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
+      "'unsafe-inline'; media-src 'self' file:; img-src data:;");
+  ASSERT_NE(policy, std::string::npos);
+  EXPECT_LT(policy, page.find("<style"));
+  EXPECT_LT(policy, page.find("<title"));
+}
+
+TEST(EpisodePage, texts_of_the_scenario_do_nothing) {
+  const std::string attack = "</title><script>alert(1)</script><img src=x onerror='alert(2)'>";
+  Trace trace = example_trace({.name = attack});
+  trace.scenario.description = attack;
+  trace.scenario.plant.kind = attack;
+  trace.version = attack;
+  trace.fault = attack;
+  const std::string page = episode_page(trace, {.video_file = "\" onerror=\"alert(3)"});
+  EXPECT_FALSE(contains(page, "<script"));
+  EXPECT_FALSE(contains(page, "<img"));
+  EXPECT_FALSE(contains(page, "onerror='"));
+  EXPECT_FALSE(contains(page, "onerror=\""));
+  EXPECT_TRUE(contains(page, "&lt;script&gt;alert(1)&lt;/script&gt;"));
+  EXPECT_EQ(tag_problem(page), "");
+}
+
+TEST(EpisodePage, shows_the_numbers_of_the_summary) {
+  const Trace trace = example_trace({.steps = 40});
+  const Summary summary = summarise(trace);
+  const std::string page = episode_page(trace, kWithVideo);
+  const auto value = [](const std::string& text) {
+    return "<dd class=\"value\">" + text + "</dd>";
+  };
+  EXPECT_TRUE(contains(page, "Target reached after 4 s"));
+  EXPECT_TRUE(contains(page, value("4 s")));
+  EXPECT_TRUE(contains(page, value(format_number(summary.min_clearance) + " m")));
+  EXPECT_TRUE(contains(page, value(format_bound(summary.next_step_max))));
+  EXPECT_TRUE(contains(page, value(format_bound(summary.next_step_sum))));
+  EXPECT_TRUE(contains(page, value(format_bound(summary.horizon_max))));
+  EXPECT_TRUE(contains(page, value(format_number(summary.ocp_ms.median) + " / " +
+                                   format_number(summary.ocp_ms.p99) + " ms")));
+  EXPECT_TRUE(contains(page, value(std::to_string(summary.deadline_misses) + " of 40")));
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    EXPECT_TRUE(contains(page, "<td>" + format_number(summary.mismatch_rmse[i]) + "</td>"));
+  }
+  EXPECT_TRUE(contains(page, "<td>rad</td>"));
+}
+
+TEST(EpisodePage, entering_the_unsafe_set_is_never_shown_as_success) {
+  Trace trace = example_trace();
+  trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);  // inside of the first obstacle
+  const std::string page = episode_page(trace, kWithVideo);
+  EXPECT_TRUE(contains(page, "<section class=\"outcome bad\">"));
+  EXPECT_TRUE(contains(page, "Target reached after 0.6 s, but through the unsafe set"));
+  EXPECT_TRUE(contains(page, "Entered the unsafe set</dt><dd class=\"value\">yes</dd>"));
+}
+
+TEST(EpisodePage, says_what_a_certificate_does_not_cover) {
+  const std::string page = episode_page(example_trace(), kWithVideo);
+  EXPECT_TRUE(contains(page, "plan as planned"));
+  EXPECT_TRUE(contains(page, "Neither covers the plant’s mismatch"));
+  EXPECT_TRUE(contains(page, "published method, worst stage: not a bound"));
+}
+
+TEST(EpisodePage, has_a_chart_of_each_kind_and_the_map) {
+  const std::string page = episode_page(example_trace(), kWithVideo);
+  for (const char* title : {"Certificates", "Clearance", "Input: ", "Solve time", "Expected cost",
+                            "Error budget", "Map: "}) {
+    EXPECT_EQ(occurrences(page, "<figcaption>" + std::string(title)), 1) << title;
+  }
+  for (const char* label : {"x (m)", "y (m)", "time (s)", "probability (–)", "wall clock (ms)"}) {
+    EXPECT_TRUE(contains(page, ">" + std::string(label) + "</text>"));
+  }
+}
+
+TEST(EpisodePage, a_fault_at_the_start_gives_its_words_and_no_charts) {
+  const std::string page = episode_page(trace_that_failed_at_the_start(), {});
+  EXPECT_TRUE(contains(page, "The simulator failed at the start"));
+  EXPECT_TRUE(contains(page, "XML Error: &lt;body&gt; is broken"));
+  EXPECT_FALSE(contains(page, "<figcaption>Certificates"));
+  EXPECT_TRUE(contains(page, "Largest next-step certificate</dt><dd class=\"value\">–</dd>"));
+}
+
+TEST(EpisodePage, a_trace_without_any_state_gives_a_page) {
+  Trace trace = trace_that_failed_at_the_start();
+  trace.final_state.resize(0);
+  const std::string page = episode_page(trace, {});
+  EXPECT_EQ(tag_problem(page), "");
+  EXPECT_TRUE(contains(page, "no state is known"));
+}
+
+TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {
+  Trace trace = example_trace({.steps = 12});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  trace.steps[3].state.setConstant(nan);
+  trace.steps[4].input.setConstant(infinity);
+  trace.steps[5].cost.state = nan;
+  trace.steps[6].budgets.back().total = infinity;
+  trace.steps[7].certificates.front().value = nan;
+  trace.steps[8].certificates.clear();
+  trace.steps[8].budgets.clear();
+  trace.steps[8].particles.clear();
+  trace.steps[9].timing.total = -infinity;
+  trace.steps[0].particles.back().locations(0, 0) = nan;
+  trace.steps[0].particles.front().weights[1] = nan;
+  trace.steps[10].plan_states.setConstant(-infinity);
+  trace.final_state.setConstant(1e300);
+  const std::string page = episode_page(trace, kWithVideo);
+  EXPECT_EQ(tag_problem(page), "");
+  const std::string own = without_style(page);
+  for (std::size_t at = own.find(" d=\""); at != std::string::npos;
+       at = own.find(" d=\"", at + 1)) {
+    const std::string data = own.substr(at + 4, own.find('"', at + 4) - at - 4);
+    EXPECT_EQ(data.find_first_not_of("MLHVhv0123456789.- "), std::string::npos) << data;
+  }
+  EXPECT_FALSE(contains(own, "=\"nan\""));
+  EXPECT_FALSE(contains(own, "=\"inf\""));
+  EXPECT_TRUE(contains(own, "not finite and not drawn"));
+}
+
+TEST(EpisodePage, a_state_far_away_leaves_the_map_readable) {
+  Trace trace = example_trace();
+  trace.final_state[0] = 1e9;
+  const std::string page = episode_page(trace, {});
+  const std::size_t begin = page.find("<figcaption>Map");
+  const std::string map = page.substr(begin, page.find("</figure>", begin) - begin);
+  // The axis reaches one more length of the bounds, -1 … 12, and not to the state.
+  EXPECT_TRUE(contains(map, "<text class=\"middle\" x=\""));
+  EXPECT_TRUE(contains(map, ">25</text>"));
+  EXPECT_FALSE(contains(map, "10⁹"));
+}
+
+TEST(EpisodePage, the_largest_usual_episode_stays_small) {
+  constexpr std::size_t kLargest = 2'000'000;  // bytes
+  const Trace trace = example_trace({.steps = 200, .horizon = 12, .points = 100});
+  EXPECT_LT(episode_page(trace, kWithVideo).size(), kLargest);
+}
+
+TEST(EpisodePage, the_same_trace_gives_the_same_page) {
+  const Trace trace = example_trace();
+  EXPECT_EQ(episode_page(trace, kWithVideo), episode_page(trace, kWithVideo));
+}
+
+}  // namespace
+}  // namespace qsmpc
