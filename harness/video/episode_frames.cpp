@@ -26,6 +26,10 @@ PlanarRectangle planar_box(const SystemDescription& system, const Box& box, doub
           side(box.lower, system.position_y, -1.0), side(box.upper, system.position_y, 1.0)};
 }
 
+std::string bound_text(double bound) {
+  return bound < 1.0 ? fmt::format("<= {:.2e}", bound) : "no bound below 1";
+}
+
 double next_certificate(const StepRecord& step) {
   return step.certificates.empty() ? std::numeric_limits<double>::quiet_NaN()
                                    : step.certificates.front().value;
@@ -171,9 +175,8 @@ std::vector<HudRow> EpisodeFrames::rows(const StepRecord& step, double time) con
   }
   rows.push_back({"cost of plan", fmt::format("{:.1f}", step.cost.total())});
   if (!step.certificates.empty()) {
-    rows.push_back({"P(unsafe) next step", fmt::format("<= {:.2e}", next_certificate(step))});
-    rows.push_back(
-        {"P(unsafe) whole plan", fmt::format("<= {:.2e}", horizon_bound(step.certificates))});
+    rows.push_back({"P(unsafe) next step", bound_text(next_certificate(step))});
+    rows.push_back({"P(unsafe) whole plan", bound_text(horizon_bound(step.certificates))});
   }
   rows.push_back({"planning time", fmt::format("{:.0f} ms{}", step.timing.total,
                                                step.fallback ? ", fallback" : "")});

@@ -1,0 +1,147 @@
+#include "harness/trace/summary.hpp"
+
+#include <cmath>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/scenario/scenario_file.hpp"
+
+namespace qsmpc {
+namespace {
+
+/// Straight on at 1.5 m/s from (0, 0) with heading 0: a period of the model is 0.15 m along x.
+Trace straight_trace(int steps) {
+  Trace trace;
+  trace.scenario = parse_scenario(
+      "name: straight\nmodel: {system: dubins, speed: 1.5}\nplant: {kind: analytic, mjcf: \"\"}\n"
+      "time_step: 0.1\ninitial_state: {mean: [0, 0, 0]}\n"
+      "safe_set: {bounds: {y: [-1, 2]}}\ntarget: {state: [5, 0, 0], radius: 0.5}\n"
+      "controller: {horizon: 2, cost: {state: [2, 4, 0], input: [3], terminal: [1, 1, 1]}}\n");
+  trace.seed = 9;
+  trace.version = "1.2.3";
+  for (int k = 0; k < steps; ++k) {
+    StepRecord step;
+    step.time = 0.1 * k;
+    step.state = Eigen::Vector3d(0.15 * k, 0.0, 0.0);
+    step.input = Eigen::VectorXd::Zero(1);
+    step.disturbance = Eigen::Vector3d::Zero();
+    step.certificates.resize(2);
+    step.certificates[0].value = 0.01 * (k + 1);
+    step.certificates[1].value = 0.5;
+    step.certificates[0].thesis = 0.25;
+    step.certificates[1].thesis = 0.125;
+    step.timing.total = k + 1;
+    step.timing.certify = 7.0;
+    step.iterations = 10 + k;
+    trace.steps.push_back(step);
+  }
+  trace.final_state = Eigen::Vector3d(0.15 * steps, 0.0, 0.0);
+  return trace;
+}
+
+TEST(Summary, adds_the_stage_costs_of_the_true_states) {
+  Trace trace = straight_trace(2);
+  trace.steps[1].state = Eigen::Vector3d(4.0, 1.0, 0.3);
+  trace.steps[1].input[0] = -2.0;
+  // ½ (2·5²) + 0, and ½ (2·1² + 4·1² + 0) + 3·2².
+  EXPECT_DOUBLE_EQ(summarise(trace).closed_loop_cost, 25.0 + 3.0 + 12.0);
+}
+
+TEST(Summary, clearance_and_collision_are_those_of_all_true_states) {
+  Trace trace = straight_trace(3);
+  EXPECT_DOUBLE_EQ(summarise(trace).min_clearance, 1.0);
+  EXPECT_FALSE(summarise(trace).collision);
+  trace.final_state[1] = 2.5;  // beyond the bound at 2
+  EXPECT_DOUBLE_EQ(summarise(trace).min_clearance, -0.5);
+  EXPECT_TRUE(summarise(trace).collision);
+}
+
+TEST(Summary, quantiles_are_nearest_ranks) {
+  const Summary summary = summarise(straight_trace(200));  // totals 1 … 200 ms
+  EXPECT_DOUBLE_EQ(summary.ocp_ms.median, 100.0);
+  EXPECT_DOUBLE_EQ(summary.ocp_ms.p95, 190.0);
+  EXPECT_DOUBLE_EQ(summary.ocp_ms.p99, 198.0);
+  EXPECT_DOUBLE_EQ(summary.ocp_ms.max, 200.0);
+  EXPECT_DOUBLE_EQ(summary.ocp_ms.mean, 100.5);
+  EXPECT_DOUBLE_EQ(summary.breakdown.certify, 7.0);
+  EXPECT_EQ(summary.deadline_misses, 100);  // those above 100 ms
+}
+
+TEST(Summary, certificates_are_summed_over_a_plan_and_along_the_drive) {
+  const Summary summary = summarise(straight_trace(3));
+  EXPECT_DOUBLE_EQ(summary.next_step_max, 0.03);
+  EXPECT_DOUBLE_EQ(summary.next_step_sum, 0.06);
+  EXPECT_DOUBLE_EQ(summary.next_step_mean, 0.02);
+  EXPECT_DOUBLE_EQ(summary.horizon_max, 0.53);
+  EXPECT_DOUBLE_EQ(summary.thesis_max, 0.25);
+}
+
+TEST(Summary, mismatch_is_what_the_model_and_the_disturbance_leave) {
+  Trace trace = straight_trace(2);
+  EXPECT_TRUE(summarise(trace).mismatch_rmse.isZero(1e-15));  // rounding
+  // The second period ends 0.02 further in y, of which 0.03 was disturbance.
+  trace.final_state[1] = 0.02;
+  trace.steps[1].disturbance[1] = 0.03;
+  const Summary summary = summarise(trace);
+  EXPECT_NEAR(summary.mismatch_mean[1], -0.005, 1e-15);
+  EXPECT_NEAR(summary.mismatch_rmse[1], 0.01 / std::sqrt(2.0), 1e-15);
+  EXPECT_NEAR(summary.mismatch_covariance(1, 1), 0.005 * 0.005, 1e-15);
+}
+
+TEST(Summary, json_has_every_documented_key) {
+  Trace trace = straight_trace(4);
+  trace.outcome = Outcome::kReached;
+  const auto json = nlohmann::json::parse(summary_json(trace, {.video_file = "a.mp4"}));
+  for (const char* pointer : {"/scenario",
+                              "/seed",
+                              "/version",
+                              "/outcome",
+                              "/steps",
+                              "/time_to_target",
+                              "/collision",
+                              "/min_clearance",
+                              "/cost/closed_loop",
+                              "/ocp_ms/median",
+                              "/ocp_ms/p95",
+                              "/ocp_ms/p99",
+                              "/ocp_ms/max",
+                              "/ocp_ms/mean",
+                              "/ocp_ms/breakdown/quantise",
+                              "/ocp_ms/breakdown/propagate",
+                              "/ocp_ms/breakdown/optimise",
+                              "/ocp_ms/breakdown/certify",
+                              "/deadline_misses",
+                              "/ocp/iterations/median",
+                              "/ocp/fallbacks",
+                              "/certificate/next_step/max",
+                              "/certificate/next_step/mean",
+                              "/certificate/horizon/max",
+                              "/certificate/thesis/max",
+                              "/mismatch/one_step/rmse",
+                              "/mismatch/one_step/mean",
+                              "/mismatch/one_step/covariance",
+                              "/video"}) {
+    EXPECT_TRUE(json.contains(nlohmann::json::json_pointer(pointer))) << pointer;
+  }
+  EXPECT_EQ(json["outcome"], "reached");
+  EXPECT_DOUBLE_EQ(json["time_to_target"], 0.4);
+  EXPECT_EQ(json["video"], "a.mp4");
+  EXPECT_EQ(json["mismatch"]["one_step"]["covariance"].size(), 3U);
+}
+
+TEST(Summary, an_episode_that_broke_before_it_began_has_one_too) {
+  Trace trace = straight_trace(0);
+  trace.outcome = Outcome::kFault;
+  trace.fault = "words \xff of the simulator";  // no UTF-8
+  trace.final_state = Eigen::Vector3d::Zero();
+  const auto json = nlohmann::json::parse(summary_json(trace));
+  EXPECT_EQ(json["steps"], 0);
+  EXPECT_EQ(json["outcome"], "fault");
+  EXPECT_TRUE(json["time_to_target"].is_null());
+  EXPECT_TRUE(json["video"].is_null());
+}
+
+}  // namespace
+}  // namespace qsmpc
