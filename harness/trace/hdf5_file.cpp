@@ -25,6 +25,9 @@ using hdf5::text_type;
 constexpr unsigned kDeflateLevel = 2;
 /// Columns stored together in a dataset whose number of columns is set later.
 constexpr hsize_t kOpenColumnChunk = 8;
+/// How often a checksum that does not fit is taken for a writer at work. HDF5 waits twice as long
+/// after each attempt, from 1 ns on: together 1 ms, where its own default of 100 never ends.
+constexpr unsigned kReadAttempts = 20;
 /// More elements than this (4 GiB) in one dataset come from a damaged or hostile file.
 constexpr hsize_t kElementLimit = hsize_t{1} << 29;
 
@@ -266,8 +269,11 @@ Hdf5File Hdf5File::open(const std::string& path) {
   // HDF5 refuses to open a file that its writer left open in any other way, and in this one it does
   // not compare the file's length with the stored one, so that it serves for nothing else.
   const unsigned flags = H5F_ACC_RDONLY | (impl->left_open ? H5F_ACC_SWMR_READ : 0U);
-  impl->file =
-      impl->checked(H5Fopen(path.c_str(), flags, hdf5::file_access().get()), H5Fclose, "the file");
+  const Handle access = hdf5::file_access();
+  if (impl->left_open) {
+    impl->check(H5Pset_metadata_read_attempts(access.get(), kReadAttempts), "the file");
+  }
+  impl->file = impl->checked(H5Fopen(path.c_str(), flags, access.get()), H5Fclose, "the file");
   return Hdf5File(std::move(impl));
 }
 

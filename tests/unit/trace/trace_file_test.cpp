@@ -305,6 +305,21 @@ TEST_F(TraceFile, a_trace_cut_at_any_length_is_refused) {
   }
 }
 
+TEST_F(TraceFile, a_damaged_partial_file_is_refused_at_once) {
+  const Trace trace = example_trace();
+  {
+    TraceWriter writer(path(), trace);
+    writer.append(trace.steps[0], trace.motion);
+    fs::copy_file(path() + ".partial", path("killed.h5"));
+  }
+  ASSERT_EQ(read_trace(path("killed.h5")).steps.size(), 1U);
+  std::string damaged = bytes_of(path("killed.h5"));
+  constexpr std::size_t kRootAddress = 36;  // in the superblock, which has a checksum
+  damaged[kRootAddress] = static_cast<char>(damaged[kRootAddress] ^ 0x55);
+  write_bytes(path("killed.h5"), damaged);
+  EXPECT_THAT(refusal(path("killed.h5")), HasSubstr("a trace that is not damaged"));
+}
+
 TEST_F(TraceFile, a_damaged_trace_is_read_or_refused_and_never_anything_else) {
   write_trace(path(), example_trace({.steps = 2}));
   const std::string whole = bytes_of(path());
