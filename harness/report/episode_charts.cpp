@@ -72,7 +72,7 @@ Chart certificate_chart(const Trace& trace) {
   };
   Chart chart{
       .title = "Certificates: bounds of the probability of being unsafe",
-      .note = "Values below 10⁻¹² are drawn at the foot.",
+      .note = "What is below the axis, 0 included, is drawn at its foot.",
       .x_label = kTimeLabel,
       .y_label = "probability (–)",
       .y_scale = Scale::kLog,
@@ -131,7 +131,7 @@ Chart cost_chart(const Trace& trace) {
   };
   Chart chart{
       .title = "Expected cost of the plan, by part",
-      .note = "Parts below 0.001 are drawn at the foot.",
+      .note = "What is below the axis, 0 included, is drawn at its foot.",
       .x_label = kTimeLabel,
       .y_label = "cost (–)",
       .y_scale = Scale::kLog,
@@ -183,6 +183,8 @@ std::vector<Chart> episode_charts(const Trace& trace, const SystemDescription& s
   charts.push_back(timing_chart(trace));
   charts.push_back(cost_chart(trace));
   charts.push_back(budget_chart(trace));
+  const double end = static_cast<double>(trace.steps.size()) * trace.scenario.time_step;
+  for (Chart& chart : charts) chart.x_includes = {0.0, end};
   return charts;
 }
 

@@ -31,7 +31,9 @@ class EpisodeMap {
   [[nodiscard]] std::string figure() const {
     const std::string content = ground() + snapshots() + path() + ends() + times();
     const std::string caption =
-        fmt::format("Map: belief and plan every {} steps", snapshot_period());
+        trace_.steps.empty()
+            ? "Map"
+            : fmt::format("Map: belief and plan every {} steps", snapshot_period());
     return "<figure class=\"card\">\n<figcaption>" + caption + "</figcaption>\n" + legend() +
            canvas_.svg(content, "Map of the episode", label(system_.position_x),
                        label(system_.position_y)) +
@@ -237,31 +239,41 @@ class EpisodeMap {
     return svg;
   }
 
+  [[nodiscard]] static std::string entry(const std::string& drawing, const std::string& name) {
+    return "<li><svg class=\"swatch\" viewBox=\"0 0 28 12\" aria-hidden=\"true\">" + drawing +
+           "</svg>" + name + "</li>";
+  }
+
+  [[nodiscard]] static std::string area_entry(const std::string& css_class,
+                                              const std::string& name) {
+    return entry("<rect class=\"" + css_class + "\" x=\"6\" y=\"1\" width=\"16\" height=\"10\"/>",
+                 name);
+  }
+
+  [[nodiscard]] static std::string dot_entry(int colour, const std::string& name) {
+    return entry(fmt::format("<path class=\"points c{}\" d=\"M14 6h0\"/>", colour), name);
+  }
+
+  [[nodiscard]] std::string drive_legend() const {
+    return entry("<path class=\"way\" d=\"M2 6H26\"/>", "driven path, from dot to square") +
+           dot_entry(kBeliefColour, "belief (stage 0)") +
+           dot_entry(kLastStageColour,
+                     fmt::format("prediction (stage {})", trace_.scenario.controller.horizon)) +
+           entry("<path class=\"plan\" d=\"M2 6H26\"/>", "nominal plan");
+  }
+
   [[nodiscard]] std::string legend() const {
-    const auto entry = [](const std::string& drawing, const std::string& name) {
-      return "<li><svg class=\"swatch\" viewBox=\"0 0 28 12\" aria-hidden=\"true\">" + drawing +
-             "</svg>" + name + "</li>";
-    };
-    const auto horizon = trace_.scenario.controller.horizon;
-    std::string html = "<ul class=\"legend\">";
-    html += entry("<path class=\"way\" d=\"M2 6H26\"/>", "driven path, from dot to square");
-    html += entry(fmt::format("<path class=\"points c{}\" d=\"M14 6h0\"/>", kBeliefColour),
-                  "belief (stage 0)");
-    html += entry(fmt::format("<path class=\"points c{}\" d=\"M14 6h0\"/>", kLastStageColour),
-                  fmt::format("prediction (stage {})", horizon));
-    html += entry("<path class=\"plan\" d=\"M2 6H26\"/>", "nominal plan");
-    html += entry("<circle class=\"target\" cx=\"14\" cy=\"6\" r=\"5\"/>", "target");
-    html +=
-        entry("<rect class=\"obstacle\" x=\"6\" y=\"1\" width=\"16\" height=\"10\"/>", "obstacle");
-    html += entry("<rect class=\"unsafe\" x=\"6\" y=\"1\" width=\"16\" height=\"10\"/>",
-                  "outside of the bounds");
     const auto& obstacles = trace_.scenario.safe_set.obstacles;
-    if (!std::all_of(obstacles.begin(), obstacles.end(),
-                     [this](const Box& box) { return is_planar(box); })) {
-      html += entry("<rect class=\"partial\" x=\"6\" y=\"1\" width=\"16\" height=\"10\"/>",
-                    "obstacle for some of the other states");
+    const auto planar = std::count_if(obstacles.begin(), obstacles.end(),
+                                      [this](const Box& box) { return is_planar(box); });
+    std::string html = "<ul class=\"legend\">";
+    if (!trace_.steps.empty()) html += drive_legend();
+    html += entry("<circle class=\"target\" cx=\"14\" cy=\"6\" r=\"5\"/>", "target");
+    if (planar > 0) html += area_entry("obstacle", "obstacle");
+    if (planar < std::ssize(obstacles)) {
+      html += area_entry("partial", "obstacle for some of the other states");
     }
-    return html + "</ul>\n";
+    return html + area_entry("unsafe", "outside of the bounds") + "</ul>\n";
   }
 
   const Trace& trace_;

@@ -56,7 +56,7 @@ Tile time_tile(const Summary& summary) {
   const bool reached = summary.time_to_target.has_value();
   return {.name = "Time to target",
           .value = reached ? seconds(*summary.time_to_target) : "not reached",
-          .hint = fmt::format("{} control steps", summary.steps),
+          .hint = fmt::format("{} control step{}", summary.steps, summary.steps == 1 ? "" : "s"),
           .verdict = reached ? Verdict::kGood : Verdict::kWarn};
 }
 
@@ -65,10 +65,12 @@ Tile unsafe_tile(const Trace& trace, const Summary& summary) {
   if (!has_true_state(trace)) {
     return {.name = "Entered the unsafe set", .value = kNone, .hint = "no state is known"};
   }
+  Verdict verdict = summary.collision ? Verdict::kBad : Verdict::kGood;
+  if (summary.steps == 0 && !summary.collision) verdict = Verdict::kPlain;  // nothing was risked
   return {.name = "Entered the unsafe set",
           .value = summary.collision ? "yes" : "no",
           .hint = kHint,
-          .verdict = summary.collision ? Verdict::kBad : Verdict::kGood};
+          .verdict = verdict};
 }
 
 Tile clearance_tile(const Trace& trace, const Summary& summary, const SystemDescription& system) {
@@ -103,7 +105,7 @@ Tile thesis_tile(const Summary& summary) {
 
 Tile solve_tile(const Trace& trace, const Summary& summary) {
   const double period = kMillisecondsPerSecond * trace.scenario.time_step;
-  Tile tile{.name = "Solve time, median / 99 %",
+  Tile tile{.name = "Solve time, median / 99th percentile",
             .value = kNone,
             .hint = fmt::format("control period {} ms", format_short(period, 4))};
   if (summary.steps == 0) return tile;

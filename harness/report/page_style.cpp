@@ -57,7 +57,7 @@ a { color: var(--c0); }
 .tile.warn { border-top-color: var(--warn); }
 .tile dt { font-size: 0.84rem; color: var(--soft); line-height: 1.3; }
 .tile dd { margin: 4px 0 0; }
-.tile .value { font-size: 1.35rem; font-weight: 650; line-height: 1.25; }
+.tile .value { font-size: 1.2rem; font-weight: 650; line-height: 1.25; }
 .tile.bad .value { color: var(--bad); }
 .tile.warn .value { color: var(--warn); }
 .tile .hint { font-size: 0.8rem; color: var(--soft); line-height: 1.35; }

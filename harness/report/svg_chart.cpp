@@ -65,38 +65,44 @@ std::vector<std::size_t> drawn_indices(const Series& series) {
   return indices;
 }
 
-std::string path_data(const Series& series, const Frame& frame) {
-  std::string data;
-  bool pen_down = false;
-  for (const std::size_t i : drawn_indices(series)) {
-    if (!is_shown(series, i)) {
-      pen_down = false;
-      continue;
-    }
-    const double x = frame.across(series.x[i]);
-    const double y = frame.up(series.y[i]);
-    if (series.mark == Mark::kPoints) {
-      data += fmt::format("M{:.1f} {:.1f}h0", x, y);
-    } else if (!pen_down) {
-      // A point alone between two gaps still shows, as a dot.
-      data += fmt::format("M{:.1f} {:.1f}h0", x, y);
+struct PathData {
+  std::string line;
+  std::string dots;  ///< points that no line leads to
+};
+
+PathData path_data(const Series& series, const Frame& frame) {
+  const std::vector<std::size_t> indices = drawn_indices(series);
+  const auto shown = [&](std::size_t n) {
+    return n < indices.size() && is_shown(series, indices[n]);
+  };
+  PathData data;
+  for (std::size_t n = 0; n < indices.size(); ++n) {
+    if (!shown(n)) continue;
+    const double x = frame.across(series.x[indices[n]]);
+    const double y = frame.up(series.y[indices[n]]);
+    const bool begins = n == 0 || !shown(n - 1);
+    if (series.mark == Mark::kPoints || (begins && !shown(n + 1))) {
+      data.dots += fmt::format("M{:.1f} {:.1f}h0", x, y);
+    } else if (begins) {
+      data.line += fmt::format("M{:.1f} {:.1f}", x, y);
     } else if (series.mark == Mark::kSteps) {
-      data += fmt::format("H{:.1f}V{:.1f}", x, y);
+      data.line += fmt::format("H{:.1f}V{:.1f}", x, y);
     } else {
-      data += fmt::format("L{:.1f} {:.1f}", x, y);
+      data.line += fmt::format("L{:.1f} {:.1f}", x, y);
     }
-    pen_down = true;
   }
   return data;
 }
 
+int palette_index(const Series& series) { return std::clamp(series.colour, 0, kPaletteSize - 1); }
+
 std::string line_classes(const Series& series) {
   return fmt::format("{} c{}{}", series.mark == Mark::kPoints ? "points" : "line",
-                     std::clamp(series.colour, 0, kPaletteSize - 1), series.dashed ? " dash" : "");
+                     palette_index(series), series.dashed ? " dash" : "");
 }
 
 Frame frame_of(const Chart& chart) {
-  std::vector<double> across;
+  std::vector<double> across = chart.x_includes;
   std::vector<double> up = chart.y_includes;
   for (const Series& series : chart.series) {
     for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
@@ -189,8 +195,13 @@ std::string drawing(const Chart& chart) {
                        frame.up(rule.value), kWidth - kRight);
   }
   for (const Series& series : chart.series) {
-    svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", line_classes(series),
-                       path_data(series, frame));
+    const PathData data = path_data(series, frame);
+    if (!data.line.empty()) {
+      svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", line_classes(series), data.line);
+    }
+    if (!data.dots.empty()) {
+      svg += fmt::format("<path class=\"points c{}\" d=\"{}\"/>", palette_index(series), data.dots);
+    }
   }
   return svg + "</svg>\n";
 }

@@ -37,7 +37,8 @@ struct Chart {
   std::string y_label;
   Scale y_scale = Scale::kLinear;
   double least_shown = 1e-12;        ///< on a logarithmic axis: what is below is drawn at its foot
-  std::vector<double> y_includes{};  ///< values that the axis must show
+  std::vector<double> x_includes{};  ///< values that the axes must show
+  std::vector<double> y_includes{};
   std::vector<Series> series{};
   std::vector<Rule> rules{};
 };

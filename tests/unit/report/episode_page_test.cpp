@@ -19,7 +19,7 @@ using testing::example_trace;
 using testing::occurrences;
 using testing::tag_problem;
 
-const EpisodePageOptions kWithVideo{.video_file = "episode.mp4"};
+EpisodePageOptions with_video() { return {.video_file = "episode.mp4"}; }
 
 /// The page without its style sheet, whose words are none of the page's own.
 std::string without_style(const std::string& page) {
@@ -37,7 +37,7 @@ Trace trace_that_failed_at_the_start() {
 }
 
 TEST(EpisodePage, its_tags_are_balanced) {
-  EXPECT_EQ(tag_problem(episode_page(example_trace(), kWithVideo)), "");
+  EXPECT_EQ(tag_problem(episode_page(example_trace(), with_video())), "");
   EXPECT_EQ(tag_problem(episode_page(trace_that_failed_at_the_start(), {})), "");
 }
 
@@ -48,7 +48,7 @@ TEST(EpisodePage, the_tag_check_finds_what_is_wrong) {
 }
 
 TEST(EpisodePage, refers_to_nothing_but_the_video) {
-  const std::string page = episode_page(example_trace(), kWithVideo);
+  const std::string page = episode_page(example_trace(), with_video());
   EXPECT_FALSE(contains(page, "http:"));
   EXPECT_FALSE(contains(page, "https:"));
   EXPECT_FALSE(contains(page, "@import"));
@@ -69,7 +69,7 @@ TEST(EpisodePage, without_a_video_refers_to_nothing) {
 }
 
 TEST(EpisodePage, its_policy_comes_first_and_forbids_all_but_styles_and_media) {
-  const std::string page = episode_page(example_trace(), kWithVideo);
+  const std::string page = episode_page(example_trace(), with_video());
   const std::size_t policy = page.find(
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src "
       "'unsafe-inline'; media-src 'self' file:; img-src data:;");
@@ -97,7 +97,7 @@ TEST(EpisodePage, texts_of_the_scenario_do_nothing) {
 TEST(EpisodePage, shows_the_numbers_of_the_summary) {
   const Trace trace = example_trace({.steps = 40});
   const Summary summary = summarise(trace);
-  const std::string page = episode_page(trace, kWithVideo);
+  const std::string page = episode_page(trace, with_video());
   const auto value = [](const std::string& text) {
     return "<dd class=\"value\">" + text + "</dd>";
   };
@@ -119,21 +119,21 @@ TEST(EpisodePage, shows_the_numbers_of_the_summary) {
 TEST(EpisodePage, entering_the_unsafe_set_is_never_shown_as_success) {
   Trace trace = example_trace();
   trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);  // inside of the first obstacle
-  const std::string page = episode_page(trace, kWithVideo);
+  const std::string page = episode_page(trace, with_video());
   EXPECT_TRUE(contains(page, "<section class=\"outcome bad\">"));
   EXPECT_TRUE(contains(page, "Target reached after 0.6 s, but through the unsafe set"));
   EXPECT_TRUE(contains(page, "Entered the unsafe set</dt><dd class=\"value\">yes</dd>"));
 }
 
 TEST(EpisodePage, says_what_a_certificate_does_not_cover) {
-  const std::string page = episode_page(example_trace(), kWithVideo);
+  const std::string page = episode_page(example_trace(), with_video());
   EXPECT_TRUE(contains(page, "plan as planned"));
   EXPECT_TRUE(contains(page, "Neither covers the plant’s mismatch"));
   EXPECT_TRUE(contains(page, "published method, worst stage: not a bound"));
 }
 
 TEST(EpisodePage, has_a_chart_of_each_kind_and_the_map) {
-  const std::string page = episode_page(example_trace(), kWithVideo);
+  const std::string page = episode_page(example_trace(), with_video());
   for (const char* title : {"Certificates", "Clearance", "Input: ", "Solve time", "Expected cost",
                             "Error budget", "Map: "}) {
     EXPECT_EQ(occurrences(page, "<figcaption>" + std::string(title)), 1) << title;
@@ -148,6 +148,7 @@ TEST(EpisodePage, a_fault_at_the_start_gives_its_words_and_no_charts) {
   EXPECT_TRUE(contains(page, "The simulator failed at the start"));
   EXPECT_TRUE(contains(page, "XML Error: &lt;body&gt; is broken"));
   EXPECT_FALSE(contains(page, "<figcaption>Certificates"));
+  EXPECT_TRUE(contains(page, "<figcaption>Map</figcaption>"));
   EXPECT_TRUE(contains(page, "Largest next-step certificate</dt><dd class=\"value\">–</dd>"));
 }
 
@@ -176,7 +177,7 @@ TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {
   trace.steps[0].particles.front().weights[1] = nan;
   trace.steps[10].plan_states.setConstant(-infinity);
   trace.final_state.setConstant(1e300);
-  const std::string page = episode_page(trace, kWithVideo);
+  const std::string page = episode_page(trace, with_video());
   EXPECT_EQ(tag_problem(page), "");
   const std::string own = without_style(page);
   for (std::size_t at = own.find(" d=\""); at != std::string::npos;
@@ -204,12 +205,12 @@ TEST(EpisodePage, a_state_far_away_leaves_the_map_readable) {
 TEST(EpisodePage, the_largest_usual_episode_stays_small) {
   constexpr std::size_t kLargest = 2'000'000;  // bytes
   const Trace trace = example_trace({.steps = 200, .horizon = 12, .points = 100});
-  EXPECT_LT(episode_page(trace, kWithVideo).size(), kLargest);
+  EXPECT_LT(episode_page(trace, with_video()).size(), kLargest);
 }
 
 TEST(EpisodePage, the_same_trace_gives_the_same_page) {
   const Trace trace = example_trace();
-  EXPECT_EQ(episode_page(trace, kWithVideo), episode_page(trace, kWithVideo));
+  EXPECT_EQ(episode_page(trace, with_video()), episode_page(trace, with_video()));
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ std::string tag_name(const std::string& tag) {
 }  // namespace
 
 std::string tag_problem(const std::string& html) {
-  static const std::set<std::string> kVoid = {"meta"};
+  const std::set<std::string> never_closed = {"meta"};
   std::vector<std::string> open;
   for (std::size_t at = html.find('<'); at != std::string::npos; at = html.find('<', at)) {
     const std::size_t end = tag_end(html, at);
@@ -38,7 +38,7 @@ std::string tag_problem(const std::string& html) {
     if (!tag.starts_with('/')) {
       const std::string name = tag_name(tag);
       if (name.empty()) return "no tag: <" + tag + ">";
-      if (!kVoid.contains(name)) open.push_back(name);
+      if (!never_closed.contains(name)) open.push_back(name);
     } else if (open.empty() || open.back() != tag.substr(1)) {
       return "closed but not open: <" + tag + ">";
     } else {

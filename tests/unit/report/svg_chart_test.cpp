@@ -1,6 +1,5 @@
 #include "harness/report/svg_chart.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +11,7 @@ namespace qsmpc {
 namespace {
 
 using testing::contains;
+using testing::occurrences;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -79,10 +79,12 @@ TEST(ChartFigure, a_gap_interrupts_the_line_and_is_said) {
   const std::string html = chart_figure(chart);
   EXPECT_FALSE(contains(html, "nan"));
   EXPECT_TRUE(contains(html, "1 value is not finite and not drawn"));
-  const std::size_t line =
-      html.find("d=\"M", html.find("class=\"line c0\"", html.find("rule\" d=\"M66")));
+  // The first point stands alone, as a dot; the last two are a line.
+  EXPECT_EQ(occurrences(html, "<path class=\"points c0\" d=\"M66.0 "), 1);
+  const std::size_t line = html.rfind("<path class=\"line c0\" d=\"M");
   const std::string data = html.substr(line, html.find('>', line) - line);
-  EXPECT_EQ(std::count(data.begin(), data.end(), 'M'), 2);  // one piece on each side
+  EXPECT_EQ(occurrences(data, "M"), 1);
+  EXPECT_EQ(occurrences(data, "L"), 1);
 }
 
 TEST(ChartFigure, without_any_finite_value_it_says_so) {
