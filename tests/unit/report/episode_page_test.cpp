@@ -192,14 +192,16 @@ TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {
 
 TEST(EpisodePage, a_state_far_away_leaves_the_map_readable) {
   Trace trace = example_trace();
-  trace.final_state[0] = 1e9;
-  const std::string page = episode_page(trace, {});
-  const std::size_t begin = page.find("<figcaption>Map");
-  const std::string map = page.substr(begin, page.find("</figure>", begin) - begin);
-  // The axis reaches one more length of the bounds, -1 … 12, and not to the state.
-  EXPECT_TRUE(contains(map, "<text class=\"middle\" x=\""));
-  EXPECT_TRUE(contains(map, ">25</text>"));
-  EXPECT_FALSE(contains(map, "10⁹"));
+  for (const double sign : {-1.0, 1.0}) {
+    trace.final_state[0] = sign * 1e9;
+    const std::string page = episode_page(trace, {});
+    const std::size_t begin = page.find("<figcaption>Map");
+    const std::string map = page.substr(begin, page.find("</figure>", begin) - begin);
+    // The axis reaches one more length of the bounds, -1 … 12, and not to the state.
+    EXPECT_TRUE(contains(map, sign > 0.0 ? ">25</text>" : ">−10</text>"));
+    EXPECT_FALSE(contains(map, "10⁹"));
+    EXPECT_FALSE(contains(map, "10⁸"));
+  }
 }
 
 TEST(EpisodePage, the_largest_usual_episode_stays_small) {
