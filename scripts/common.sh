@@ -1,5 +1,7 @@
-# Shared by the scripts beside it; to be sourced. Puts them in the project's root.
+# Shared by the scripts beside it; to be sourced. Puts them in the project's root; `caller` is the
+# folder that they were called from.
 set -euo pipefail
+caller=$PWD
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 
