@@ -81,7 +81,7 @@ struct Hdf5File::Impl {
   }
   void let_go(Handle& handle) const {
     if (failed) {
-      handle.release();
+      hdf5::abandon(handle);
     } else {
       handle.reset();
     }

@@ -1,5 +1,7 @@
 #include "harness/trace/hdf5_handle.hpp"
 
+#include <atomic>
+#include <cstdlib>
 #include <string_view>
 
 namespace qsmpc::hdf5 {
@@ -7,19 +9,31 @@ namespace {
 
 std::recursive_mutex& mutex() {
   // Never destroyed: a file may still close itself while the process's statics are torn down.
-  static auto* const kMutex = new std::recursive_mutex;
-  return *kMutex;
+  static auto* const instance = new std::recursive_mutex;
+  return *instance;
+}
+
+std::atomic<bool> files_abandoned = false;
+
+/// In place of the library's own clean-up, which would write once more what a full disk refused,
+/// and crash.
+void clean_up() {
+  if (!files_abandoned) H5close();
 }
 
 }  // namespace
 
+void abandon(Handle& handle) {
+  files_abandoned = true;
+  handle.release();
+}
+
 Lock::Lock() : lock_(mutex()) {
-  static const bool kPrepared = [] {
-    // The library's own clean-up at exit writes once more what a full disk refused, and crashes.
+  static const bool prepared = [] {
     H5dont_atexit();
-    return H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
+    return std::atexit(clean_up) == 0 && H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr) >= 0;
   }();
-  static_cast<void>(kPrepared);
+  static_cast<void>(prepared);
 }
 
 std::string error_words() {

@@ -44,6 +44,8 @@ class Handle {
   Close close_ = nullptr;
 };
 
+/// Gives up what cannot be closed any more; HDF5 keeps it until the process ends.
+void abandon(Handle& handle);
 /// The innermost message of HDF5's error stack; the system's own words alone where it has them.
 [[nodiscard]] std::string error_words();
 /// The type of texts of `bytes` bytes, or H5T_VARIABLE.

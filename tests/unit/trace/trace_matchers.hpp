@@ -1,6 +1,8 @@
 // Bit-exact comparison of traces.
 #pragma once
 
+#include <bit>
+#include <cstdint>
 #include <cstring>
 
 #include <gtest/gtest.h>
@@ -18,7 +20,7 @@ template <class Matrix>
 }
 
 [[nodiscard]] inline bool same_bits(double a, double b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
 inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
