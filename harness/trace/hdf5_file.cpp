@@ -25,15 +25,14 @@ using hdf5::text_type;
 constexpr unsigned kDeflateLevel = 2;
 /// Columns stored together in a dataset whose number of columns is set later.
 constexpr hsize_t kOpenColumnChunk = 8;
+/// Nothing that has a checksum crosses a boundary of so many bytes: a page of memory. A write that
+/// crosses one is torn there when the process is killed in it; one that does not is never.
+constexpr hsize_t kPage = 4096;
 /// How often a checksum that does not fit is taken for a writer at work. HDF5 waits twice as long
 /// after each attempt, from 1 ns on: together 1 ms, where its own default of 100 never ends.
 constexpr unsigned kReadAttempts = 20;
 /// More elements than this (4 GiB) in one dataset come from a damaged or hostile file.
 constexpr hsize_t kElementLimit = hsize_t{1} << 29;
-
-hid_t memory_type(DatasetSpec::Type type) {
-  return type == DatasetSpec::Type::kInt64 ? H5T_NATIVE_INT64 : H5T_NATIVE_DOUBLE;
-}
 
 /// Whether the superblock's flags say that a writer has the file open. Throws InputError where
 /// there is no file, and IoError where it cannot be read.
@@ -248,6 +247,10 @@ Hdf5File Hdf5File::create(const std::string& path) {
   impl->writing = true;
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   impl->check(H5Pset_obj_track_times(creation.get(), false), "/");
+  impl->check(H5Pset_file_space_strategy(creation.get(), H5F_FSPACE_STRATEGY_PAGE,
+                                         /*persist=*/false, /*threshold=*/1),
+              "/");
+  impl->check(H5Pset_file_space_page_size(creation.get(), kPage), "/");
   // Attributes in a heap of their own: in the header a text could have 64 KiB at most.
   impl->check(H5Pset_attr_phase_change(creation.get(), 0, 0), "/");
   const Handle access = hdf5::file_access();
@@ -380,12 +383,12 @@ void Hdf5File::set_columns(const std::string& path, std::size_t columns) {
 
 void Hdf5File::append(const std::string& path, std::span<const double> values) {
   const Lock lock;
-  impl_->append_rows(path, memory_type(DatasetSpec::Type::kFloat64), values.data(), values.size());
+  impl_->append_rows(path, H5T_NATIVE_DOUBLE, values.data(), values.size());
 }
 
 void Hdf5File::append(const std::string& path, std::span<const std::int64_t> values) {
   const Lock lock;
-  impl_->append_rows(path, memory_type(DatasetSpec::Type::kInt64), values.data(), values.size());
+  impl_->append_rows(path, H5T_NATIVE_INT64, values.data(), values.size());
 }
 
 void Hdf5File::append(const std::string& path, std::span<const std::string> values) {

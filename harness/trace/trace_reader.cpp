@@ -115,10 +115,13 @@ void TraceReader::read_motion() {
   const std::vector<double> times = file_.doubles("/plant/motion/time");
   const std::vector<double> positions = file_.doubles("/plant/motion/qpos");
   const std::size_t coordinates = file_.shape("/plant/motion/qpos")[1];
-  if (positions.size() < times.size() * coordinates) {
-    refuse("/plant/motion/qpos", "too few rows", std::to_string(times.size()));
+  std::size_t samples = times.size();
+  if (coordinates > 0) samples = std::min(samples, positions.size() / coordinates);
+  // A run that was killed within a step may have left the one without the other.
+  if (samples < times.size() && trace_.outcome != Outcome::kInterrupted) {
+    refuse("/plant/motion/qpos", std::to_string(samples) + " rows", std::to_string(times.size()));
   }
-  for (std::size_t i = 0; i < times.size(); ++i) {
+  for (std::size_t i = 0; i < samples; ++i) {
     const auto begin = positions.begin() + static_cast<std::ptrdiff_t>(i * coordinates);
     trace_.motion.push_back(
         {.time = times[i], .qpos = {begin, begin + static_cast<std::ptrdiff_t>(coordinates)}});
