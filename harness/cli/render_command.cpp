@@ -11,6 +11,7 @@
 #include "harness/cli/output.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/value_checks.hpp"
 
 namespace qsmpc {
 namespace {
@@ -23,21 +24,12 @@ struct RenderArguments {
   bool quiet = false;
 };
 
-/// "1280x720" as width and height. Throws InputError.
+/// Throws InputError on what is no frame size.
 void set_size(const std::string& text, EpisodeVideoOptions& options) {
-  const std::size_t cross = text.find('x');
-  try {
-    if (cross == std::string::npos) throw std::invalid_argument(text);
-    std::size_t width_end = 0;
-    std::size_t height_end = 0;
-    options.width = std::stoi(text.substr(0, cross), &width_end);
-    options.height = std::stoi(text.substr(cross + 1), &height_end);
-    if (width_end != cross || cross + 1 + height_end != text.size()) {
-      throw std::invalid_argument(text);
-    }
-  } catch (const std::logic_error&) {  // of std::stoi
-    throw InputError({.key = "--size", .found = text, .expected = "WIDTHxHEIGHT, e.g. 1280x720"});
-  }
+  const std::optional<FrameSize> size = parse_frame_size(text);
+  if (!size) throw InputError({.key = "--size", .found = text, .expected = expected_frame_size()});
+  options.width = size->width;
+  options.height = size->height;
 }
 
 int render(const RenderArguments& arguments) {
@@ -46,11 +38,7 @@ int render(const RenderArguments& arguments) {
   if (arguments.camera) options.camera = *arguments.camera;
   if (arguments.size) set_size(*arguments.size, options);
   if (arguments.fps) options.fps = *arguments.fps;
-  try {
-    make_video(trace, arguments.folder, options, arguments.quiet);
-  } catch (const std::invalid_argument& error) {
-    throw InputError({.key = "render", .found = error.what(), .expected = "valid video options"});
-  }
+  make_video(trace, arguments.folder, options, arguments.quiet);
   print_result(arguments.folder + "/" + kVideoFile + "\n");
   return interrupts() > 0 ? kInterruptedExit : kDone;
 }

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "controller/planning/ocp_solver.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -21,7 +23,11 @@ std::size_t farthest_near(std::string_view name) {
 }  // namespace
 
 const std::vector<std::string>& solver_names() {
-  static const std::vector<std::string> names{"lbfgs"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const SolverEntry& solver : solvers()) all.push_back(solver.name);
+    return all;
+  }();
   return names;
 }
 
