@@ -14,7 +14,8 @@
 #include <vector>
 
 #include "controller/certification/error_budget.hpp"
-#include "controller/planning/planner.hpp"
+#include "controller/planning/safe_set.hpp"
+#include "controller/prediction/prediction.hpp"
 
 namespace qsmpc {
 
@@ -28,10 +29,10 @@ struct StageCertificate {
   double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe: NOT a bound
 };
 
-/// Certificates of stages 1 … horizon of `plan`, which `planner` made for `belief`.
-/// budgets: what `error_budget` gives for the plan.
-[[nodiscard]] std::vector<StageCertificate> certify(const Planner& planner, const Gaussian& belief,
-                                                    const Plan& plan,
+/// Certificates of stages 1 … horizon of `motion`.
+/// budgets: what `error_budget` gives for it.
+[[nodiscard]] std::vector<StageCertificate> certify(const PredictedMotion& motion,
+                                                    const SafeSet& safe_set,
                                                     const std::vector<StageBudget>& budgets);
 
 /// Upper bound of the probability that the state is unsafe at any of the stages: their sum, at

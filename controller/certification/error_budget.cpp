@@ -18,17 +18,17 @@ double carried(double lipschitz, double error) {
 
 }  // namespace
 
-std::vector<StageBudget> error_budget(const Planner& planner, const Plan& plan) {
-  const double noise_w2 = planner.propagator().noise_w2();
-  std::vector<StageBudget> budgets(plan.prediction.stages.size());
-  budgets[0].belief = plan.belief.w2;
-  budgets[0].total = plan.belief.w2;
+std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
+  const double noise_w2 = motion.noise_w2;
+  std::vector<StageBudget> budgets(motion.prediction.stages.size());
+  budgets[0].belief = motion.belief_w2;
+  budgets[0].total = motion.belief_w2;
   for (std::size_t k = 0; k + 1 < budgets.size(); ++k) {
-    const double lipschitz = planner.dynamics().lipschitz(plan.policy.gains[k]);
+    const double lipschitz = motion.dynamics.lipschitz(motion.policy.gains[k]);
     // Particles that are not finite are infinitely far from any law.
-    const double compression = plan.prediction.maps[k].compression_w2;
+    const double compression = motion.prediction.maps[k].compression_w2;
     const bool usable =
-        plan.prediction.stages[k + 1].locations.allFinite() && !std::isnan(compression);
+        motion.prediction.stages[k + 1].locations.allFinite() && !std::isnan(compression);
     const double lost = usable ? compression : kInfinity;
     budgets[k].lipschitz = lipschitz;
     budgets[k + 1].belief = carried(lipschitz, budgets[k].belief);

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "controller/planning/planner.hpp"
+#include "controller/prediction/prediction.hpp"
 
 namespace qsmpc {
 
@@ -18,11 +18,11 @@ struct StageBudget {
   double lipschitz = 1.0;  ///< of the closed loop from this stage to the next; 1 at the last stage
 };
 
-/// The budgets of stages 0 … horizon of `plan`, which `planner` made. With L_k the Lipschitz
+/// The budgets of stages 0 … horizon of `motion`. With L_k the Lipschitz
 /// constant of the closed loop,
 ///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k)² + W_noise²) + W_compression,k+1:
 /// the noise is independent of the state and its quantiser centroidal, so that the cross term
 /// vanishes; the compression is a triangle inequality.
-[[nodiscard]] std::vector<StageBudget> error_budget(const Planner& planner, const Plan& plan);
+[[nodiscard]] std::vector<StageBudget> error_budget(const PredictedMotion& motion);
 
 }  // namespace qsmpc

@@ -1,9 +1,7 @@
 // The expected cost of a policy over the horizon and its exact gradient.
 //
-// `predict` rolls a discrete measure forward under a policy and records, for every stage, how the
-// stepped points were combined with the noise and compressed. With these assignments held, the cost
-// is a piecewise smooth function of the nominal inputs, and HorizonCost evaluates it and its exact
-// gradient by one pass forward and one backward.
+// With the assignments of a prediction held, the cost is a piecewise smooth function of the nominal
+// inputs, and HorizonCost evaluates it and its exact gradient by one pass forward and one backward.
 //
 // With f_i the stepped points and w the noise, the stage cost of Eq. 4-18 (its first line) is taken
 // before this stage's compression, which would lose a part of the second moment:
@@ -15,11 +13,10 @@
 
 #include <Eigen/Core>
 
-#include "controller/measure/gaussian_quantiser.hpp"
 #include "controller/planning/penalty.hpp"
-#include "controller/planning/policy.hpp"
 #include "controller/planning/safe_set.hpp"
-#include "controller/prediction/propagator.hpp"
+#include "controller/prediction/policy.hpp"
+#include "controller/prediction/prediction.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
@@ -41,17 +38,6 @@ struct CostParts {
   double obstacle = 0.0;
   [[nodiscard]] double total() const { return state + input + terminal + box + obstacle; }
 };
-
-/// The measures along the horizon under one policy.
-struct Prediction {
-  std::vector<DiscreteMeasure> stages;  ///< horizon + 1; stage 0 is the quantised belief
-  std::vector<Points> stepped;          ///< horizon; f(c_i, u_i) of stage k's points
-  std::vector<StageMap> maps;           ///< horizon; from stepped[k] to stages[k + 1]
-};
-
-/// Rolls `start` forward under `policy`, with assignments that suit it.
-[[nodiscard]] Prediction predict(const Dynamics& dynamics, const Propagator& propagator,
-                                 const DiscreteMeasure& start, const Policy& policy);
 
 /// What the cost depends on besides the inputs; refers to objects that must outlive it.
 struct HorizonCostTerms {

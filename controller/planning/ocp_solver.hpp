@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "controller/planning/policy.hpp"
+#include "controller/prediction/policy.hpp"
 
 namespace qsmpc {
 

@@ -125,6 +125,27 @@ const Plan& Planner::plan(const Gaussian& belief) {
   return *plan_;
 }
 
+const Plan& Planner::prescribe(const Gaussian& belief,
+                               const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
+  const InputBounds& bounds = settings_.bounds;
+  require(inputs.rows() == dynamics_.input_dim() && inputs.cols() == settings_.horizon,
+          "the inputs must be a matrix of inputs x stages");
+  // A comparison with NaN is false, so these are refused as well.
+  require(((inputs.colwise() - bounds.lower).array() >= 0.0).all() &&
+              ((inputs.colwise() - bounds.upper).array() <= 0.0).all(),
+          "the inputs must be within their bounds");
+  Stopwatch stopwatch;
+  prescribed_ = {};
+  prescribed_.belief = quantise_belief(belief);
+  stopwatch.add_to(prescribed_.timing.quantise);
+  prescribed_.policy = make_policy(belief.mean, inputs);
+  prescribed_.prediction =
+      predict(dynamics_, *propagator_, prescribed_.belief.measure, prescribed_.policy);
+  prescribed_.cost = cost_of(prescribed_);
+  stopwatch.add_to(prescribed_.timing.propagate);
+  return prescribed_;
+}
+
 HorizonCostTerms Planner::terms(const Eigen::MatrixXd& noise_covariance,
                                 const GaussianQuantisation& belief) const {
   return {.dynamics = dynamics_,
@@ -258,6 +279,16 @@ CostParts Planner::cost_of(const Plan& plan) const {
   Eigen::MatrixXd gradient(plan.policy.inputs.rows(), plan.policy.inputs.cols());
   cost.evaluate(plan.policy.inputs, gradient);
   return cost.parts();
+}
+
+PredictedMotion motion_of(const Planner& planner, const Gaussian& belief, const Plan& plan) {
+  return {.dynamics = planner.dynamics(),
+          .noise_covariance = planner.settings().noise_covariance,
+          .noise_w2 = planner.propagator().noise_w2(),
+          .belief = belief,
+          .belief_w2 = plan.belief.w2,
+          .policy = plan.policy,
+          .prediction = plan.prediction};
 }
 
 }  // namespace qsmpc

@@ -18,8 +18,8 @@
 #include "controller/planning/horizon_cost.hpp"
 #include "controller/planning/ocp_solver.hpp"
 #include "controller/planning/penalty.hpp"
-#include "controller/planning/policy.hpp"
 #include "controller/planning/safe_set.hpp"
+#include "controller/prediction/policy.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -70,6 +70,12 @@ class Planner {
   /// status of the plan, never an exception. The plan stays valid until the next call.
   const Plan& plan(const Gaussian& belief);
 
+  /// The plan whose nominal inputs are `inputs` (input_dim x horizon): predicted and priced for
+  /// `belief`, with the gains that belong to them, and not optimised. The plan stays valid until
+  /// the next call, which does not start from it. Throws std::invalid_argument as `plan`, and if
+  /// the inputs are of another size, not finite or not within the bounds.
+  const Plan& prescribe(const Gaussian& belief, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+
   /// Forgets the last plan: the next one is a cold start.
   void reset() { plan_.reset(); }
 
@@ -100,6 +106,11 @@ class Planner {
   std::optional<GaussianQuantisation> last_belief_;  ///< about zero, for `last_covariance_`
   Eigen::MatrixXd last_covariance_;
   std::optional<Plan> plan_;
+  Plan prescribed_;
 };
+
+/// What `plan`, which `planner` made for `belief`, predicts; refers to all three.
+[[nodiscard]] PredictedMotion motion_of(const Planner& planner, const Gaussian& belief,
+                                        const Plan& plan);
 
 }  // namespace qsmpc

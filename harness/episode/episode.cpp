@@ -109,8 +109,9 @@ class Episode {
     const Plan& plan = planner_.plan(belief_);
     const auto start = Clock::now();
     StepRecord record;
-    record.budgets = error_budget(planner_, plan);
-    record.certificates = certify(planner_, belief_, plan, record.budgets);
+    const PredictedMotion motion = motion_of(planner_, belief_, plan);
+    record.budgets = error_budget(motion);
+    record.certificates = certify(motion, planner_.settings().safe_set, record.budgets);
     record.timing.certify = milliseconds_since(start);
     record.timing.quantise = plan.timing.quantise;
     record.timing.propagate = plan.timing.propagate;

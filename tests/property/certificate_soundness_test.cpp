@@ -60,8 +60,9 @@ TEST(Certificates, are_never_below_the_simulated_truth) {
     const Problem problem = random_problem(generator);
     Planner planner(*problem.dynamics, problem.settings);
     const Plan& plan = planner.plan(problem.belief);
+    const PredictedMotion motion = motion_of(planner, problem.belief, plan);
     const std::vector<StageCertificate> certificates =
-        certify(planner, problem.belief, plan, error_budget(planner, plan));
+        certify(motion, problem.settings.safe_set, error_budget(motion));
     const UnsafeCounts truth = simulate(problem, plan.policy, kPaths, generator);
     ASSERT_EQ(certificates.size(), truth.stages.size());
     const std::string name = "problem " + std::to_string(index);

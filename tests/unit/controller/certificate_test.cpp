@@ -15,6 +15,12 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+std::vector<StageCertificate> certificates_of(const Planner& planner, const Gaussian& belief,
+                                              const Plan& plan) {
+  const PredictedMotion motion = motion_of(planner, belief, plan);
+  return certify(motion, planner.settings().safe_set, error_budget(motion));
+}
+
 TEST(Certificate, known_example_has_the_known_figures) {
   // Belief N(0, 0.01 I), u = 0.3 open loop, safe set [−1, 12]², stage 8: the truth is 2.9e-4 (1e6
   // samples), C3 3.7e-3; two digits are known.
@@ -39,7 +45,7 @@ TEST(Certificate, value_is_the_least_bound_and_names_it) {
                                            .upper = Eigen::Vector3d(0.6, 0.4, kInfinity)});
     Planner planner(*car, settings);
     const Plan& plan = planner.plan(dubins_belief());
-    const auto certificates = certify(planner, dubins_belief(), plan, error_budget(planner, plan));
+    const auto certificates = certificates_of(planner, dubins_belief(), plan);
     ASSERT_EQ(certificates.size(), 5U);
     double sum = 0.0;
     for (const StageCertificate& stage : certificates) {
@@ -65,7 +71,7 @@ TEST(Certificate, closed_loop_surrogate_is_silent_where_the_heading_is_restricte
   const auto first_surrogate = [&](const PlannerSettings& settings) {
     Planner planner(*car, settings);
     const Plan& plan = planner.plan(dubins_belief());
-    return certify(planner, dubins_belief(), plan, error_budget(planner, plan))[0].surrogate;
+    return certificates_of(planner, dubins_belief(), plan)[0].surrogate;
   };
   EXPECT_LT(first_surrogate(dubins_settings()), 1.0);
   PlannerSettings by_bounds = dubins_settings();
@@ -83,7 +89,7 @@ TEST(ErrorBudget, follows_its_recursion) {
   const auto car = dubins_car();
   Planner planner(*car, dubins_settings());
   const Plan& plan = planner.plan(dubins_belief());
-  const std::vector<StageBudget> budgets = error_budget(planner, plan);
+  const std::vector<StageBudget> budgets = error_budget(motion_of(planner, dubins_belief(), plan));
   ASSERT_EQ(budgets.size(), 6U);
   EXPECT_EQ(budgets[0].total, plan.belief.w2);
   double total = plan.belief.w2;
@@ -107,11 +113,12 @@ TEST(ErrorBudget, without_a_lipschitz_constant_is_infinite_but_for_a_known_state
   Gaussian known = dubins_belief();
   known.covariance.setZero();
   const Plan& plan = planner.plan(known);
-  const std::vector<StageBudget> budgets = error_budget(planner, plan);
+  const std::vector<StageBudget> budgets = error_budget(motion_of(planner, dubins_belief(), plan));
   EXPECT_EQ(budgets[0].total, 0.0);
   EXPECT_TRUE(std::isfinite(budgets[1].total));
   EXPECT_EQ(budgets[2].total, kInfinity);
-  const auto certificates = certify(planner, known, plan, budgets);
+  const auto certificates =
+      certify(motion_of(planner, known, plan), planner.settings().safe_set, budgets);
   EXPECT_LT(certificates[0].mixture, 1e-6);  // one step from a known state, ten deviations inside
   EXPECT_EQ(certificates[1].value, 1.0);
 }
@@ -124,8 +131,7 @@ TEST(Certificate, says_one_for_a_plan_of_a_broken_model) {
     settings.propagator = propagator;
     Planner planner(car, settings);
     const Plan& plan = planner.plan(dubins_belief());
-    for (const StageCertificate& stage :
-         certify(planner, dubins_belief(), plan, error_budget(planner, plan))) {
+    for (const StageCertificate& stage : certificates_of(planner, dubins_belief(), plan)) {
       EXPECT_EQ(stage.value, 1.0);
     }
   }

@@ -223,5 +223,31 @@ TEST(Planner, one_stage_and_one_point_suffice) {
   }
 }
 
+TEST(Planner, prescribes_given_inputs_without_optimising) {
+  const auto car = dubins_car();
+  Planner planner(*car, dubins_settings());
+  const Eigen::MatrixXd inputs = Eigen::MatrixXd::Constant(1, 5, 0.3);
+  const Plan& plan = planner.prescribe(dubins_belief(), inputs);
+  EXPECT_EQ(plan.policy.inputs, inputs);
+  EXPECT_EQ(plan.evaluations, 0);
+  EXPECT_EQ(plan.prediction.stages.size(), 6U);
+  // The optimised plan costs less: the prescribed one was priced, and not used as its start.
+  const double prescribed = plan.cost.total();
+  EXPECT_LT(planner.plan(dubins_belief()).cost.total(), prescribed);
+}
+
+TEST(Planner, refuses_prescribed_inputs_that_it_could_not_apply) {
+  const auto car = dubins_car();
+  Planner planner(*car, dubins_settings());
+  const Gaussian belief = dubins_belief();
+  Eigen::MatrixXd inputs = Eigen::MatrixXd::Zero(1, 5);
+  EXPECT_NO_THROW((void)planner.prescribe(belief, inputs));
+  EXPECT_THROW((void)planner.prescribe(belief, inputs.leftCols(4)), std::invalid_argument);
+  for (const double bad : {2.1, -2.1, std::nan("")}) {
+    inputs(0, 3) = bad;
+    EXPECT_THROW((void)planner.prescribe(belief, inputs), std::invalid_argument) << bad;
+  }
+}
+
 }  // namespace
 }  // namespace qsmpc::testing

@@ -1,4 +1,4 @@
-#include "controller/planning/policy.hpp"
+#include "controller/prediction/policy.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,38 @@
+// A discrete measure rolled forward along a horizon under a policy. `predict` records, for every
+// stage, how the stepped points were combined with the noise and compressed, so that the same
+// prediction can be evaluated again with these assignments held.
+#pragma once
+
+#include <vector>
+
+#include "controller/measure/measures.hpp"
+#include "controller/prediction/policy.hpp"
+#include "controller/prediction/propagator.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// The measures along the horizon under one policy.
+struct Prediction {
+  std::vector<DiscreteMeasure> stages;  ///< horizon + 1; stage 0 is the quantised belief
+  std::vector<Points> stepped;          ///< horizon; f(c_i, u_i) of stage k's points
+  std::vector<StageMap> maps;           ///< horizon; from stepped[k] to stages[k + 1]
+};
+
+/// Rolls `start` forward under `policy`, with assignments that suit it.
+[[nodiscard]] Prediction predict(const Dynamics& dynamics, const Propagator& propagator,
+                                 const DiscreteMeasure& start, const Policy& policy);
+
+/// A prediction with all that it was made from, as certificates need it; refers to objects that
+/// must outlive it.
+struct PredictedMotion {
+  const Dynamics& dynamics;
+  const Eigen::MatrixXd& noise_covariance;  ///< of the model, state_dim x state_dim
+  double noise_w2 = 0.0;                    ///< W2 between the noise and what stands for it
+  const Gaussian& belief;                   ///< law of the state at stage 0
+  double belief_w2 = 0.0;                   ///< W2 between the belief and prediction.stages[0]
+  const Policy& policy;
+  const Prediction& prediction;
+};
+
+}  // namespace qsmpc
