@@ -21,10 +21,11 @@ namespace qsmpc {
 
 struct StageCertificate {
   double value = 1.0;        ///< the least of the bounds
-  std::string kind;          ///< which one it was: "c1", "c2" or "c3"
+  std::string kind;          ///< which one it was: "c1", "c2", "c3" or "c4"
   double particles = 1.0;    ///< C1
   double mixture = 1.0;      ///< C2
   double surrogate = 1.0;    ///< C3; 1 where it does not apply
+  double smoothed = 1.0;     ///< C4; 1 where it does not apply
   double thesis = 1.0;       ///< Algorithms 3 and 4 as printed: NOT a bound
   double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe: NOT a bound
 };

@@ -1,5 +1,6 @@
 #include "controller/certification/error_budget.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -23,6 +24,7 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
   std::vector<StageBudget> budgets(motion.prediction.stages.size());
   budgets[0].belief = motion.belief_w2;
   budgets[0].total = motion.belief_w2;
+  double unstretched = motion.belief_w2;  // the total as it would be with L_k ≤ 1
   for (std::size_t k = 0; k + 1 < budgets.size(); ++k) {
     const double lipschitz = motion.dynamics.lipschitz(motion.policy.gains[k]);
     // Particles that are not finite are infinitely far from any law.
@@ -35,6 +37,9 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
     budgets[k + 1].noise = std::hypot(carried(lipschitz, budgets[k].noise), noise_w2);
     budgets[k + 1].compression = carried(lipschitz, budgets[k].compression) + lost;
     budgets[k + 1].total = std::hypot(carried(lipschitz, budgets[k].total), noise_w2) + lost;
+    unstretched = std::hypot(carried(std::min(1.0, lipschitz), unstretched), noise_w2) + lost;
+    // Infinite errors are blamed on the dynamics, unless the particles are lost anyway.
+    budgets[k + 1].dynamics = std::isinf(unstretched) ? 0.0 : budgets[k + 1].total - unstretched;
   }
   return budgets;
 }

@@ -9,11 +9,13 @@
 namespace qsmpc {
 
 /// W2 error of one stage. `total` bounds the distance between the law of the state and the
-/// particles; the parts say what each source alone would give (their sum is at least the total).
+/// particles; belief, noise and compression say what each source alone would give (their sum is at
+/// least the total), and dynamics what would be saved if every L_k above 1 were 1.
 struct StageBudget {
   double belief = 0.0;
   double noise = 0.0;
   double compression = 0.0;
+  double dynamics = 0.0;  ///< how much of the total is due to the dynamics stretching distances
   double total = 0.0;
   double lipschitz = 1.0;  ///< of the closed loop from this stage to the next; 1 at the last stage
 };
