@@ -1,6 +1,7 @@
 #include "models/dynamics/dynamics.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <stdexcept>
 
 #include "models/dynamics/dubins.hpp"
@@ -34,6 +35,23 @@ int SystemDescription::state_index(std::string_view wanted) const {
   const auto found = std::find_if(states.begin(), states.end(),
                                   [&](const Coordinate& state) { return state.name == wanted; });
   return found == states.end() ? -1 : static_cast<int>(found - states.begin());
+}
+
+DerivativeBounds unknown_derivative_bounds(int state_dim, int input_dim) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const int arguments = state_dim + input_dim;
+  const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Constant(state_dim, arguments, kInfinity);
+  const std::vector<Eigen::MatrixXd> hessian(
+      state_dim, Eigen::MatrixXd::Constant(arguments, arguments, kInfinity));
+  DerivativeBounds bounds{-jacobian, jacobian, hessian, hessian};
+  for (Eigen::MatrixXd& matrix : bounds.hessian_lower) matrix = -matrix;
+  return bounds;
+}
+
+DerivativeBounds Dynamics::derivative_bounds(
+    const Eigen::Ref<const Eigen::VectorXd>& /*lower*/,
+    const Eigen::Ref<const Eigen::VectorXd>& /*upper*/) const {
+  return unknown_derivative_bounds(state_dim(), input_dim());
 }
 
 const std::vector<SystemEntry>& systems() {

@@ -60,8 +60,21 @@ struct UnicycleStructure {
   double input_gain = 0.0;  ///< rad per unit of the input and period
 };
 
+/// Enclosures of the derivatives of f over a box of states and inputs, z = (x, u). An entry is
+/// infinite where no finite enclosure is known, never NaN.
+struct DerivativeBounds {
+  Eigen::MatrixXd jacobian_lower;  ///< state_dim x (state_dim + input_dim): ∂f_i/∂z_a
+  Eigen::MatrixXd jacobian_upper;
+  /// state_dim symmetric matrices (state_dim + input_dim)²: ∂²f_i/∂z_a∂z_b.
+  std::vector<Eigen::MatrixXd> hessian_lower;
+  std::vector<Eigen::MatrixXd> hessian_upper;
+};
+
+/// Bounds that say nothing, for f with these dimensions.
+[[nodiscard]] DerivativeBounds unknown_derivative_bounds(int state_dim, int input_dim);
+
 /// x⁺ = f(x, u) over one control period. Implementations hold constants only: every function is
-/// const, thread-safe and allocates nothing.
+/// const, thread-safe and, but for results returned by value, allocates nothing.
 class Dynamics {
  public:
   using BatchView = Eigen::Ref<const StateBatch>;
@@ -94,6 +107,16 @@ class Dynamics {
   /// gain: K, input_dim x state_dim; zero for an open-loop policy. Infinity where no global bound
   /// is known, so that a certificate built on it is trivial instead of wrong.
   [[nodiscard]] virtual double lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const = 0;
+
+  /// Enclosures of f's first and second derivatives over the box lower ≤ (x, u) ≤ upper, rounding
+  /// included. lower, upper: state_dim + input_dim, the states first; infinite where not
+  /// restricted, which costs nothing in coordinates in which f is affine with constant
+  /// coefficients. Of the box of one point these are the derivatives there, but for rounding.
+  /// Throws std::invalid_argument on another size or where lower ≤ upper does not hold. A system
+  /// that does not override this says nothing of its derivatives.
+  [[nodiscard]] virtual DerivativeBounds derivative_bounds(
+      const Eigen::Ref<const Eigen::VectorXd>& lower,
+      const Eigen::Ref<const Eigen::VectorXd>& upper) const;
 
   /// The unicycle that this system is, exactly, if it is one with three states and one input.
   [[nodiscard]] virtual std::optional<UnicycleStructure> unicycle() const { return std::nullopt; }

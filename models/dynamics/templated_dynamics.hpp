@@ -1,5 +1,5 @@
 // Turns a one-step function, written once for any scalar, into a full Dynamics: batch evaluation,
-// reverse mode and Jacobians. A new system is a struct with
+// reverse mode, Jacobians and enclosures of the derivatives. A new system is a struct with
 //
 //   static constexpr int kStateDim, kInputDim;
 //   template <class Scalar> void step(const Scalar* x, const Scalar* u, Scalar* next) const;
@@ -10,12 +10,17 @@
 // override `step` and `pullback`; the tests hold the overrides against what is derived here.
 #pragma once
 
+#include <limits>
+#include <stdexcept>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Core>
 #include <unsupported/Eigen/AutoDiff>
 
 #include "models/dynamics/dynamics.hpp"
+#include "models/dynamics/interval.hpp"
+#include "models/dynamics/second_order_jet.hpp"
 
 namespace qsmpc {
 
@@ -63,13 +68,52 @@ class TemplatedDynamics : public Dynamics {
     return model_.lipschitz(gain);
   }
 
+  [[nodiscard]] DerivativeBounds derivative_bounds(
+      const Eigen::Ref<const Eigen::VectorXd>& lower,
+      const Eigen::Ref<const Eigen::VectorXd>& upper) const final {
+    check_box(lower, upper);
+    Jet z[kArguments];
+    Jet next[kStateDim];
+    for (int a = 0; a < kArguments; ++a) z[a] = Jet::variable(Interval(lower[a], upper[a]), a);
+    model_.template step<Jet>(z, z + kStateDim, next);
+    DerivativeBounds bounds{Eigen::MatrixXd(kStateDim, kArguments),
+                            Eigen::MatrixXd(kStateDim, kArguments),
+                            std::vector(kStateDim, Eigen::MatrixXd(kArguments, kArguments)),
+                            std::vector(kStateDim, Eigen::MatrixXd(kArguments, kArguments))};
+    for (int i = 0; i < kStateDim; ++i) {
+      for (int a = 0; a < kArguments; ++a) {
+        bounds.jacobian_lower(i, a) = next[i].gradient(a).lower();
+        bounds.jacobian_upper(i, a) = next[i].gradient(a).upper();
+        for (int b = 0; b < kArguments; ++b) {
+          bounds.hessian_lower[i](a, b) = next[i].hessian(a, b).lower();
+          bounds.hessian_upper[i](a, b) = next[i].hessian(a, b).upper();
+        }
+      }
+    }
+    return bounds;
+  }
+
  protected:
   [[nodiscard]] const Model& model() const { return model_; }
 
  private:
   static constexpr int kArguments = kStateDim + kInputDim;
   using Jacobian = Eigen::Matrix<double, kStateDim, kArguments>;
+  using Jet = SecondOrderJet<kArguments>;
   using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, kArguments, 1>>;
+
+  /// Throws std::invalid_argument unless lower ≤ upper is a box of (x, u) with a point in it.
+  void check_box(const Eigen::Ref<const Eigen::VectorXd>& lower,
+                 const Eigen::Ref<const Eigen::VectorXd>& upper) const {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    if (lower.size() != kArguments || upper.size() != kArguments) {
+      throw std::invalid_argument(description_.name + ": a box must bound every state and input");
+    }
+    if (!(lower.array() <= upper.array()).all() || !(lower.array() < kInfinity).all() ||
+        !(upper.array() > -kInfinity).all()) {
+      throw std::invalid_argument(description_.name + ": a box must have lower ≤ upper");
+    }
+  }
 
   /// [∂f/∂x, ∂f/∂u] by forward-mode differentiation.
   [[nodiscard]] Jacobian differentiate(const Eigen::Matrix<double, kStateDim, 1>& state,

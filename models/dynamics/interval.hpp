@@ -1,0 +1,164 @@
+// Closed intervals of real numbers, and arithmetic that encloses: the result of an operation holds
+// every value that the operation takes on the operands.
+//
+//   const Interval speed(4.0, 6.0);
+//   const Interval share = 1.0 / (speed + 2.0);  // holds [1/8, 1/6]
+//
+// Ends may be infinite: [-inf, inf] says that nothing is known, and is what a division by an
+// interval around zero gives. No operation gives NaN. This is not Boost's interval, because there 0
+// · [-inf, inf], sines of unbounded intervals and divisions by zero are NaN, errors or dependent on
+// the policy, and because its directed rounding switches the processor's mode twice an operation.
+// Here results are rounded to nearest and then moved outwards by at least one unit in the last
+// place, which encloses the rounding of the operation; only underflow is not accounted for.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace qsmpc {
+
+class Interval {
+ public:
+  constexpr Interval() = default;
+  /// The one number `value`, finite. Implicit, so that constants mix with intervals.
+  constexpr Interval(double value) : lower_(value), upper_(value) {}  // NOLINT: implicit
+  /// lower ≤ upper; no check, see the arithmetic.
+  constexpr Interval(double lower, double upper) : lower_(lower), upper_(upper) {}
+
+  [[nodiscard]] static constexpr Interval everything() {
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
+  /// The interval between two computed ends, moved outwards by `roundings` relative 2⁻⁵², which is
+  /// at least as many units in the last place. An end that is NaN, or that overflowed to the wrong
+  /// side, says nothing: the result is then unbounded there.
+  [[nodiscard]] static Interval rounded(double lower, double upper, double roundings = 1.0) {
+    if (!(lower <= upper)) return everything();
+    constexpr double kLargest = std::numeric_limits<double>::max();
+    const double unit = roundings * std::numeric_limits<double>::epsilon();
+    const double low = std::min(lower, kLargest);
+    const double high = std::max(upper, -kLargest);
+    return {low - unit * std::abs(low), high + unit * std::abs(high)};
+  }
+
+  [[nodiscard]] constexpr double lower() const { return lower_; }
+  [[nodiscard]] constexpr double upper() const { return upper_; }
+  [[nodiscard]] constexpr bool contains(double value) const {
+    return lower_ <= value && value <= upper_;
+  }
+  [[nodiscard]] constexpr bool is_zero() const { return lower_ == 0.0 && upper_ == 0.0; }
+
+ private:
+  double lower_ = 0.0;
+  double upper_ = 0.0;
+};
+
+inline Interval operator-(const Interval& a) { return {-a.upper(), -a.lower()}; }
+
+inline Interval operator+(const Interval& a, const Interval& b) {
+  if (a.is_zero()) return b;
+  if (b.is_zero()) return a;
+  return Interval::rounded(a.lower() + b.lower(), a.upper() + b.upper());
+}
+
+inline Interval operator-(const Interval& a, const Interval& b) { return a + (-b); }
+
+inline Interval operator*(const Interval& a, const Interval& b) {
+  // Most derivatives of a step are zero, and zero times an infinite end would be NaN.
+  if (a.is_zero() || b.is_zero()) return {};
+  // The supremum of a product whose one factor only tends to infinity while the other is zero is 0.
+  const auto times = [](double s, double t) { return s == 0.0 || t == 0.0 ? 0.0 : s * t; };
+  const double low_low = times(a.lower(), b.lower());
+  const double low_high = times(a.lower(), b.upper());
+  const double high_low = times(a.upper(), b.lower());
+  const double high_high = times(a.upper(), b.upper());
+  return Interval::rounded(std::min(std::min(low_low, low_high), std::min(high_low, high_high)),
+                           std::max(std::max(low_low, low_high), std::max(high_low, high_high)));
+}
+
+/// 1/a; everything where a touches zero.
+inline Interval inverse(const Interval& a) {
+  if (a.contains(0.0)) return Interval::everything();
+  return Interval::rounded(1.0 / a.upper(), 1.0 / a.lower());
+}
+
+inline Interval operator/(const Interval& a, const Interval& b) { return a * inverse(b); }
+
+/// {a² : a in the interval}, which a · a encloses too widely around zero.
+inline Interval square(const Interval& a) {
+  const double low = std::abs(a.lower());
+  const double high = std::abs(a.upper());
+  const double least = a.contains(0.0) ? 0.0 : std::min(low, high);
+  const double largest = std::max(low, high);
+  return Interval::rounded(least * least, largest * largest);
+}
+
+/// Of the part of the interval that is not negative; everything where there is none.
+inline Interval sqrt(const Interval& a) {
+  if (!(a.upper() >= 0.0)) return Interval::everything();
+  return Interval::rounded(std::sqrt(std::max(a.lower(), 0.0)), std::sqrt(a.upper()));
+}
+
+namespace interval_detail {
+
+/// The mathematical library's sine, cosine and tangent are exact to less than two units.
+inline constexpr double kLibraryRoundings = 4.0;
+
+/// The whole numbers n for which (n + shift)·π is in the interval (width below 2π) are
+/// first … last. Numbers that only rounding could put inside count as inside: the slack is larger
+/// than the rounding of the two lines below, and so small that a sine is flat to rounding over it.
+struct Multiples {
+  double first;
+  double last;
+};
+inline Multiples multiples_of_pi(const Interval& angle, double shift) {
+  constexpr double kSlack = 1e-12;
+  const double low = angle.lower() / std::numbers::pi - shift;
+  const double high = angle.upper() / std::numbers::pi - shift;
+  return {std::ceil(low - kSlack * (1.0 + std::abs(low))),
+          std::floor(high + kSlack * (1.0 + std::abs(high)))};
+}
+
+/// The range of a wave that is 1 at (n + shift)·π for even n, -1 for odd n, monotone between, from
+/// its values at the two ends of `angle`.
+inline Interval range_of_wave(const Interval& angle, double at_lower, double at_upper,
+                              double shift) {
+  const auto [first, last] = multiples_of_pi(angle, shift);
+  const bool first_is_even = first == 2.0 * std::floor(0.5 * first);
+  const bool has_peak = first < last || (first == last && first_is_even);
+  const bool has_trough = first < last || (first == last && !first_is_even);
+  const Interval ends = Interval::rounded(std::min(at_lower, at_upper),
+                                          std::max(at_lower, at_upper), kLibraryRoundings);
+  return {has_trough ? -1.0 : std::max(ends.lower(), -1.0),
+          has_peak ? 1.0 : std::min(ends.upper(), 1.0)};
+}
+
+inline bool covers_a_period(const Interval& angle) {
+  return !(angle.upper() - angle.lower() < 2.0 * std::numbers::pi);
+}
+
+}  // namespace interval_detail
+
+inline Interval cos(const Interval& angle) {
+  if (interval_detail::covers_a_period(angle)) return {-1.0, 1.0};
+  return interval_detail::range_of_wave(angle, std::cos(angle.lower()), std::cos(angle.upper()),
+                                        0.0);
+}
+
+inline Interval sin(const Interval& angle) {
+  if (interval_detail::covers_a_period(angle)) return {-1.0, 1.0};
+  return interval_detail::range_of_wave(angle, std::sin(angle.lower()), std::sin(angle.upper()),
+                                        0.5);
+}
+
+/// Everything where the interval touches a pole.
+inline Interval tan(const Interval& angle) {
+  if (interval_detail::covers_a_period(angle)) return Interval::everything();
+  const auto [first, last] = interval_detail::multiples_of_pi(angle, 0.5);
+  if (first <= last) return Interval::everything();
+  return Interval::rounded(std::tan(angle.lower()), std::tan(angle.upper()),
+                           interval_detail::kLibraryRoundings);
+}
+
+}  // namespace qsmpc
