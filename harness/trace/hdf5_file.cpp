@@ -2,14 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstring>
 #include <map>
 #include <stdexcept>
 #include <utility>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 #include "harness/errors.hpp"
 #include "harness/trace/hdf5_handle.hpp"
@@ -33,33 +29,6 @@ constexpr hsize_t kPage = 4096;
 constexpr unsigned kReadAttempts = 20;
 /// More elements than this (4 GiB) in one dataset come from a damaged or hostile file.
 constexpr hsize_t kElementLimit = hsize_t{1} << 29;
-
-/// Whether the superblock's flags say that a writer has the file open. Throws InputError where
-/// there is no file, and IoError where it cannot be read.
-bool opened_for_writing(const std::string& path) {
-  constexpr const char* kExpected = "a trace in HDF5, as `qsmpc run` writes it";
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) {
-    const int error = errno;
-    if (error != ENOENT && error != ENOTDIR) throw IoError(path + ": " + std::strerror(error));
-    throw InputError({.file = path, .found = "no file", .expected = kExpected});
-  }
-  constexpr std::size_t kVersion = 8;
-  constexpr std::size_t kFlags = 11;
-  std::array<char, kFlags + 1> head{};
-  const ssize_t count = ::read(descriptor, head.data(), head.size());
-  const int error = errno;
-  ::close(descriptor);
-  if (count < 0 && error == EISDIR) {
-    throw InputError({.file = path, .found = "a folder", .expected = kExpected});
-  }
-  if (count < 0) throw IoError(path + ": " + std::strerror(error));
-  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
-  if (std::string_view(head.data(), kSignature.size()) != kSignature) {
-    throw InputError({.file = path, .found = "no HDF5 file", .expected = kExpected});
-  }
-  return head[kVersion] >= 3 && head[kFlags] != 0;
-}
 
 }  // namespace
 
@@ -268,7 +237,7 @@ Hdf5File Hdf5File::open(const std::string& path) {
   const Lock lock;
   auto impl = std::make_unique<Impl>();
   impl->path = path;
-  impl->left_open = opened_for_writing(path);
+  impl->left_open = hdf5::opened_for_writing(path);
   // HDF5 refuses to open a file that its writer left open in any other way, and in this one it does
   // not compare the file's length with the stored one, so that it serves for nothing else.
   const unsigned flags = H5F_ACC_RDONLY | (impl->left_open ? H5F_ACC_SWMR_READ : 0U);
@@ -423,6 +392,11 @@ bool Hdf5File::left_open_by_writer() const { return impl_->left_open; }
 bool Hdf5File::has_attribute(const std::string& object, const std::string& name) const {
   const Lock lock;
   return H5Aexists_by_name(impl_->file.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
+}
+
+bool Hdf5File::has_dataset(const std::string& path) const {
+  const Lock lock;
+  return H5Lexists(impl_->file.get(), path.c_str(), H5P_DEFAULT) > 0;
 }
 
 std::string Hdf5File::text(const std::string& object, const std::string& name) const {

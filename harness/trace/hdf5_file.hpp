@@ -93,6 +93,7 @@ class Hdf5File {
   [[nodiscard]] std::int64_t integer(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::uint64_t unsigned_integer(const std::string& object,
                                                const std::string& name) const;
+  [[nodiscard]] bool has_dataset(const std::string& path) const;
   /// Lengths of a dataset's dimensions.
   [[nodiscard]] std::vector<std::size_t> shape(const std::string& path) const;
   /// All elements of a dataset, the last dimension fastest.

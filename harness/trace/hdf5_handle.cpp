@@ -1,8 +1,16 @@
 #include "harness/trace/hdf5_handle.hpp"
 
+#include <array>
 #include <atomic>
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <string_view>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "harness/errors.hpp"
 
 namespace qsmpc::hdf5 {
 namespace {
@@ -68,6 +76,31 @@ Handle file_access() {
   // A file system that knows no locks is no reason to refuse.
   H5Pset_file_locking(access.get(), /*use_file_locking=*/true, /*ignore_when_disabled=*/true);
   return access;
+}
+
+bool opened_for_writing(const std::string& path) {
+  constexpr const char* kExpected = "a trace in HDF5, as `qsmpc run` writes it";
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    const int error = errno;
+    if (error != ENOENT && error != ENOTDIR) throw IoError(path + ": " + std::strerror(error));
+    throw InputError({.file = path, .found = "no file", .expected = kExpected});
+  }
+  constexpr std::size_t kVersion = 8;
+  constexpr std::size_t kFlags = 11;
+  std::array<char, kFlags + 1> head{};
+  const ssize_t count = ::read(descriptor, head.data(), head.size());
+  const int error = errno;
+  ::close(descriptor);
+  if (count < 0 && error == EISDIR) {
+    throw InputError({.file = path, .found = "a folder", .expected = kExpected});
+  }
+  if (count < 0) throw IoError(path + ": " + std::strerror(error));
+  constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+  if (std::string_view(head.data(), kSignature.size()) != kSignature) {
+    throw InputError({.file = path, .found = "no HDF5 file", .expected = kExpected});
+  }
+  return head[kVersion] >= 3 && head[kFlags] != 0;
 }
 
 }  // namespace qsmpc::hdf5

@@ -52,5 +52,8 @@ void abandon(Handle& handle);
 [[nodiscard]] Handle text_type(std::size_t bytes);
 /// How files are opened: the format's version, locks, and what closing one closes with it.
 [[nodiscard]] Handle file_access();
+/// Whether the superblock's flags say that a writer has the file open. Throws InputError where
+/// there is no file, and IoError where it cannot be read.
+[[nodiscard]] bool opened_for_writing(const std::string& path);
 
 }  // namespace qsmpc::hdf5

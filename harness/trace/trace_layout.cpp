@@ -2,7 +2,9 @@
 
 #include <cstddef>
 #include <string>
-#include <utility>
+
+#include "harness/trace/certificate_fields.hpp"
+#include "harness/trace/coordinate_labels.hpp"
 
 namespace qsmpc {
 namespace {
@@ -16,31 +18,17 @@ constexpr std::size_t kMotionChunk = 256;
 
 /// The sizes and names that shapes and attributes are made from.
 struct Sizes {
-  std::size_t states;
-  std::size_t inputs;
   std::size_t horizon;
-  std::vector<std::string> state_names{};
-  std::vector<std::string> state_units{};
-  std::vector<std::string> input_names{};
-  std::vector<std::string> input_units{};
+  CoordinateLabels states;
+  CoordinateLabels inputs;
 };
 
 Sizes sizes_of(const Scenario& scenario) {
   const auto dynamics =
       make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const SystemDescription& description = dynamics->description();
-  Sizes sizes{.states = description.states.size(),
-              .inputs = description.inputs.size(),
-              .horizon = static_cast<std::size_t>(scenario.controller.horizon)};
-  for (const Coordinate& state : description.states) {
-    sizes.state_names.push_back(state.name);
-    sizes.state_units.push_back(state.unit);
-  }
-  for (const Coordinate& input : description.inputs) {
-    sizes.input_names.push_back(input.name);
-    sizes.input_units.push_back(input.unit);
-  }
-  return sizes;
+  return {.horizon = static_cast<std::size_t>(scenario.controller.horizon),
+          .states = labels_of(dynamics->description().states),
+          .inputs = labels_of(dynamics->description().inputs)};
 }
 
 void add_plant(std::vector<DatasetSpec>& layout, const Sizes& n) {
@@ -49,29 +37,29 @@ void add_plant(std::vector<DatasetSpec>& layout, const Sizes& n) {
                     .units = {"s"},
                     .comment = "when the control period begins"});
   layout.push_back({.path = "/plant/state",
-                    .row_shape = {n.states},
+                    .row_shape = {n.states.names.size()},
                     .axes = {"step", "state"},
-                    .units = n.state_units,
-                    .columns = n.state_names,
+                    .units = n.states.units,
+                    .columns = n.states.names,
                     .comment = "true state at the beginning of the period"});
   layout.push_back({.path = "/plant/input",
-                    .row_shape = {n.inputs},
+                    .row_shape = {n.inputs.names.size()},
                     .axes = {"step", "input"},
-                    .units = n.input_units,
-                    .columns = n.input_names,
+                    .units = n.inputs.units,
+                    .columns = n.inputs.names,
                     .comment = "applied during the period"});
   layout.push_back({.path = "/plant/disturbance",
-                    .row_shape = {n.states},
+                    .row_shape = {n.states.names.size()},
                     .axes = {"step", "state"},
-                    .units = n.state_units,
-                    .columns = n.state_names,
+                    .units = n.states.units,
+                    .columns = n.states.names,
                     .comment = "added to the state at the end of the period"});
   layout.push_back({.path = "/plant/final_state",
                     .axes = {"state"},
-                    .units = n.state_units,
-                    .columns = n.state_names,
+                    .units = n.states.units,
+                    .columns = n.states.names,
                     .comment = "true state after the last period; empty if the run was killed",
-                    .chunk_rows = n.states});
+                    .chunk_rows = n.states.names.size()});
   layout.push_back({.path = "/plant/motion/time",
                     .axes = {"sample"},
                     .units = {"s"},
@@ -86,26 +74,26 @@ void add_plant(std::vector<DatasetSpec>& layout, const Sizes& n) {
 
 void add_belief_and_plan(std::vector<DatasetSpec>& layout, const Sizes& n) {
   layout.push_back({.path = "/belief/mean",
-                    .row_shape = {n.states},
+                    .row_shape = {n.states.names.size()},
                     .axes = {"step", "state"},
-                    .units = n.state_units,
-                    .columns = n.state_names});
+                    .units = n.states.units,
+                    .columns = n.states.names});
   layout.push_back({.path = "/belief/covariance",
-                    .row_shape = {n.states, n.states},
+                    .row_shape = {n.states.names.size(), n.states.names.size()},
                     .axes = {"step", "state", "state"},
-                    .units = n.state_units,
-                    .columns = n.state_names,
+                    .units = n.states.units,
+                    .columns = n.states.names,
                     .comment = "an entry has the unit of its row times that of its column"});
   layout.push_back({.path = "/plan/inputs",
-                    .row_shape = {n.horizon, n.inputs},
+                    .row_shape = {n.horizon, n.inputs.names.size()},
                     .axes = {"step", "stage", "input"},
-                    .units = n.input_units,
-                    .columns = n.input_names});
+                    .units = n.inputs.units,
+                    .columns = n.inputs.names});
   layout.push_back({.path = "/plan/states",
-                    .row_shape = {n.horizon + 1, n.states},
+                    .row_shape = {n.horizon + 1, n.states.names.size()},
                     .axes = {"step", "stage", "state"},
-                    .units = n.state_units,
-                    .columns = n.state_names,
+                    .units = n.states.units,
+                    .columns = n.states.names,
                     .comment = "nominal states, the present one first"});
   layout.push_back({.path = "/plan/cost",
                     .row_shape = {5},
@@ -134,10 +122,10 @@ void add_particles(std::vector<DatasetSpec>& layout, const Sizes& n) {
       "the points of step k and stage s (0 is the present) are the rows offsets[k, s] up to, "
       "without, offsets[k, s + 1], counted from 0";
   layout.push_back({.path = "/particles/locations",
-                    .row_shape = {n.states},
+                    .row_shape = {n.states.names.size()},
                     .axes = {"point", "state"},
-                    .units = n.state_units,
-                    .columns = n.state_names,
+                    .units = n.states.units,
+                    .columns = n.states.names,
                     .comment = slices,
                     .chunk_rows = kPointChunk,
                     .compress = true});
@@ -156,41 +144,37 @@ void add_particles(std::vector<DatasetSpec>& layout, const Sizes& n) {
 }
 
 void add_certificate(std::vector<DatasetSpec>& layout, const Sizes& n) {
+  std::vector<std::string> sources;
+  for (const BudgetField& field : kBudgetColumns) sources.emplace_back(field.name);
   layout.push_back({.path = "/certificate/budget",
-                    .row_shape = {n.horizon + 1, 4},
+                    .row_shape = {n.horizon + 1, sources.size()},
                     .axes = {"step", "stage", "source"},
-                    .units = {"Euclidean norm of the state"},
-                    .columns = {"belief", "noise", "compression", "total"},
-                    .comment = "bounds of the W2 distance between the model's law and the "
-                               "particles; stage 0 is the present"});
+                    .units = {kStateNorm},
+                    .columns = sources,
+                    .comment = kBudgetMeaning});
+  layout.push_back({.path = kDynamicsPath,
+                    .row_shape = {n.horizon + 1},
+                    .axes = {"step", "stage"},
+                    .units = {kStateNorm},
+                    .comment = kDynamicsMeaning});
   layout.push_back({.path = "/certificate/lipschitz",
                     .row_shape = {n.horizon + 1},
                     .axes = {"step", "stage"},
                     .units = {"1"},
-                    .comment = "bound of the closed loop's Lipschitz constant from this stage to "
-                               "the next; 1 at the last"});
-  const std::vector<std::pair<std::string, std::string>> probabilities = {
-      {"value",
-       "the least of the sound upper bounds of the probability that the model's state is "
-       "unsafe; the first column is stage 1"},
-      {"particles", "c1: worst case over the W2 ball around the particles; sound"},
-      {"mixture", "c2: the same before the last noise, which stays Gaussian; sound"},
-      {"surrogate", "c3: affine-Gaussian surrogate, 1 where it does not apply; sound"},
-      {"thesis", "the reference algorithm as printed; not sound"},
-      {"unsafe_mass", "weight of the particles that are unsafe; no bound"}};
-  for (const auto& [name, meaning] : probabilities) {
-    layout.push_back({.path = "/certificate/" + name,
+                    .comment = kLipschitzMeaning});
+  for (const CertificateField& field : kCertificateFields) {
+    layout.push_back({.path = certificate_path(field),
                       .row_shape = {n.horizon},
                       .axes = {"step", "stage"},
                       .units = {"1"},
-                      .comment = meaning});
+                      .comment = field.meaning});
   }
   layout.push_back({.path = "/certificate/kind",
                     .type = Type::kText,
                     .row_shape = {n.horizon},
                     .axes = {"step", "stage"},
                     .units = {"1"},
-                    .comment = "which bound the value is"});
+                    .comment = kKindMeaning});
 }
 
 void add_timing(std::vector<DatasetSpec>& layout) {
@@ -215,6 +199,10 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
   add_certificate(layout, sizes);
   add_timing(layout);
   return layout;
+}
+
+bool may_be_missing(std::string_view path) {
+  return path == kDynamicsPath || path == "/certificate/smoothed";
 }
 
 }  // namespace qsmpc

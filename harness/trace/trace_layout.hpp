@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "harness/scenario/scenario.hpp"
@@ -16,5 +17,9 @@ inline constexpr std::int64_t kTraceSchema = 1;
 /// The datasets of a trace of `scenario`. A dataset whose first axis is "step" has one row a
 /// control period. Throws std::invalid_argument on an unknown system.
 [[nodiscard]] std::vector<DatasetSpec> trace_layout(const Scenario& scenario);
+
+/// Whether the dataset came to the schema after the first traces were written: a trace without it
+/// is read all the same.
+[[nodiscard]] bool may_be_missing(std::string_view path);
 
 }  // namespace qsmpc

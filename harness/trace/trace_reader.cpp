@@ -1,11 +1,14 @@
 // read_trace: the reading side of trace_file.hpp.
 #include <algorithm>
+#include <iterator>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
 
@@ -13,6 +16,9 @@ namespace qsmpc {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Of what an older trace does not say.
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads one file's groups into `trace`; a step is believed once it has a time.
 class TraceReader {
@@ -33,9 +39,14 @@ class TraceReader {
   void read_plant_and_belief();
   void read_plan();
   void read_particles();
+  void read_budgets();
   void read_certificates();
   void read_timing();
 
+  /// The numbers of a dataset that older traces do not have; none where it is missing.
+  [[nodiscard]] std::vector<double> doubles_if_there(const std::string& path) const {
+    return file_.has_dataset(path) ? file_.doubles(path) : std::vector<double>();
+  }
   /// The numbers of step `k` in a dataset with `row` numbers a step.
   [[nodiscard]] static const double* row_of(const std::vector<double>& values, std::size_t k,
                                             Eigen::Index row) {
@@ -57,6 +68,7 @@ Trace TraceReader::read() {
   read_plant_and_belief();
   read_plan();
   read_particles();
+  read_budgets();
   read_certificates();
   read_timing();
   return std::move(trace_);
@@ -93,6 +105,7 @@ void TraceReader::check_shapes() {
   const auto shape_of_time = file_.shape("/plant/time");
   const std::size_t steps = shape_of_time.empty() ? 0 : shape_of_time.front();
   for (const DatasetSpec& spec : trace_layout(trace_.scenario)) {
+    if (may_be_missing(spec.path) && !file_.has_dataset(spec.path)) continue;
     const std::vector<std::size_t> found = file_.shape(spec.path);
     if (found.size() != spec.row_shape.size() + 1) {
       refuse(spec.path, std::to_string(found.size()) + " dimensions",
@@ -208,34 +221,41 @@ void TraceReader::read_particles() {
   }
 }
 
-void TraceReader::read_certificates() {
+void TraceReader::read_budgets() {
   const auto budgets = file_.doubles("/certificate/budget");
   const auto lipschitz = file_.doubles("/certificate/lipschitz");
-  const auto values = file_.doubles("/certificate/value");
+  const auto dynamics = doubles_if_there(kDynamicsPath);
+  const auto stages = static_cast<std::size_t>(horizon_) + 1;
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    for (std::size_t i = k * stages; i < (k + 1) * stages; ++i) {
+      StageBudget budget{.dynamics = dynamics.empty() ? kUnknown : dynamics[i],
+                         .lipschitz = lipschitz[i]};
+      const double* const columns = row_of(budgets, i, std::ssize(kBudgetColumns));
+      for (std::size_t c = 0; c < kBudgetColumns.size(); ++c) {
+        budget.*kBudgetColumns[c].member = columns[c];
+      }
+      trace_.steps[k].budgets.push_back(budget);
+    }
+  }
+}
+
+void TraceReader::read_certificates() {
   const auto kinds = file_.texts("/certificate/kind");
-  const auto particles = file_.doubles("/certificate/particles");
-  const auto mixtures = file_.doubles("/certificate/mixture");
-  const auto surrogates = file_.doubles("/certificate/surrogate");
-  const auto thesis = file_.doubles("/certificate/thesis");
-  const auto unsafe = file_.doubles("/certificate/unsafe_mass");
   const auto horizon = static_cast<std::size_t>(horizon_);
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
-    for (std::size_t s = 0; s <= horizon; ++s) {
-      const double* const budget = row_of(budgets, k * (horizon + 1) + s, 4);
-      trace_.steps[k].budgets.push_back({.belief = budget[0],
-                                         .noise = budget[1],
-                                         .compression = budget[2],
-                                         .total = budget[3],
-                                         .lipschitz = lipschitz[k * (horizon + 1) + s]});
+    trace_.steps[k].certificates.resize(horizon);
+    for (std::size_t s = 0; s < horizon; ++s) {
+      trace_.steps[k].certificates[s].kind = kinds[k * horizon + s];
     }
-    for (std::size_t i = k * horizon; i < (k + 1) * horizon; ++i) {
-      trace_.steps[k].certificates.push_back({.value = values[i],
-                                              .kind = kinds[i],
-                                              .particles = particles[i],
-                                              .mixture = mixtures[i],
-                                              .surrogate = surrogates[i],
-                                              .thesis = thesis[i],
-                                              .unsafe_mass = unsafe[i]});
+  }
+  for (const CertificateField& field : kCertificateFields) {
+    // A bound that is missing keeps its default of 1: it was not among those that were computed.
+    const auto values = doubles_if_there(certificate_path(field));
+    if (values.empty()) continue;
+    for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+      for (std::size_t s = 0; s < horizon; ++s) {
+        trace_.steps[k].certificates[s].*field.member = values[k * horizon + s];
+      }
     }
   }
 }

@@ -10,6 +10,8 @@
 #include <unistd.h>
 
 #include "harness/errors.hpp"
+#include "harness/trace/certificate_fields.hpp"
+#include "harness/trace/rows.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
 
@@ -18,21 +20,6 @@ namespace {
 
 void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(std::string("step record: ") + what);
-}
-
-/// `matrix` with its rows one after the other.
-template <class Matrix>
-std::vector<double> by_rows(const Matrix& matrix) {
-  std::vector<double> values;
-  values.reserve(static_cast<std::size_t>(matrix.size()));
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) values.push_back(matrix(i, j));
-  }
-  return values;
-}
-
-void add(std::vector<double>& to, const std::vector<double>& values) {
-  to.insert(to.end(), values.begin(), values.end());
 }
 
 void synchronise(const std::string& path, int flags) {
@@ -119,7 +106,7 @@ void TraceWriter::append_motion(std::span<const MotionSample> motion) {
   for (const MotionSample& sample : motion) {
     require(sample.qpos.size() == qpos_size_, "motion samples differ in size");
     times.push_back(sample.time);
-    add(positions, sample.qpos);
+    append_to(positions, sample.qpos);
   }
   file_.append("/plant/motion/qpos", positions);
   file_.append("/plant/motion/time", times);
@@ -147,8 +134,8 @@ void TraceWriter::append_particles(const StepRecord& record) {
   std::vector<double> locations;
   std::vector<double> weights;
   for (const StageParticles& stage : record.particles) {
-    add(locations, by_rows(stage.locations.transpose()));
-    add(weights, by_rows(stage.weights));
+    append_to(locations, by_rows(stage.locations.transpose()));
+    append_to(weights, by_rows(stage.weights));
     points_ += stage.weights.size();
     offsets.push_back(points_);
   }
@@ -160,26 +147,15 @@ void TraceWriter::append_particles(const StepRecord& record) {
 void TraceWriter::append_certificates(const StepRecord& record) {
   std::vector<double> budgets;
   for (const StageBudget& stage : record.budgets) {
-    add(budgets, {stage.belief, stage.noise, stage.compression, stage.total});
+    for (const BudgetField& field : kBudgetColumns) budgets.push_back(stage.*field.member);
   }
   file_.append("/certificate/budget", budgets);
-  std::vector<double> lipschitz;
-  for (const StageBudget& stage : record.budgets) lipschitz.push_back(stage.lipschitz);
-  file_.append("/certificate/lipschitz", lipschitz);
-  std::vector<std::string> kinds;
-  for (const StageCertificate& stage : record.certificates) kinds.push_back(stage.kind);
-  file_.append("/certificate/kind", kinds);
-  const auto append_all = [&](const char* path, double StageCertificate::*member) {
-    std::vector<double> values;
-    for (const StageCertificate& stage : record.certificates) values.push_back(stage.*member);
-    file_.append(path, values);
-  };
-  append_all("/certificate/value", &StageCertificate::value);
-  append_all("/certificate/particles", &StageCertificate::particles);
-  append_all("/certificate/mixture", &StageCertificate::mixture);
-  append_all("/certificate/surrogate", &StageCertificate::surrogate);
-  append_all("/certificate/thesis", &StageCertificate::thesis);
-  append_all("/certificate/unsafe_mass", &StageCertificate::unsafe_mass);
+  file_.append(kDynamicsPath, column_of(record.budgets, &StageBudget::dynamics));
+  file_.append("/certificate/lipschitz", column_of(record.budgets, &StageBudget::lipschitz));
+  for (const CertificateField& field : kCertificateFields) {
+    file_.append(certificate_path(field), column_of(record.certificates, field.member));
+  }
+  file_.append("/certificate/kind", column_of(record.certificates, &StageCertificate::kind));
 }
 
 void TraceWriter::append_timing(const StepTiming& timing) {

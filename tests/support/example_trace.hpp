@@ -94,6 +94,7 @@ inline void add_example_plan(StepRecord& step, const Scenario& scenario,
     step.budgets.push_back({.belief = bound,
                             .noise = bound / 2,
                             .compression = bound / 4,
+                            .dynamics = bound / 8,
                             .total = bound * 1.2,
                             .lipschitz = 1.0 + bound});
     if (s > 0) {
@@ -103,6 +104,7 @@ inline void add_example_plan(StepRecord& step, const Scenario& scenario,
                                    .particles = value * 1.5,
                                    .mixture = value,
                                    .surrogate = value * 2.5,
+                                   .smoothed = value * 2.25,
                                    .thesis = value * 0.3,
                                    .unsafe_mass = 0.0});
     }

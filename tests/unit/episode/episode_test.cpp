@@ -189,8 +189,8 @@ TEST(Episode, records_every_stage) {
       EXPECT_GE(stage.weights.minCoeff(), 0.0);
     }
     for (const StageCertificate& certificate : step.certificates) {
-      EXPECT_EQ(certificate.value,
-                std::min({certificate.particles, certificate.mixture, certificate.surrogate}));
+      EXPECT_EQ(certificate.value, std::min({certificate.particles, certificate.mixture,
+                                             certificate.surrogate, certificate.smoothed}));
       EXPECT_GE(certificate.value, 0.0);
       EXPECT_LE(certificate.value, 1.0);
     }

@@ -34,6 +34,7 @@ inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
     EXPECT_TRUE(same_bits(a.budgets[s].belief, b.budgets[s].belief));
     EXPECT_TRUE(same_bits(a.budgets[s].noise, b.budgets[s].noise));
     EXPECT_TRUE(same_bits(a.budgets[s].compression, b.budgets[s].compression));
+    EXPECT_TRUE(same_bits(a.budgets[s].dynamics, b.budgets[s].dynamics));
     EXPECT_TRUE(same_bits(a.budgets[s].total, b.budgets[s].total));
     EXPECT_TRUE(same_bits(a.budgets[s].lipschitz, b.budgets[s].lipschitz));
   }
@@ -44,6 +45,7 @@ inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
     EXPECT_TRUE(same_bits(a.certificates[s].particles, b.certificates[s].particles));
     EXPECT_TRUE(same_bits(a.certificates[s].mixture, b.certificates[s].mixture));
     EXPECT_TRUE(same_bits(a.certificates[s].surrogate, b.certificates[s].surrogate));
+    EXPECT_TRUE(same_bits(a.certificates[s].smoothed, b.certificates[s].smoothed));
     EXPECT_TRUE(same_bits(a.certificates[s].thesis, b.certificates[s].thesis));
     EXPECT_TRUE(same_bits(a.certificates[s].unsafe_mass, b.certificates[s].unsafe_mass));
   }

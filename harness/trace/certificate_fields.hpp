@@ -1,0 +1,65 @@
+// The numbers of certificates and error budgets under the names that files use, so that what is
+// written, read and documented is one list.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "controller/certification/certificate.hpp"
+#include "controller/certification/error_budget.hpp"
+
+namespace qsmpc {
+
+struct CertificateField {
+  const char* name;  ///< of the dataset, in the group /certificate
+  double StageCertificate::*member;
+  const char* meaning;
+};
+
+inline constexpr std::array<CertificateField, 7> kCertificateFields = {{
+    {"value", &StageCertificate::value,
+     "the least of the sound upper bounds of the probability that the model's state is unsafe; "
+     "the first is that of stage 1"},
+    {"particles", &StageCertificate::particles,
+     "c1: worst case over the W2 ball around the particles; sound"},
+    {"mixture", &StageCertificate::mixture,
+     "c2: the same before the last noise, which stays Gaussian; sound"},
+    {"surrogate", &StageCertificate::surrogate,
+     "c3: affine-Gaussian surrogate, 1 where it does not apply; sound"},
+    {"smoothed", &StageCertificate::smoothed,
+     "c4: the surrogate smoothed by the noise, 1 where it does not apply; sound"},
+    {"thesis", &StageCertificate::thesis, "the reference algorithm as printed; not sound"},
+    {"unsafe_mass", &StageCertificate::unsafe_mass,
+     "weight of the particles that are unsafe; no bound"},
+}};
+
+struct BudgetField {
+  const char* name;
+  double StageBudget::*member;
+};
+
+/// The columns of /certificate/budget.
+inline constexpr std::array<BudgetField, 4> kBudgetColumns = {{
+    {"belief", &StageBudget::belief},
+    {"noise", &StageBudget::noise},
+    {"compression", &StageBudget::compression},
+    {"total", &StageBudget::total},
+}};
+
+[[nodiscard]] inline std::string certificate_path(const CertificateField& field) {
+  return std::string("/certificate/") + field.name;
+}
+
+inline constexpr const char* kDynamicsPath = "/certificate/dynamics";
+/// Unit of a W2 distance.
+inline constexpr const char* kStateNorm = "Euclidean norm of the state";
+inline constexpr const char* kBudgetMeaning =
+    "bounds of the W2 distance between the model's law and the particles; stage 0 is the present";
+inline constexpr const char* kDynamicsMeaning =
+    "how much of the budget's total is due to the dynamics stretching distances; a part of the "
+    "other sources, not one beside them";
+inline constexpr const char* kLipschitzMeaning =
+    "bound of the closed loop's Lipschitz constant from this stage to the next; 1 at the last";
+inline constexpr const char* kKindMeaning = "which bound the value is: c1, c2, c3 or c4";
+
+}  // namespace qsmpc

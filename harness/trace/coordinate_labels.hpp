@@ -1,0 +1,25 @@
+// Names and units of a system's coordinates as datasets carry them in their attributes.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+struct CoordinateLabels {
+  std::vector<std::string> names;
+  std::vector<std::string> units;
+};
+
+[[nodiscard]] inline CoordinateLabels labels_of(const std::vector<Coordinate>& coordinates) {
+  CoordinateLabels labels;
+  for (const Coordinate& coordinate : coordinates) {
+    labels.names.push_back(coordinate.name);
+    labels.units.push_back(coordinate.unit);
+  }
+  return labels;
+}
+
+}  // namespace qsmpc
