@@ -11,12 +11,16 @@
 #pragma once
 
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <limits>
 
 #include "models/dynamics/interval.hpp"
 
 namespace qsmpc {
 
-/// A function of `kVariables` variables.
+/// A function of `kVariables` variables. Most parts of a model depend on two or three of them: each
+/// jet knows which, and all derivatives by others are zero without being computed.
 template <int kVariables>
 class SecondOrderJet {
  public:
@@ -28,6 +32,7 @@ class SecondOrderJet {
     SecondOrderJet jet;
     jet.value_ = range;
     jet.gradient_[index] = 1.0;
+    jet.variables_ = VariableSet{1} << index;
     return jet;
   }
 
@@ -38,7 +43,7 @@ class SecondOrderJet {
   }
 
   friend SecondOrderJet operator-(const SecondOrderJet& f) {
-    return map(f, [](const Interval& entry) { return -entry; });
+    return map(f, [](const Interval& part) { return -part; });
   }
   friend SecondOrderJet operator+(const SecondOrderJet& f, const SecondOrderJet& g) {
     return map(f, g, [](const Interval& s, const Interval& t) { return s + t; });
@@ -47,35 +52,39 @@ class SecondOrderJet {
     return map(f, g, [](const Interval& s, const Interval& t) { return s - t; });
   }
   friend SecondOrderJet operator*(double factor, const SecondOrderJet& f) {
-    return map(f, [factor](const Interval& entry) { return Interval(factor) * entry; });
+    return map(f, [factor](const Interval& part) { return Interval(factor) * part; });
   }
   friend SecondOrderJet operator*(const SecondOrderJet& f, double factor) { return factor * f; }
   friend SecondOrderJet operator/(const SecondOrderJet& f, double divisor) {
     const Interval factor = inverse(Interval(divisor));
-    return map(f, [factor](const Interval& entry) { return factor * entry; });
+    return map(f, [factor](const Interval& part) { return factor * part; });
   }
 
   /// (fg)_ab = f g_ab + g f_ab + f_a g_b + f_b g_a.
   friend SecondOrderJet operator*(const SecondOrderJet& f, const SecondOrderJet& g) {
     SecondOrderJet product;
+    product.variables_ = f.variables_ | g.variables_;
     product.value_ = f.value_ * g.value_;
-    for (int a = 0; a < kVariables; ++a) {
+    for_each(product.variables_, [&](int a) {
       product.gradient_[a] = f.value_ * g.gradient_[a] + g.value_ * f.gradient_[a];
-      for (int b = 0; b <= a; ++b) {
-        const int ab = entry(a, b);
-        product.hessian_[ab] = f.value_ * g.hessian_[ab] + g.value_ * f.hessian_[ab] +
-                               f.gradient_[a] * g.gradient_[b] + f.gradient_[b] * g.gradient_[a];
-      }
-    }
+    });
+    for_each_pair(product.variables_, [&](int a, int b, int ab) {
+      product.hessian_[ab] = f.value_ * g.hessian_[ab] + g.value_ * f.hessian_[ab] +
+                             f.gradient_[a] * g.gradient_[b] + f.gradient_[b] * g.gradient_[a];
+    });
     return product;
   }
 
   friend SecondOrderJet operator/(const SecondOrderJet& f, const SecondOrderJet& g) {
-    const Interval reciprocal = inverse(g.value_);
-    const Interval squared = square(reciprocal);
-    return f * compose(g, reciprocal, -squared, Interval(2.0) * (squared * reciprocal));
+    return f * inverse(g);
   }
+  friend SecondOrderJet operator/(double f, const SecondOrderJet& g) { return f * inverse(g); }
 
+  friend SecondOrderJet inverse(const SecondOrderJet& f) {
+    const Interval reciprocal = inverse(f.value_);
+    const Interval squared = square(reciprocal);
+    return compose(f, reciprocal, -squared, Interval(2.0) * (squared * reciprocal));
+  }
   friend SecondOrderJet sin(const SecondOrderJet& f) {
     const Interval sine = sin(f.value_);
     return compose(f, sine, cos(f.value_), -sine);
@@ -96,30 +105,48 @@ class SecondOrderJet {
   }
 
  private:
+  using VariableSet = std::uint32_t;  ///< bit a: may depend on variable a
+  static_assert(kVariables <= std::numeric_limits<VariableSet>::digits);
   static constexpr int kEntries = kVariables * (kVariables + 1) / 2;
 
   /// Index of the entry (a, b) of the Hessian's lower triangle, a ≥ b.
   static constexpr int entry(int a, int b) { return a * (a + 1) / 2 + b; }
 
+  /// visit(a) for every variable of the set.
+  template <class Visit>
+  static void for_each(VariableSet set, Visit visit) {
+    for (; set != 0; set &= set - 1) visit(std::countr_zero(set));
+  }
+  /// visit(a, b, entry(a, b)) for every a ≥ b of the set.
+  template <class Visit>
+  static void for_each_pair(VariableSet set, Visit visit) {
+    for_each(set, [&](int a) {
+      const VariableSet up_to_a = set & ((VariableSet{2} << a) - 1);
+      for_each(up_to_a, [&](int b) { visit(a, b, entry(a, b)); });
+    });
+  }
+
+  /// A linear function of one jet or of two, part by part.
   template <class Function>
   static SecondOrderJet map(const SecondOrderJet& f, Function function) {
     SecondOrderJet result;
+    result.variables_ = f.variables_;
     result.value_ = function(f.value_);
-    for (int a = 0; a < kVariables; ++a) result.gradient_[a] = function(f.gradient_[a]);
-    for (int ab = 0; ab < kEntries; ++ab) result.hessian_[ab] = function(f.hessian_[ab]);
+    for_each(f.variables_, [&](int a) { result.gradient_[a] = function(f.gradient_[a]); });
+    for_each_pair(f.variables_,
+                  [&](int, int, int ab) { result.hessian_[ab] = function(f.hessian_[ab]); });
     return result;
   }
-
   template <class Function>
   static SecondOrderJet map(const SecondOrderJet& f, const SecondOrderJet& g, Function function) {
     SecondOrderJet result;
+    result.variables_ = f.variables_ | g.variables_;
     result.value_ = function(f.value_, g.value_);
-    for (int a = 0; a < kVariables; ++a) {
-      result.gradient_[a] = function(f.gradient_[a], g.gradient_[a]);
-    }
-    for (int ab = 0; ab < kEntries; ++ab) {
+    for_each(result.variables_,
+             [&](int a) { result.gradient_[a] = function(f.gradient_[a], g.gradient_[a]); });
+    for_each_pair(result.variables_, [&](int, int, int ab) {
       result.hessian_[ab] = function(f.hessian_[ab], g.hessian_[ab]);
-    }
+    });
     return result;
   }
 
@@ -127,20 +154,20 @@ class SecondOrderJet {
   static SecondOrderJet compose(const SecondOrderJet& f, const Interval& value,
                                 const Interval& slope, const Interval& curvature) {
     SecondOrderJet result;
+    result.variables_ = f.variables_;
     result.value_ = value;
-    for (int a = 0; a < kVariables; ++a) {
-      result.gradient_[a] = slope * f.gradient_[a];
-      for (int b = 0; b <= a; ++b) {
-        const Interval outer = a == b ? square(f.gradient_[a]) : f.gradient_[a] * f.gradient_[b];
-        result.hessian_[entry(a, b)] = slope * f.hessian_[entry(a, b)] + curvature * outer;
-      }
-    }
+    for_each(f.variables_, [&](int a) { result.gradient_[a] = slope * f.gradient_[a]; });
+    for_each_pair(f.variables_, [&](int a, int b, int ab) {
+      const Interval outer = a == b ? square(f.gradient_[a]) : f.gradient_[a] * f.gradient_[b];
+      result.hessian_[ab] = slope * f.hessian_[ab] + curvature * outer;
+    });
     return result;
   }
 
   Interval value_;
   std::array<Interval, kVariables> gradient_{};
   std::array<Interval, kEntries> hessian_{};
+  VariableSet variables_ = 0;
 };
 
 }  // namespace qsmpc
