@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
 namespace qsmpc {
@@ -99,9 +100,7 @@ std::unique_ptr<const Dynamics> make_dubins(const ParameterMap& parameters, doub
   if (!(std::isfinite(speed) && speed >= 0.0)) {
     throw std::invalid_argument("dubins: speed must be a finite number of at least 0 m/s");
   }
-  if (!(std::isfinite(time_step) && time_step > 0.0)) {
-    throw std::invalid_argument("dubins: time_step must be a finite number above 0 s");
-  }
+  check_time_step("dubins", time_step);
   return std::make_unique<DubinsDynamics>(Dubins{.speed = speed, .time_step = time_step});
 }
 

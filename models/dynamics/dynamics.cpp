@@ -4,6 +4,9 @@
 #include <limits>
 #include <stdexcept>
 
+#include "models/dynamics/bicycle.hpp"
+#include "models/dynamics/cart_pole.hpp"
+#include "models/dynamics/double_integrator.hpp"
 #include "models/dynamics/dubins.hpp"
 
 namespace qsmpc {
@@ -19,6 +22,9 @@ struct Registration {
 const std::vector<Registration>& registrations() {
   static const std::vector<Registration> table = {
       {dubins_entry(), make_dubins},
+      {bicycle_entry(), make_bicycle},
+      {double_integrator_entry(), make_double_integrator},
+      {cart_pole_entry(), make_cart_pole},
   };
   return table;
 }
@@ -26,7 +32,7 @@ const std::vector<Registration>& registrations() {
 std::string joined_names(const ParameterMap& parameters) {
   std::string names;
   for (const auto& [name, value] : parameters) names += (names.empty() ? "" : ", ") + name;
-  return names;
+  return names.empty() ? "none" : names;
 }
 
 }  // namespace

@@ -25,8 +25,12 @@ class EverySystem : public ::testing::TestWithParam<std::string> {
   EverySystem() : dynamics_(make_dynamics(GetParam(), {}, kTimeStep)) {}
 
   [[nodiscard]] const Dynamics& dynamics() const { return *dynamics_; }
+  /// Within ±4 of zero in every coordinate, but for a car's speed, which is positive.
   [[nodiscard]] StateBatch states(Eigen::Index count) {
-    return random_batch(generator_, dynamics().state_dim(), count, 4.0);
+    StateBatch batch = random_batch(generator_, dynamics().state_dim(), count, 4.0);
+    const int speed = dynamics().description().state_index("longitudinal_speed");
+    if (speed >= 0) batch.row(speed) = 2.0 * batch.row(speed).array() + 10.0;
+    return batch;
   }
   /// Within the system's own bounds.
   [[nodiscard]] StateBatch inputs(Eigen::Index count) {

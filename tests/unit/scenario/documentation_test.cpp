@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/scenario/yaml_tree.hpp"
+#include "models/dynamics/dynamics.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
@@ -37,6 +38,25 @@ TEST(Documentation, describes_every_key_that_a_resolved_scenario_has) {
   EXPECT_GT(keys.size(), 35U);
   for (const std::string& key : keys) {
     EXPECT_THAT(document, ::testing::HasSubstr("| `" + documented(key) + "` |"));
+  }
+}
+
+TEST(Documentation, names_every_system_with_its_states_inputs_and_constants) {
+  const std::string document = content_of(std::string(QSMPC_SOURCE_DIR) + "/docs/scenario.md");
+  for (const SystemEntry& entry : systems()) {
+    const std::size_t begin = document.find("\n| `" + entry.name + "` |");
+    ASSERT_NE(begin, std::string::npos) << entry.name;
+    const std::string row = document.substr(begin, document.find('\n', begin + 1) - begin);
+    const auto model = make_dynamics(entry.name, {}, 0.1);
+    for (const Coordinate& state : model->description().states) {
+      EXPECT_THAT(row, ::testing::HasSubstr("`" + state.name + "`"));
+    }
+    for (const Coordinate& input : model->description().inputs) {
+      EXPECT_THAT(row, ::testing::HasSubstr("`" + input.name + "`"));
+    }
+    for (const auto& [name, value] : entry.defaults) {
+      EXPECT_THAT(row, ::testing::HasSubstr("`" + name + "`"));
+    }
   }
 }
 

@@ -1,0 +1,76 @@
+#include "models/dynamics/bicycle.hpp"
+
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+
+#include "models/dynamics/parameter_checks.hpp"
+#include "models/dynamics/templated_dynamics.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kName = "bicycle";
+constexpr const char* kSummary =
+    "Dynamic bicycle on linear tyres: x, y, heading, two speeds, yaw rate; accelerated and steered "
+    "(Eq. 5-4)";
+
+// Section 5-3-1.
+constexpr double kLeastAcceleration = -5.0;                        // m/s²
+constexpr double kLargestAcceleration = 2.0;                       // m/s²
+constexpr double kLargestSteeringAngle = 0.25 * std::numbers::pi;  // rad
+
+}  // namespace
+
+SystemDescription Bicycle::description() const {
+  SystemDescription description;
+  description.name = kName;
+  description.summary = kSummary;
+  description.states = {{"x", "m"},
+                        {"y", "m"},
+                        {"heading", "rad", true},
+                        {"longitudinal_speed", "m/s"},
+                        {"lateral_speed", "m/s"},
+                        {"yaw_rate", "rad/s"}};
+  description.inputs = {{"acceleration", "m/s^2"}, {"steering_angle", "rad"}};
+  description.input_lower = Eigen::Vector2d(kLeastAcceleration, -kLargestSteeringAngle);
+  description.input_upper = Eigen::Vector2d(kLargestAcceleration, kLargestSteeringAngle);
+  description.position_x = kX;
+  description.position_y = kY;
+  description.heading = kHeading;
+  return description;
+}
+
+// ∂x⁺/∂φ is T times the speed, which nothing bounds, and the poles are in the state space: there is
+// no global constant, whatever the gain. Over a box there is one, see local_lipschitz.hpp.
+double Bicycle::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const {
+  if (gain.rows() != kInputDim || gain.cols() != kStateDim) {
+    throw std::invalid_argument("bicycle: the feedback gain must be 2 x 6");
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+std::unique_ptr<const Dynamics> make_bicycle(const ParameterMap& parameters, double time_step) {
+  check_time_step(kName, time_step);
+  return std::make_unique<TemplatedDynamics<Bicycle>>(
+      Bicycle{.mass = positive_parameter(kName, parameters, "mass"),
+              .yaw_inertia = positive_parameter(kName, parameters, "yaw_inertia"),
+              .front_axle_distance = positive_parameter(kName, parameters, "front_axle_distance"),
+              .rear_axle_distance = positive_parameter(kName, parameters, "rear_axle_distance"),
+              .front_tyre_stiffness = negative_parameter(kName, parameters, "front_tyre_stiffness"),
+              .rear_tyre_stiffness = negative_parameter(kName, parameters, "rear_tyre_stiffness"),
+              .time_step = time_step});
+}
+
+SystemEntry bicycle_entry() {
+  return {.name = kName,
+          .summary = kSummary,
+          .defaults = {{"mass", 1412.0},  // Table B-2
+                       {"yaw_inertia", 1536.7},
+                       {"front_axle_distance", 1.06},
+                       {"rear_axle_distance", 1.85},
+                       {"front_tyre_stiffness", -128916.0},
+                       {"rear_tyre_stiffness", -85944.0}}};
+}
+
+}  // namespace qsmpc

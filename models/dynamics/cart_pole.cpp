@@ -1,0 +1,63 @@
+#include "models/dynamics/cart_pole.hpp"
+
+#include <limits>
+#include <stdexcept>
+
+#include "models/dynamics/parameter_checks.hpp"
+#include "models/dynamics/templated_dynamics.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kName = "cart_pole";
+constexpr const char* kSummary =
+    "Pole on a cart: position, velocity, pole angle (0 is upright), angular velocity; pushed by a "
+    "force (Eq. D-3 to D-5)";
+// N. The force of the benchmark from which the default masses and length are.
+constexpr double kDefaultForceBound = 10.0;
+
+}  // namespace
+
+SystemDescription CartPole::description() const {
+  SystemDescription description;
+  description.name = kName;
+  description.summary = kSummary;
+  description.states = {{"position", "m"},
+                        {"velocity", "m/s"},
+                        {"pole_angle", "rad", true},
+                        {"angular_velocity", "rad/s"}};
+  description.inputs = {{"force", "N"}};
+  description.input_lower = Eigen::VectorXd::Constant(1, -kDefaultForceBound);
+  description.input_upper = Eigen::VectorXd::Constant(1, kDefaultForceBound);
+  return description;
+}
+
+// ∂θ̈/∂θ and ∂θ̈/∂θ̇ grow with the angular velocity, which nothing bounds: there is no global
+// constant, whatever the gain. Over a box there is one, see local_lipschitz.hpp.
+double CartPole::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const {
+  if (gain.rows() != kInputDim || gain.cols() != kStateDim) {
+    throw std::invalid_argument("cart_pole: the feedback gain must be 1 x 4");
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+std::unique_ptr<const Dynamics> make_cart_pole(const ParameterMap& parameters, double time_step) {
+  check_time_step(kName, time_step);
+  return std::make_unique<TemplatedDynamics<CartPole>>(
+      CartPole{.cart_mass = positive_parameter(kName, parameters, "cart_mass"),
+               .pole_mass = positive_parameter(kName, parameters, "pole_mass"),
+               .pole_half_length = positive_parameter(kName, parameters, "pole_half_length"),
+               .gravity = positive_parameter(kName, parameters, "gravity"),
+               .time_step = time_step});
+}
+
+// The thesis prints no constants for this system. These are those of Barto, Sutton and Anderson,
+// "Neuronlike adaptive elements that can solve difficult learning control problems", 1983.
+SystemEntry cart_pole_entry() {
+  return {.name = kName,
+          .summary = kSummary,
+          .defaults = {
+              {"cart_mass", 1.0}, {"pole_mass", 0.1}, {"pole_half_length", 0.5}, {"gravity", 9.8}}};
+}
+
+}  // namespace qsmpc
