@@ -7,11 +7,13 @@
 #include <exception>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "harness/video/episode_frames.hpp"
+#include "models/dynamics/dynamics.hpp"
 #include "render/png_file.hpp"
 #include "render/renderer.hpp"
 #include "render/video_writer.hpp"
@@ -124,7 +126,22 @@ class DrawingThreads {
   std::vector<std::thread> threads_;  // last: they use the rest
 };
 
+void check_drawable(const Scenario& scenario) {
+  const std::string reason = why_not_drawn(scenario);
+  if (!reason.empty()) throw std::runtime_error("no video: " + reason);
+}
+
 }  // namespace
+
+std::string why_not_drawn(const Scenario& scenario) {
+  const auto model =
+      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const SystemDescription& system = model->description();
+  if (system.position_x < 0 || system.position_y < 0) {
+    return system.name + " has no position in the plane";
+  }
+  return scenario.plant.mjcf.empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
+}
 
 void write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
                          const std::string& path,
@@ -132,6 +149,7 @@ void write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
   if (options.threads < 1) {
     throw std::invalid_argument("video: at least one thread must draw");
   }
+  check_drawable(trace.scenario);
   const EpisodeFrames frames(trace);
   VideoWriter video(path, options.width, options.height, options.fps);
   const int total = static_cast<int>(std::ceil((frames.duration() + kHoldTime) * options.fps));
@@ -151,6 +169,7 @@ Frame episode_frame(const Trace& trace, double time) { return EpisodeFrames(trac
 
 void write_episode_still(const Trace& trace, const EpisodeVideoOptions& options, double time,
                          const std::string& path) {
+  check_drawable(trace.scenario);
   const EpisodeFrames frames(trace);
   Renderer renderer(render_options(options, frames), frames.world(), trace.scenario.plant.mjcf);
   Image image;

@@ -17,11 +17,16 @@ struct EpisodeVideoOptions {
   int threads = 2;               ///< that draw, at least 1; the result does not depend on it
 };
 
+/// Why an episode of this scenario cannot be drawn, e.g. "double_integrator has no position in the
+/// plane"; empty if it has a position and a vehicle.
+[[nodiscard]] std::string why_not_drawn(const Scenario& scenario);
+
 /// Writes an MP4 to `path` that ends with a second in which the outcome is shown. `progress` (may
 /// be empty) is called on this thread after each frame; when it returns false, the video is
 /// finished with the frames so far. At most two pictures a thread are held in memory. Throws
-/// std::invalid_argument on options that are none, std::runtime_error when the vehicle cannot be
-/// drawn or the file not be written; nothing new is then under `path`.
+/// std::invalid_argument on options that are none, std::runtime_error when there is nothing to draw
+/// (see `why_not_drawn`), the vehicle cannot be drawn or the file not be written; nothing new is
+/// then under `path`.
 void write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
                          const std::string& path,
                          const std::function<bool(int done, int total)>& progress = {});

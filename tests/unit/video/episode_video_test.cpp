@@ -206,6 +206,27 @@ TEST(episode_video, vehicle_that_cannot_be_loaded_ends_it_without_a_video) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
+TEST(episode_video, what_cannot_be_drawn_is_said_instead) {
+  const std::string path = ::testing::TempDir() + "nothing.mp4";
+  const auto message_of = [&path](const Scenario& scenario) -> std::string {
+    Trace trace;
+    trace.scenario = scenario;
+    try {
+      write_episode_video(trace, kSmallVideo, path);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "nothing was refused";
+  };
+  Scenario scenario = straight_scenario();
+  EXPECT_EQ(why_not_drawn(scenario), "");
+  scenario.plant.mjcf = "";
+  EXPECT_THAT(message_of(scenario), HasSubstr("names no vehicle"));
+  scenario.model = {"double_integrator", {}};
+  EXPECT_THAT(message_of(scenario), HasSubstr("double_integrator has no position in the plane"));
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
 TEST(episode_video, motion_of_another_vehicle_is_refused) {
   const std::string path = fresh_folder() / "episode.mp4";
   Trace trace = straight_trace();
