@@ -6,21 +6,27 @@
 #include <stdexcept>
 
 #include "controller/measure/compression.hpp"
+#include "controller/prediction/moment_matching.hpp"
 
 namespace qsmpc {
 namespace {
 
 constexpr const char* kCompressed = "compressed";
+constexpr const char* kMomentMatched = "moment_matched";
 constexpr const char* kNoiseFree = "noise_free";
 
 /// Products with the noise quantiser, compressed to a number of clusters.
-class CompressedPropagator final : public Propagator {
+class CompressedPropagator : public Propagator {
  public:
-  explicit CompressedPropagator(const PropagatorSettings& settings)
+  CompressedPropagator(const PropagatorSettings& settings, int refinements)
       : noise_(quantise(settings.noise, settings.noise_points)),
-        compressed_points_(settings.compressed_points) {
+        compressed_points_(settings.compressed_points),
+        refinements_(refinements) {
     if (compressed_points_ < 1) {
       throw std::invalid_argument("propagator: at least one point must be kept");
+    }
+    if (refinements_ < 0) {
+      throw std::invalid_argument("propagator: refinements must not be negative");
     }
   }
 
@@ -28,13 +34,19 @@ class CompressedPropagator final : public Propagator {
                                    const Eigen::VectorXd& weights) const override {
     if (!stepped.allFinite()) return lost_map(stepped, weights);
     const DiscreteMeasure product = product_measure(stepped, weights);
-    const Compression compression = compress(product, compressed_points_, /*refinements=*/0);
-    return sparse_map(compression, weights);
+    const Compression compression = compress(product, compressed_points_, refinements_);
+    StageMap map = sparse_map(compression, weights);
+    finish({.locations = stepped, .weights = weights}, compression, map);
+    return map;
   }
 
   [[nodiscard]] double noise_w2() const override { return noise_.w2; }
 
  private:
+  /// What is done to the map from `stepped` to the cluster means, which is complete by itself.
+  virtual void finish(const DiscreteMeasure& /*stepped*/, const Compression& /*compression*/,
+                      StageMap& /*map*/) const {}
+
   /// The map of points that are not finite: all into one cluster, at infinite cost.
   [[nodiscard]] static StageMap lost_map(const Points& stepped, const Eigen::VectorXd& weights) {
     StageMap map;
@@ -97,6 +109,30 @@ class CompressedPropagator final : public Propagator {
 
   GaussianQuantisation noise_;
   int compressed_points_;
+  int refinements_;
+};
+
+/// The clusters, spread about their mean so that they have the covariance of the stepped points
+/// plus that of the noise: what the noise quantiser and the compression lost.
+class MomentMatchedPropagator final : public CompressedPropagator {
+ public:
+  explicit MomentMatchedPropagator(const PropagatorSettings& settings)
+      : CompressedPropagator(settings, settings.refinements),
+        noise_covariance_(settings.noise.covariance) {}
+
+ private:
+  /// The clusters' means are conditional means of the products, so that the two parts of a
+  /// product's way, to its cluster's mean and from there to where the spread puts it, are
+  /// uncorrelated: their squares add.
+  void finish(const DiscreteMeasure& stepped, const Compression& compression,
+              StageMap& map) const override {
+    const Eigen::MatrixXd target = covariance_of(stepped) + noise_covariance_;
+    map.spread = spread_between(covariance_of(compression.measure), target);
+    map.compression_w2 =
+        std::hypot(compression.w2, spread_w2(covariance_of(compression.measure), map.spread));
+  }
+
+  Eigen::MatrixXd noise_covariance_;
 };
 
 /// Every point stays as it is. The noise is represented by its mean, so its whole standard
@@ -136,14 +172,32 @@ void apply_stage_map(const StageMap& map, const Points& stepped, Points& out) {
       out(axis, n) = sum;
     }
   }
+  if (map.spread.size() == 0) return;
+  const Eigen::VectorXd mean = out * map.weights / map.weights.sum();
+  Eigen::VectorXd offset(mean.size());
+  for (Eigen::Index n = 0; n < map.clusters(); ++n) {
+    offset = out.col(n) - mean;
+    out.col(n) = mean;
+    out.col(n).noalias() += map.spread * offset;
+  }
 }
 
 void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& stepped_adjoint) {
   stepped_adjoint.setZero();
+  const bool spread = map.spread.size() != 0;
+  // With S symmetric: the adjoint of cluster n before the spread is S g_n + ρ̃_n (I − S) Σ g.
+  Eigen::VectorXd mean_adjoint;
+  if (spread) {
+    const Eigen::VectorXd total = adjoint.rowwise().sum();
+    mean_adjoint = (total - map.spread * total) / map.weights.sum();
+  }
   for (Eigen::Index axis = 0; axis < adjoint.rows(); ++axis) {
     for (Eigen::Index n = 0; n < map.clusters(); ++n) {
+      const double entry =
+          spread ? map.spread.col(axis).dot(adjoint.col(n)) + map.weights[n] * mean_adjoint[axis]
+                 : adjoint(axis, n);
       for (int k = map.row_begin[n]; k < map.row_begin[n + 1]; ++k) {
-        stepped_adjoint(axis, map.column[k]) += map.coefficient[k] * adjoint(axis, n);
+        stepped_adjoint(axis, map.column[k]) += map.coefficient[k] * entry;
       }
     }
   }
@@ -152,6 +206,8 @@ void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& step
 const std::vector<PropagatorEntry>& propagators() {
   static const std::vector<PropagatorEntry> table = {
       {kCompressed, "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)"},
+      {kMomentMatched,
+       "the same, compressed with refinements and spread to the covariance that it should have"},
       {kNoiseFree, "the belief's points only; the noise counts as error of the certificate"},
   };
   return table;
@@ -163,10 +219,16 @@ std::unique_ptr<const Propagator> make_propagator(std::string_view name,
   if (!settings.noise.mean.isZero(0.0)) {
     throw std::invalid_argument("propagator: the noise must have zero mean");
   }
-  if (name == kCompressed) return std::make_unique<CompressedPropagator>(settings);
+  if (name == kCompressed) {
+    return std::make_unique<CompressedPropagator>(settings, /*refinements=*/0);
+  }
+  if (name == kMomentMatched) return std::make_unique<MomentMatchedPropagator>(settings);
   if (name == kNoiseFree) return std::make_unique<NoiseFreePropagator>(settings);
-  throw std::invalid_argument("no propagator '" + std::string(name) +
-                              "'; known are: " + std::string(kCompressed) + ", " + kNoiseFree);
+  std::string known;
+  for (const PropagatorEntry& entry : propagators()) {
+    known += (known.empty() ? "" : ", ") + entry.name;
+  }
+  throw std::invalid_argument("no propagator '" + std::string(name) + "'; known are: " + known);
 }
 
 }  // namespace qsmpc

@@ -4,10 +4,13 @@
 #include <limits>
 #include <stdexcept>
 
+#include <Eigen/Eigenvalues>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "controller/measure/compression.hpp"
+#include "controller/measure/wasserstein.hpp"
+#include "controller/prediction/moment_matching.hpp"
 #include "tests/unit/controller/random_measures.hpp"
 
 namespace qsmpc::testing {
@@ -34,6 +37,14 @@ DiscreteMeasure all_sums(const DiscreteMeasure& stepped, const DiscreteMeasure& 
     }
   }
   return sums;
+}
+
+/// What `map` makes of the points that it was built for.
+DiscreteMeasure mapped(const StageMap& map, const DiscreteMeasure& stepped) {
+  DiscreteMeasure next{.locations = Points::Constant(stepped.dim(), map.clusters(), std::nan("")),
+                       .weights = map.weights};
+  apply_stage_map(map, stepped.locations, next.locations);
+  return next;
 }
 
 TEST(CompressedPropagator, map_gives_the_cluster_means_of_all_sums) {
@@ -102,12 +113,151 @@ TEST(Propagator, pullback_is_the_transpose_and_overwrites) {
     const Points adjoint = random_matrix(generator, 3, map.clusters());
     Points there(3, map.clusters());
     apply_stage_map(map, direction, there);
-    there -= map.offset;  // the linear part
+    Points constant(3, map.clusters());
+    apply_stage_map(map, Points::Zero(3, 30), constant);
+    there -= constant;  // the linear part
     Points back = Points::Constant(3, 30, std::nan(""));
     pullback_stage_map(map, adjoint, back);
     EXPECT_NEAR(there.cwiseProduct(adjoint).sum(), direction.cwiseProduct(back).sum(), kRounding)
         << entry.name;
   }
+}
+
+TEST(Propagator, pullback_is_the_derivative_at_held_assignments) {
+  constexpr double kStep = 1e-4;
+  Generator generator(48);
+  for (const PropagatorEntry& entry : propagators()) {
+    const auto propagator = make_propagator(entry.name, random_settings(generator, 20, 15));
+    const DiscreteMeasure stepped = random_measure(generator, 3, 30);
+    const StageMap map = propagator->stage_map(stepped.locations, stepped.weights);
+    const Points adjoint = random_matrix(generator, 3, map.clusters());
+    Points gradient(3, 30);
+    pullback_stage_map(map, adjoint, gradient);
+    const auto value = [&](const Points& points) {
+      Points out(3, map.clusters());
+      apply_stage_map(map, points, out);
+      return out.cwiseProduct(adjoint).sum();
+    };
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      for (Eigen::Index i = 0; i < 30; i += 7) {
+        Points beyond = stepped.locations;
+        Points before = stepped.locations;
+        beyond(axis, i) += kStep;
+        before(axis, i) -= kStep;
+        // The map is affine: differences are exact up to rounding, divided by the step.
+        EXPECT_NEAR(gradient(axis, i), (value(beyond) - value(before)) / (2.0 * kStep),
+                    kRounding / kStep)
+            << entry.name;
+      }
+    }
+  }
+}
+
+TEST(Propagator, cost_of_a_map_is_no_less_than_the_distance_from_the_products) {
+  Generator generator(49);
+  for (const PropagatorEntry& entry : propagators()) {
+    if (entry.name == "noise_free") continue;  // has no products
+    for (const int kept : {1, 5, 25}) {
+      const PropagatorSettings settings = random_settings(generator, 10, kept);
+      const DiscreteMeasure stepped = random_measure(generator, 3, 20);
+      const StageMap map =
+          make_propagator(entry.name, settings)->stage_map(stepped.locations, stepped.weights);
+      const DiscreteMeasure sums =
+          all_sums(stepped, quantise(settings.noise, settings.noise_points).measure);
+      const double distance = wasserstein2(sums, mapped(map, stepped));
+      EXPECT_GE(map.compression_w2, distance - kRounding) << entry.name;
+      EXPECT_LE(map.compression_w2, 1.5 * distance) << entry.name << ": says too little";
+    }
+  }
+}
+
+TEST(MomentMatchedPropagator, restores_what_quantised_noise_and_compression_lose) {
+  Generator generator(50);
+  for (const int kept : {20, 60}) {
+    const PropagatorSettings settings = random_settings(generator, 30, kept);
+    const DiscreteMeasure stepped = random_measure(generator, 3, 50);
+    const Eigen::MatrixXd full = covariance_of(stepped) + settings.noise.covariance;
+    const auto covariance = [&](std::string_view name) {
+      return covariance_of(mapped(
+          make_propagator(name, settings)->stage_map(stepped.locations, stepped.weights), stepped));
+    };
+    EXPECT_LE((covariance("moment_matched") - full).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_GE((covariance("compressed") - full).cwiseAbs().maxCoeff(), 1e-2);
+  }
+}
+
+TEST(MomentMatchedPropagator, refinements_lower_the_cost) {
+  Generator generator(51);
+  PropagatorSettings settings = random_settings(generator, 30, 20);
+  const DiscreteMeasure stepped = random_measure(generator, 3, 50);
+  const auto cost = [&](int refinements) {
+    settings.refinements = refinements;
+    return make_propagator("moment_matched", settings)
+        ->stage_map(stepped.locations, stepped.weights)
+        .compression_w2;
+  };
+  EXPECT_LT(cost(3), cost(0));
+}
+
+TEST(MomentMatchedPropagator, degenerate_measures_stay_finite_and_where_they_are) {
+  Generator generator(52);
+  const DiscreteMeasure lone = random_measure(generator, 3, 1);
+  DiscreteMeasure coincident = random_measure(generator, 3, 12);
+  coincident.locations.colwise() = Eigen::VectorXd(lone.locations.col(0));
+  PropagatorSettings settings = random_settings(generator, 20, 8);
+  settings.noise.covariance = Eigen::MatrixXd::Zero(3, 3);
+  for (const DiscreteMeasure& stepped : {lone, coincident}) {
+    const StageMap map =
+        make_propagator("moment_matched", settings)->stage_map(stepped.locations, stepped.weights);
+    const DiscreteMeasure next = mapped(map, stepped);
+    ASSERT_TRUE(next.locations.allFinite());
+    EXPECT_LE((next.locations.colwise() - lone.locations.col(0)).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_LE(map.compression_w2, kRounding);
+  }
+}
+
+TEST(MomentMatchedPropagator, directions_without_particles_are_left_alone) {
+  Generator generator(53);
+  // Noise along one axis only, one of its points, and stepped points along the others.
+  PropagatorSettings settings = random_settings(generator, 1, 8);
+  settings.noise.covariance = Eigen::Vector3d(0.0, 0.0, 0.04).asDiagonal();
+  DiscreteMeasure stepped = random_measure(generator, 3, 30);
+  stepped.locations.row(2).setConstant(0.7);
+  const StageMap map =
+      make_propagator("moment_matched", settings)->stage_map(stepped.locations, stepped.weights);
+  const DiscreteMeasure next = mapped(map, stepped);
+  const Eigen::MatrixXd difference = covariance_of(next) - covariance_of(stepped);
+  EXPECT_LE(difference.cwiseAbs().maxCoeff(), kRounding);  // the other axes are restored
+  EXPECT_LE((next.locations.row(2).array() - 0.7).abs().maxCoeff(), kRounding);
+}
+
+TEST(SpreadBetween, meets_the_covariance_and_moves_no_more_than_two_gaussians_are_apart) {
+  Generator generator(54);
+  int compared = 0;
+  for (int round = 0; round < 20; ++round) {
+    const Eigen::MatrixXd from = random_spd(generator, 4);
+    const Eigen::MatrixXd to = from + random_spd(generator, 4, 0.1);
+    const Eigen::MatrixXd spread = spread_between(from, to);
+    if (Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(spread).eigenvalues()[3] >=
+        kLargestStretch) {
+      continue;
+    }
+    ++compared;
+    const Eigen::VectorXd zero = Eigen::VectorXd::Zero(4);
+    const double apart = wasserstein2(Gaussian{.mean = zero, .covariance = from},
+                                      Gaussian{.mean = zero, .covariance = to});
+    EXPECT_LE((spread * from * spread - to).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_LE((spread - spread.transpose()).cwiseAbs().maxCoeff(), kRounding);
+    EXPECT_NEAR(spread_w2(from, spread), apart, 1e-10);  // a root of differences
+  }
+  EXPECT_GE(compared, 10);
+}
+
+TEST(SpreadBetween, stretches_by_no_more_than_its_limit) {
+  const Eigen::MatrixXd from = Eigen::Vector3d(1e-8, 1.0, 0.0).asDiagonal();
+  const Eigen::MatrixXd to = Eigen::Vector3d(1.0, 1.21, 1.0).asDiagonal();
+  const Eigen::MatrixXd expected = Eigen::Vector3d(kLargestStretch, 1.1, 1.0).asDiagonal();
+  EXPECT_LE((spread_between(from, to) - expected).cwiseAbs().maxCoeff(), kRounding);
 }
 
 TEST(NoiseFreePropagator, leaves_the_points_alone_and_counts_the_noise_as_error) {
@@ -152,6 +302,9 @@ TEST(MakePropagator, refuses_unknown_names_and_senseless_settings) {
   EXPECT_THROW((void)make_propagator("compressed", settings), std::invalid_argument);
   settings = random_settings(generator, 0, 15);
   EXPECT_THROW((void)make_propagator("compressed", settings), std::invalid_argument);
+  settings = random_settings(generator, 20, 15);
+  settings.refinements = -1;
+  EXPECT_THROW((void)make_propagator("moment_matched", settings), std::invalid_argument);
   settings = random_settings(generator, 20, 15);
   settings.noise.mean[0] = 0.1;
   EXPECT_THROW((void)make_propagator("compressed", settings), std::invalid_argument);
