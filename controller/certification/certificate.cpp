@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/certification/affine_surrogate.hpp"
+#include "controller/certification/part_bound.hpp"
 #include "controller/certification/smoothed_bound.hpp"
-#include "controller/certification/unicycle_surrogate.hpp"
 #include "controller/certification/worst_case.hpp"
 
 namespace qsmpc {
@@ -18,46 +19,39 @@ double unsafe_mass(const DiscreteMeasure& measure, const SafeSet& safe_set) {
   return mass;
 }
 
-/// Whether being safe depends on the coordinate `axis`, through the bounds or through an obstacle.
-bool restricts(const SafeSet& safe_set, int axis) {
-  const auto bounded = [axis](const Box& box) {
-    return std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis]);
-  };
-  return bounded(safe_set.bounds) ||
-         std::any_of(safe_set.obstacles.begin(), safe_set.obstacles.end(), bounded);
-}
+/// C3 and C4 of one stage. C4 takes the better of the two for every part of the unsafe set.
+struct SurrogateBounds {
+  double markov = 1.0;
+  double smooth = 1.0;
+};
 
-/// C3 of all stages; 1 where it does not apply.
-std::vector<double> surrogate_bounds(const PredictedMotion& motion, const SafeSet& safe_set) {
-  const Eigen::Index horizon = motion.policy.horizon();
-  std::vector<double> bounds(horizon, 1.0);
-  const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle();
-  if (!unicycle) return bounds;
-  const bool open_loop = std::all_of(motion.policy.gains.begin(), motion.policy.gains.end(),
-                                     [](const auto& gain) { return gain.isZero(0.0); });
-  // The input of a stage moves the heading alone, so the position of stage 1 is that of open loop.
-  Eigen::Index stages = horizon;
-  if (!open_loop) stages = restricts(safe_set, unicycle->heading) ? 0 : 1;
-  const std::vector<GaussianSurrogate> surrogates = unicycle_surrogates(
-      *unicycle, motion.belief, motion.policy.inputs.row(unicycle->input).head(stages),
-      motion.noise_covariance);
-  for (Eigen::Index k = 0; k < stages; ++k) {
-    const DiscreteMeasure centre{.locations = surrogates[k].law.mean,
-                                 .weights = Eigen::VectorXd::Ones(1)};
-    bounds[k] =
-        smoothed_probability(centre, surrogates[k].law.covariance, safe_set, surrogates[k].radius);
+SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
+                                 const std::vector<UnsafePart>& parts, Eigen::Index stage,
+                                 const SurrogateStage& surrogate) {
+  if (surrogate.leaving >= 1.0) return {};
+  SurrogateBounds bounds{.markov = surrogate.leaving, .smooth = surrogate.leaving};
+  for (const UnsafePart& part : parts) {
+    const Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, part.axes);
+    const PerturbedGaussian state{
+        .law = surrogate.law, .error = surrogate.error, .smoothing = smoothing};
+    const double markov = markov_part_bound(state, part);
+    bounds.markov += markov;
+    bounds.smooth += std::min(markov, smooth_part_bound(state, part));
   }
-  return bounds;
+  return {.markov = std::min(1.0, bounds.markov), .smooth = std::min(1.0, bounds.smooth)};
 }
 
 /// The radius that the thesis would use: Eq. 4-4 and 4-6, without noise and without the feedback.
-std::vector<double> thesis_radii(const PredictedMotion& motion) {
+/// Where no global constant is known, it is that of the closed loop on its region.
+std::vector<double> thesis_radii(const PredictedMotion& motion,
+                                 const std::vector<StageBudget>& budgets) {
   const Eigen::MatrixXd no_gain =
       Eigen::MatrixXd::Zero(motion.policy.inputs.rows(), motion.policy.states.rows());
-  const double lipschitz = motion.dynamics.lipschitz(no_gain);
+  const double global = motion.dynamics.lipschitz(no_gain);
   std::vector<double> radii = {motion.belief_w2};
-  for (const StageMap& map : motion.prediction.maps) {
-    radii.push_back(lipschitz * radii.back() + map.compression_w2);
+  for (std::size_t k = 0; k < motion.prediction.maps.size(); ++k) {
+    const double lipschitz = std::isfinite(global) ? global : budgets[k].lipschitz;
+    radii.push_back(lipschitz * radii.back() + motion.prediction.maps[k].compression_w2);
   }
   return radii;
 }
@@ -65,30 +59,38 @@ std::vector<double> thesis_radii(const PredictedMotion& motion) {
 }  // namespace
 
 std::vector<StageCertificate> certify(const PredictedMotion& motion, const SafeSet& safe_set,
-                                      const std::vector<StageBudget>& budgets) {
-  const std::vector<double> surrogates = surrogate_bounds(motion, safe_set);
-  const std::vector<double> radii = thesis_radii(motion);
+                                      const std::vector<StageBudget>& budgets,
+                                      CertificateEffort effort) {
+  const std::vector<UnsafePart> parts = unsafe_parts(safe_set);
+  const std::vector<SurrogateStage> surrogates = affine_surrogates(motion);
+  const std::vector<double> radii = thesis_radii(motion, budgets);
   std::vector<StageCertificate> certificates(motion.policy.horizon());
   for (std::size_t k = 0; k < certificates.size(); ++k) {
     StageCertificate& certificate = certificates[k];
     const DiscreteMeasure& particles = motion.prediction.stages[k + 1];
+    const SurrogateBounds bounds =
+        surrogate_bounds(motion, parts, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1]);
+    certificate.surrogate = bounds.markov;
+    certificate.smoothed = bounds.smooth;
+    const double leaving = budgets[k + 1].leaving;
+    certificate.particles =
+        std::min(1.0, leaving + worst_case_probability(particles, safe_set, budgets[k + 1].total));
+    const double least =
+        std::min({certificate.particles, certificate.surrogate, certificate.smoothed});
     const DiscreteMeasure stepped{.locations = motion.prediction.stepped[k],
                                   .weights = motion.prediction.stages[k].weights};
-    certificate.particles = worst_case_probability(particles, safe_set, budgets[k + 1].total);
-    // Without an error before the step there is none after it, whatever the Lipschitz constant.
-    const double before_noise =
-        budgets[k].total == 0.0 ? 0.0 : budgets[k].lipschitz * budgets[k].total;
+    const double useful = effort == CertificateEffort::kEvery ? 1.0 : least - leaving;
     certificate.mixture =
-        smoothed_probability(stepped, motion.noise_covariance, safe_set, before_noise);
-    certificate.surrogate = surrogates[k];
+        std::min(1.0, leaving + smoothed_probability(stepped, motion.noise_covariance, safe_set,
+                                                     budgets[k + 1].before_noise, useful));
     certificate.thesis = thesis_probability(particles, safe_set, radii[k + 1]);
     certificate.unsafe_mass = unsafe_mass(particles, safe_set);
-    certificate.value =
-        std::min({certificate.particles, certificate.mixture, certificate.surrogate});
+    certificate.value = std::min(least, certificate.mixture);
     // Of equal bounds the simplest is named.
-    certificate.kind = certificate.value == certificate.particles ? "c1"
-                       : certificate.value == certificate.mixture ? "c2"
-                                                                  : "c3";
+    certificate.kind = certificate.value == certificate.particles   ? "c1"
+                       : certificate.value == certificate.mixture   ? "c2"
+                       : certificate.value == certificate.surrogate ? "c3"
+                                                                    : "c4";
   }
   return certificates;
 }

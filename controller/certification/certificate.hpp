@@ -30,11 +30,17 @@ struct StageCertificate {
   double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe: NOT a bound
 };
 
+/// How far each bound is worked out.
+enum class CertificateEffort {
+  kLeast,  ///< only as far as it can be the least of them; C2 is then a coarse bound as a rule
+  kEvery,  ///< each as good as it gets, for comparisons
+};
+
 /// Certificates of stages 1 … horizon of `motion`.
 /// budgets: what `error_budget` gives for it.
-[[nodiscard]] std::vector<StageCertificate> certify(const PredictedMotion& motion,
-                                                    const SafeSet& safe_set,
-                                                    const std::vector<StageBudget>& budgets);
+[[nodiscard]] std::vector<StageCertificate> certify(
+    const PredictedMotion& motion, const SafeSet& safe_set, const std::vector<StageBudget>& budgets,
+    CertificateEffort effort = CertificateEffort::kLeast);
 
 /// Upper bound of the probability that the state is unsafe at any of the stages: their sum, at
 /// most 1.

@@ -18,13 +18,20 @@ struct StageBudget {
   double dynamics = 0.0;  ///< how much of the total is due to the dynamics stretching distances
   double total = 0.0;
   double lipschitz = 1.0;  ///< of the closed loop from this stage to the next; 1 at the last stage
+  /// W2 between the state and the stepped particles before this stage's noise; 0 at stage 0.
+  double before_noise = 0.0;
+  /// Where the dynamics have no global Lipschitz constant: bounds the probability that the state
+  /// has left the regions on which the constants hold. The distances are then those to the law of
+  /// the dynamics projected to these regions, from which the state's differs by no more than this.
+  double leaving = 0.0;
 };
 
-/// The budgets of stages 0 … horizon of `motion`. With L_k the Lipschitz
-/// constant of the closed loop,
-///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k)² + W_noise²) + W_compression,k+1:
+/// The budgets of stages 0 … horizon of `motion`. With L_k the Lipschitz constant of the closed
+/// loop, global or, where there is none, on the region that `affine_surrogates` gives,
+///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k + W_projection)² + W_noise²) + W_compression,k+1:
 /// the noise is independent of the state and its quantiser centroidal, so that the cross term
-/// vanishes; the compression is a triangle inequality.
+/// vanishes; the compression is a triangle inequality. W_projection is what particles outside of
+/// their region cost, zero as a rule.
 [[nodiscard]] std::vector<StageBudget> error_budget(const PredictedMotion& motion);
 
 }  // namespace qsmpc

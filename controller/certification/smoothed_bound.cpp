@@ -20,8 +20,6 @@ constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
 // t is searched over radius · 1.02 … radius · 1.02 · 2^kOctaves, then about the best of these.
 constexpr int kOctaves = 24;
 constexpr int kBisections = 5;
-// With no error at all the bound tends to the probability itself as t → 0.
-constexpr double kSmallestT = 1e-4;
 
 /// E[(1 − (D − y)²/t²); D − t ≤ y ≤ D] for y ~ N(0, s²): what lies within t before a wall at D.
 double before_wall(double wall, double deviation, double t) {
@@ -88,33 +86,12 @@ bool diagonal_on(const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Box&
   return true;
 }
 
-// 1 − Σ_a d_a²/t² ≤ Π_a (1 − d_a²/t²)₊ where the left side is positive, and independent coordinates
-// factor. For correlated ones any single axis, and any half-space that contains the obstacle,
-// serve.
-double soft_obstacle(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
-                     const Box& obstacle, double t) {
-  const bool independent = diagonal_on(covariance, obstacle);
-  double product = 1.0;
-  double least = 1.0;
-  for (Eigen::Index axis = 0; axis < mean.size(); ++axis) {
-    const double factor = soft_interval_probability(mean[axis], std::sqrt(covariance(axis, axis)),
-                                                    obstacle.lower[axis], obstacle.upper[axis], t);
-    product *= factor;
-    least = std::min(least, factor);
-  }
-  if (independent) return product;
-  const Eigen::VectorXd nearest = mean.cwiseMax(obstacle.lower).cwiseMin(obstacle.upper);
-  const Eigen::VectorXd across = nearest - mean;
-  const Eigen::VectorXd whitened = whitened_direction(across, covariance, obstacle);
-  return std::min({least, separating_half_space(across, mean, covariance, obstacle, t),
-                   separating_half_space(whitened, mean, covariance, obstacle, t)});
-}
-
+/// E(1 − d(y, U)²/t²)₊ of the mixture; a part of it, at least `enough`, once it is that much.
 double mixture_value(const DiscreteMeasure& centres,
                      const Eigen::Ref<const Eigen::MatrixXd>& covariance, const SafeSet& safe_set,
-                     double t) {
+                     double t, double enough = kInfinity) {
   double sum = 0.0;
-  for (Eigen::Index i = 0; i < centres.size(); ++i) {
+  for (Eigen::Index i = 0; i < centres.size() && sum < enough; ++i) {
     if (centres.weights[i] == 0.0) continue;
     sum += centres.weights[i] *
            soft_unsafe_probability(centres.locations.col(i), covariance, safe_set, t);
@@ -139,6 +116,29 @@ double soft_interval_probability(double mean, double deviation, double lower, do
   return std::min(1.0, inside + below + above + kTailAllowance);
 }
 
+// 1 − Σ_a d_a²/t² ≤ Π_a (1 − d_a²/t²)₊ where the left side is positive, and independent coordinates
+// factor. For correlated ones any single axis, and any half-space that contains the box,
+// serve.
+double soft_part_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
+                             const Eigen::Ref<const Eigen::MatrixXd>& covariance, const Box& box,
+                             double t) {
+  const bool independent = diagonal_on(covariance, box);
+  double product = 1.0;
+  double least = 1.0;
+  for (Eigen::Index axis = 0; axis < mean.size(); ++axis) {
+    const double factor = soft_interval_probability(mean[axis], std::sqrt(covariance(axis, axis)),
+                                                    box.lower[axis], box.upper[axis], t);
+    product *= factor;
+    least = std::min(least, factor);
+  }
+  if (independent) return product;
+  const Eigen::VectorXd nearest = mean.cwiseMax(box.lower).cwiseMin(box.upper);
+  const Eigen::VectorXd across = nearest - mean;
+  const Eigen::VectorXd whitened = whitened_direction(across, covariance, box);
+  return std::min({least, separating_half_space(across, mean, covariance, box, t),
+                   separating_half_space(whitened, mean, covariance, box, t)});
+}
+
 double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
                                const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                const SafeSet& safe_set, double t) {
@@ -155,41 +155,41 @@ double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
     }
   }
   for (const Box& obstacle : safe_set.obstacles) {
-    sum += soft_obstacle(mean, covariance, obstacle, t);
+    sum += soft_part_probability(mean, covariance, obstacle, t);
   }
   return std::min(1.0, sum);
 }
 
 double smoothed_probability(const DiscreteMeasure& centres,
                             const Eigen::Ref<const Eigen::MatrixXd>& covariance,
-                            const SafeSet& safe_set, double radius) {
+                            const SafeSet& safe_set, double radius, double useful_below) {
   if (!std::isfinite(radius) || !centres.locations.allFinite()) return 1.0;
-  if (radius == 0.0) return mixture_value(centres, covariance, safe_set, kSmallestT);
-  const auto value = [&](double t) {
-    return radius * radius / (t * t) + mixture_value(centres, covariance, safe_set, t);
-  };
-  double best_t = 1.02 * radius;
+  if (radius == 0.0) return mixture_value(centres, covariance, safe_set, kSmallestReach);
+  // A value below `useful_below` needs radius²/t² below it, hence a t beyond this one; and the
+  // spread grows with t.
+  const double useful = std::clamp(useful_below, kTailAllowance, 1.0);
+  const double first = radius / std::sqrt(useful);
+  if (mixture_value(centres, covariance, safe_set, first, useful) >= useful) return 1.0;
+  double best_t = first;
   double best = 1.0;
-  double t = best_t;
-  for (int octave = 0; octave <= kOctaves; ++octave, t *= 2.0) {
+  const auto evaluate = [&](double t) {
     const double spread = mixture_value(centres, covariance, safe_set, t);
     const double here = radius * radius / (t * t) + spread;
     if (here < best) {
       best = here;
       best_t = t;
     }
-    if (spread >= best) break;  // it grows with t: no larger t can be better
+    return spread;
+  };
+  double t = 1.02 * first;
+  for (int octave = 0; octave <= kOctaves; ++octave, t *= 2.0) {
+    if (evaluate(t) >= std::min(best, useful)) break;  // no larger t can be better
   }
   double ratio = std::sqrt(2.0);
   for (int step = 0; step < kBisections; ++step, ratio = std::sqrt(ratio)) {
-    for (const double beside : {best_t / ratio, best_t * ratio}) {
-      const double here = value(beside);
-      if (here < best) {
-        best = here;
-        best_t = beside;
-        break;
-      }
-    }
+    const double centre = best_t;
+    evaluate(centre / ratio);
+    if (best_t == centre) evaluate(centre * ratio);
   }
   return std::min(1.0, best);
 }

@@ -19,6 +19,15 @@ namespace qsmpc {
 [[nodiscard]] double soft_interval_probability(double mean, double deviation, double lower,
                                                double upper, double t);
 
+/// At least E(1 − d(y, box)²/t²)₊ for y ~ N(mean, covariance); a face of the bounds is a box with
+/// one finite end. t > 0.
+[[nodiscard]] double soft_part_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
+                                           const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                                           const Box& box, double t);
+
+/// The t that serves where there is no error at all: the bound tends to P(y ∈ U) as t → 0.
+inline constexpr double kSmallestReach = 1e-4;
+
 /// At least E(1 − d(y, U)²/t²)₊ for y ~ N(mean, covariance) and U the complement of `safe_set`. t >
 /// 0.
 [[nodiscard]] double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
@@ -27,9 +36,10 @@ namespace qsmpc {
 
 /// An upper bound of P(y + e ∈ U) for y ~ Σ ρ_i N(centre_i, covariance), centres and ρ from
 /// `centres`, and any e with E|e|² ≤ radius²: the least over a search in t, each of whose values is
-/// a bound.
+/// a bound. 1 as soon as no value below `useful_below` is possible.
 [[nodiscard]] double smoothed_probability(const DiscreteMeasure& centres,
                                           const Eigen::Ref<const Eigen::MatrixXd>& covariance,
-                                          const SafeSet& safe_set, double radius);
+                                          const SafeSet& safe_set, double radius,
+                                          double useful_below = 1.0);
 
 }  // namespace qsmpc

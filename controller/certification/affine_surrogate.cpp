@@ -1,0 +1,177 @@
+#include "controller/certification/affine_surrogate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <Eigen/Cholesky>
+
+#include "controller/certification/stage_fit.hpp"
+#include "controller/certification/unicycle_residual.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The recursion from stage to stage: the law, and the error
+///     x − z = Σ_j Φ_{k,j+1} r_j(x_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
+/// with Φ the products of the affine maps' linear parts.
+class SurrogateRecursion {
+ public:
+  explicit SurrogateRecursion(const PredictedMotion& motion)
+      : motion_(motion),
+        affine_(affine_coordinates(motion.dynamics)),
+        law_(motion.belief),
+        error_{.mean_square = Eigen::VectorXd::Zero(law_.mean.size()),
+               .largest = Eigen::VectorXd::Zero(law_.mean.size())} {
+    // Then a residual is known on the whole space, and only its changes need the core.
+    fits_everywhere_ = std::all_of(affine_.begin(), affine_.end(), [](bool one) { return one; });
+    if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
+      residual_.emplace(*unicycle, law_.mean.size());
+      fits_everywhere_ = true;
+    }
+  }
+
+  /// The surrogate of the present stage, with `region` as far as the next step tells.
+  [[nodiscard]] SurrogateStage stage() const {
+    const Eigen::Index dim = law_.mean.size();
+    return {.law = law_,
+            .transition = {},
+            .error = error_.mean_square,
+            .leaving = leaving_,
+            .region = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
+                       .upper = Eigen::VectorXd::Constant(dim, kInfinity)}};
+  }
+
+  /// Takes the step of stage `stage` and completes `before`, the surrogate before it. False once
+  /// nothing finite is known.
+  bool step(Eigen::Index stage, SurrogateStage& before) {
+    const std::vector<InputFit> inputs = fit_inputs(motion_, stage, law_, error_);
+    // A plan that was lost has no boxes to fit anything over.
+    if (!std::all_of(inputs.begin(), inputs.end(), [](const InputFit& input) {
+          return std::isfinite(input.mean) && std::isfinite(input.deviation);
+        })) {
+      return false;
+    }
+    const StageFit fit = fit_stage(motion_, stage, law_, error_, inputs, affine_);
+    before.transition = fit.transition;
+    Eigen::VectorXd difference = fit.stretch * error_.mean_square;
+    for (std::size_t b = 0; b < inputs.size(); ++b) {
+      difference += fit.input_gain.col(static_cast<Eigen::Index>(b)) * inputs[b].difference;
+    }
+    outside_ += fit.outside;
+    if (!fits_everywhere_ || !difference.isZero(0.0)) {
+      leaving_ = std::min(1.0, outside_);
+      before.region = fit.region;
+    }
+    if (residual_) residual_->add_stage(law_, fit.transition);
+    carry(fit, fit.residual + difference);
+    law_.covariance =
+        fit.transition * law_.covariance * fit.transition.transpose() + motion_.noise_covariance;
+    law_.covariance = 0.5 * (law_.covariance + law_.covariance.transpose()).eval();
+    law_.mean = fit.next_mean;
+    return law_.mean.allFinite() && law_.covariance.allFinite() && error_.mean_square.allFinite() &&
+           error_.largest.allFinite();
+  }
+
+ private:
+  /// Adds this stage's residual, bounded in mean square by `bound`, to those carried along.
+  void carry(const StageFit& fit, const Eigen::VectorXd& bound) {
+    const Eigen::Index dim = law_.mean.size();
+    for (Past& past : past_) past.product = fit.transition * past.product;
+    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim),
+                     .mean_square = bound,
+                     .largest = fit.largest});
+    error_.mean_square.setZero();
+    error_.largest.setZero();
+    if (residual_) error_.mean_square = residual_->root_mean_squares();
+    for (const Past& past : past_) {
+      const Eigen::MatrixXd sizes = past.product.cwiseAbs();
+      error_.mean_square += sizes * past.mean_square;
+      error_.largest += sizes * past.largest;
+    }
+  }
+
+  struct Past {
+    Eigen::MatrixXd product;  ///< Φ_{k,j+1}
+    Eigen::VectorXd mean_square;
+    Eigen::VectorXd largest;
+  };
+
+  const PredictedMotion& motion_;
+  std::vector<bool> affine_;
+  Gaussian law_;
+  StageError error_;
+  bool fits_everywhere_ = false;
+  double outside_ = 0.0;  ///< Σ P(z_j not in its core)
+  double leaving_ = 0.0;
+  std::optional<UnicycleResidual> residual_;
+  std::vector<Past> past_;
+};
+
+bool open_loop(const Policy& policy) {
+  return std::all_of(policy.gains.begin(), policy.gains.end(),
+                     [](const auto& gain) { return gain.isZero(0.0); });
+}
+
+/// Covariance of what of (x, y) is independent of the heading, for N(0, covariance).
+Eigen::Matrix2d beside_heading(const UnicycleStructure& unicycle,
+                               const Eigen::MatrixXd& covariance) {
+  const std::vector<int> position = {unicycle.x, unicycle.y};
+  const double variance = covariance(unicycle.heading, unicycle.heading);
+  Eigen::Matrix2d beside = covariance(position, position);
+  if (variance > 0.0) {
+    const Eigen::Vector2d cross = covariance(position, unicycle.heading);
+    beside -= cross * cross.transpose() / variance;
+  }
+  return beside;
+}
+
+}  // namespace
+
+std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion) {
+  SurrogateRecursion recursion(motion);
+  std::vector<SurrogateStage> stages = {recursion.stage()};
+  bool known = true;
+  for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
+    known = known && recursion.step(k, stages.back());
+    stages.push_back(recursion.stage());
+    if (known) continue;
+    SurrogateStage& lost = stages.back();
+    lost.error.setConstant(kInfinity);
+    lost.leaving = 1.0;
+  }
+  return stages;
+}
+
+Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index stage,
+                                     const std::vector<Eigen::Index>& axes) {
+  const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle();
+  const bool always_open = open_loop(motion.policy);
+  const bool heading =
+      unicycle && std::find(axes.begin(), axes.end(), unicycle->heading) != axes.end();
+  // The last noise is independent of all that was before it.
+  if (!unicycle || (heading && !always_open)) return motion.noise_covariance;
+  // The position's error is made of the headings before the last step. Open loop nothing but their
+  // own noise moves them; with feedback the position of stage k − 2 is the last that can, so that
+  // the noise which came into that of k − 1 still is independent. Where the heading itself is
+  // restricted, what moves it with the position must not count either.
+  const std::vector<int> position = {unicycle->x, unicycle->y};
+  const Eigen::Matrix2d noise = beside_heading(*unicycle, motion.noise_covariance);
+  const Eigen::Matrix2d belief = beside_heading(*unicycle, motion.belief.covariance);
+  Eigen::Matrix2d sum = motion.noise_covariance(position, position);
+  if (heading) sum = noise;
+  if (always_open) {
+    sum += static_cast<double>(stage - 1) * noise + belief;
+  } else {
+    sum += stage == 1 ? belief : noise;
+  }
+  Eigen::MatrixXd smoothing =
+      Eigen::MatrixXd::Zero(motion.noise_covariance.rows(), motion.noise_covariance.cols());
+  smoothing(position, position) = sum;
+  return smoothing;
+}
+
+}  // namespace qsmpc

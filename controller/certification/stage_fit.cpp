@@ -1,0 +1,303 @@
+#include "controller/certification/stage_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "controller/measure/normal_distribution.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// The core reaches this many standard deviations from the mean, in every coordinate in which f is
+// not affine and in every input: 4e-8 lies outside of each.
+constexpr double kCore = 5.5;
+
+/// z = (x, u): the box of a stage and how far its points are from the centre of the expansion.
+struct Neighbourhood {
+  Eigen::VectorXd lower;
+  Eigen::VectorXd upper;
+  Eigen::VectorXd reach;  ///< bounds |z_a − centre_a|; infinite in affine coordinates
+};
+
+/// Second moments of ξ = (x − m, u − E u) under the law, an input's before its clamp: shift and
+/// covariance of the Gaussian that dominates each.
+struct Moments {
+  Eigen::VectorXd shift;
+  Eigen::MatrixXd covariance;
+
+  /// √E[X_a² X_b²] of two jointly Gaussian variables (Isserlis).
+  [[nodiscard]] double root_of_product(Eigen::Index a, Eigen::Index b) const {
+    const double cross = covariance(a, b);
+    const double square =
+        (shift[a] * shift[a] + covariance(a, a)) * (shift[b] * shift[b] + covariance(b, b)) +
+        2.0 * cross * cross + 4.0 * shift[a] * shift[b] * cross;
+    return std::sqrt(std::max(0.0, square));
+  }
+};
+
+Neighbourhood neighbourhood(const PredictedMotion& motion, const Gaussian& law,
+                            const Eigen::VectorXd& largest, const Eigen::MatrixXd& gain,
+                            const std::vector<InputFit>& inputs, const std::vector<bool>& affine) {
+  const Eigen::Index states = law.mean.size();
+  const Eigen::Index total = states + static_cast<Eigen::Index>(inputs.size());
+  Neighbourhood near{Eigen::VectorXd(total), Eigen::VectorXd(total), Eigen::VectorXd(total)};
+  for (Eigen::Index a = 0; a < states; ++a) {
+    near.reach[a] =
+        affine[a] ? kInfinity : kCore * std::sqrt(std::max(0.0, law.covariance(a, a))) + largest[a];
+    near.lower[a] = law.mean[a] - near.reach[a];
+    near.upper[a] = law.mean[a] + near.reach[a];
+  }
+  for (std::size_t b = 0; b < inputs.size(); ++b) {
+    const Eigen::Index a = states + static_cast<Eigen::Index>(b);
+    const InputFit& input = inputs[b];
+    const double span =
+        kCore * input.deviation + gain.row(static_cast<Eigen::Index>(b)).cwiseAbs().dot(largest);
+    const double least = motion.policy.bounds.lower[static_cast<Eigen::Index>(b)];
+    const double most = motion.policy.bounds.upper[static_cast<Eigen::Index>(b)];
+    const double centre = input.saturation.mean;
+    near.lower[a] = std::min(centre, std::clamp(input.mean - span, least, most));
+    near.upper[a] = std::max(centre, std::clamp(input.mean + span, least, most));
+    near.reach[a] = std::max(centre - near.lower[a], near.upper[a] - centre);
+  }
+  return near;
+}
+
+Moments moments_of(const Gaussian& law, const Eigen::MatrixXd& gain,
+                   const std::vector<InputFit>& inputs) {
+  const Eigen::Index states = law.mean.size();
+  const Eigen::Index count = gain.rows();
+  Moments moments{Eigen::VectorXd::Zero(states + count),
+                  Eigen::MatrixXd(states + count, states + count)};
+  const Eigen::MatrixXd cross = law.covariance * gain.transpose();
+  moments.covariance.topLeftCorner(states, states) = law.covariance;
+  moments.covariance.topRightCorner(states, count) = cross;
+  moments.covariance.bottomLeftCorner(count, states) = cross.transpose();
+  moments.covariance.bottomRightCorner(count, count) = gain * cross;
+  for (Eigen::Index b = 0; b < count; ++b) {
+    moments.shift[states + b] = inputs[b].mean - inputs[b].saturation.mean;
+  }
+  return moments;
+}
+
+/// What the second derivatives of one component leave beside the affine map.
+struct Curvature {
+  double offset = 0.0;    ///< of the map
+  double residual = 0.0;  ///< bounds the mean square's root
+  double largest = 0.0;   ///< bounds the absolute value over the neighbourhood
+};
+
+/// ½ ξᵀH(·)ξ − offset with H between `lower` and `upper`: taken about zero, or, with H₀ the middle
+/// of the states' block, about ½ tr(H₀S), where √Var(½ ξᵀH₀ξ) = √(½ tr (H₀S)²) is exact and only
+/// the rest is bounded entry by entry; the better of the two.
+Curvature curvature_of(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& upper,
+                       const Gaussian& law, const Moments& moments, const Eigen::VectorXd& reach) {
+  const Eigen::Index states = law.mean.size();
+  const Eigen::MatrixXd most = lower.cwiseAbs().cwiseMax(upper.cwiseAbs());
+  if (most.isZero(0.0)) return {};
+  Curvature about_zero;
+  double rest = 0.0;
+  double spread = 0.0;
+  for (Eigen::Index a = 0; a < most.rows(); ++a) {
+    for (Eigen::Index b = 0; b < most.cols(); ++b) {
+      if (most(a, b) == 0.0) continue;
+      const double root = moments.root_of_product(a, b);
+      const bool middle = a < states && b < states;
+      about_zero.residual += 0.5 * most(a, b) * root;
+      rest += 0.5 * (middle ? 0.5 * (upper(a, b) - lower(a, b)) : most(a, b)) * root;
+      spread += 0.5 * most(a, b) * reach[a] * reach[b];
+    }
+  }
+  about_zero.largest = spread;
+  const Eigen::MatrixXd product =
+      0.5 * (lower + upper).topLeftCorner(states, states) * law.covariance;
+  const Curvature centred{
+      .offset = 0.5 * product.trace(),
+      .residual =
+          std::sqrt(std::max(0.0, 0.5 * product.cwiseProduct(product.transpose()).sum())) + rest,
+      .largest = spread + std::abs(0.5 * product.trace())};
+  return centred.residual < about_zero.residual ? centred : about_zero;
+}
+
+/// Largest difference of an entry between `bounds` and `value`.
+Eigen::MatrixXd deviation(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& upper,
+                          const Eigen::MatrixXd& value) {
+  return (upper - value).cwiseMax(value - lower).cwiseMax(0.0);
+}
+
+/// The step of any system, by its derivatives' bounds over the neighbourhood (Taylor's formula).
+void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
+                        const Eigen::MatrixXd& gain, const std::vector<InputFit>& inputs,
+                        const Neighbourhood& near, StageFit& fit) {
+  const Eigen::Index states = law.mean.size();
+  const Eigen::Index count = gain.rows();
+  StateBatch centre = law.mean;
+  StateBatch input(count, 1);
+  Eigen::VectorXd slopes(count);
+  for (Eigen::Index b = 0; b < count; ++b) {
+    input(b, 0) = inputs[b].saturation.mean;
+    slopes[b] = inputs[b].saturation.slope;
+  }
+  StateBatch next(states, 1);
+  motion.dynamics.step(centre, input, next);
+  Eigen::MatrixXd by_state(states, states);
+  Eigen::MatrixXd by_input(states, count);
+  motion.dynamics.jacobians(centre.col(0), input.col(0), by_state, by_input);
+  const DerivativeBounds bounds = motion.dynamics.derivative_bounds(near.lower, near.upper);
+  const Moments moments = moments_of(law, gain, inputs);
+
+  fit.transition = by_state + by_input * slopes.asDiagonal() * gain;
+  fit.input_gain = by_input.cwiseAbs();
+  fit.next_mean = next.col(0);
+  for (Eigen::Index i = 0; i < states; ++i) {
+    const Curvature curvature =
+        curvature_of(bounds.hessian_lower[i], bounds.hessian_upper[i], law, moments, near.reach);
+    fit.next_mean[i] += curvature.offset;
+    fit.residual[i] = curvature.residual;
+    fit.largest[i] = curvature.largest;
+  }
+  Eigen::MatrixXd jacobian(states, states + count);
+  jacobian << by_state, by_input;
+  const Eigen::MatrixXd off = deviation(bounds.jacobian_lower, bounds.jacobian_upper, jacobian);
+  fit.stretch = off.leftCols(states) + off.rightCols(count) * gain.cwiseAbs();
+}
+
+/// The step of a unicycle: e^{iφ} by its best affine fit e^{im − v/2}(1 + i(φ − m)).
+void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
+                  const Eigen::MatrixXd& gain, const std::vector<InputFit>& inputs,
+                  const Neighbourhood& near, StageFit& fit) {
+  const Eigen::Index states = law.mean.size();
+  const int heading = unicycle.heading;
+  const SaturationFit& saturation = inputs[unicycle.input].saturation;
+  const double mean = law.mean[heading];
+  const double variance = law.covariance(heading, heading);
+  const double shrink = std::exp(-0.5 * variance);
+  const double lost = -std::expm1(-0.5 * variance);
+  const double cosine = std::cos(mean);
+  const double sine = std::sin(mean);
+  // A car at rest does not depend on its heading, of which nothing is bounded then.
+  const double away = unicycle.reach == 0.0 ? 0.0 : near.reach[heading];
+
+  fit.closed_form = true;
+  fit.transition = Eigen::MatrixXd::Identity(states, states);
+  fit.transition(unicycle.x, heading) = -unicycle.reach * shrink * sine;
+  fit.transition(unicycle.y, heading) = unicycle.reach * shrink * cosine;
+  fit.transition.row(heading) += unicycle.input_gain * saturation.slope * gain.row(unicycle.input);
+  fit.next_mean = law.mean;
+  fit.next_mean[unicycle.x] += unicycle.reach * shrink * cosine;
+  fit.next_mean[unicycle.y] += unicycle.reach * shrink * sine;
+  fit.next_mean[heading] += unicycle.input_gain * saturation.mean;
+  fit.input_gain = Eigen::MatrixXd::Zero(states, gain.rows());
+  fit.input_gain(heading, unicycle.input) = std::abs(unicycle.input_gain);
+  // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit takes the share `lost` off 1 + iδ.
+  const double position =
+      unicycle.reach * (0.5 * away * away + lost * std::sqrt(1.0 + away * away));
+  fit.largest[unicycle.x] = position;
+  fit.largest[unicycle.y] = position;
+  // The residual's slope is reach · i e^{im} (e^{iδ} − e^{−v/2}): sin δ along the mean heading,
+  // cos δ − e^{−v/2} across it.
+  const double along = unicycle.reach * away;
+  const double across = unicycle.reach * (0.5 * away * away + lost);
+  fit.stretch = Eigen::MatrixXd::Zero(states, states);
+  fit.stretch(unicycle.x, heading) = along * std::abs(cosine) + across * std::abs(sine);
+  fit.stretch(unicycle.y, heading) = along * std::abs(sine) + across * std::abs(cosine);
+}
+
+/// P(z outside of the core): two tails for every coordinate and input that the core restricts.
+double outside_core(const Gaussian& law, const std::vector<InputFit>& inputs,
+                    const std::vector<bool>& affine) {
+  const double tails = 2.0 * normal_cumulative(-kCore);
+  double sum = 0.0;
+  for (Eigen::Index a = 0; a < law.mean.size(); ++a) {
+    if (!affine[a] && law.covariance(a, a) > 0.0) sum += tails;
+  }
+  for (const InputFit& input : inputs) {
+    if (input.deviation > 0.0) sum += tails;
+  }
+  return sum;
+}
+
+/// |q(x) − q(z)| is (1 − slope)|K(x − z)| where neither is clamped, and never more than
+/// max(slope, 1 − slope)|K(x − z)|; either is clamped only where z's feedback is within `largest`
+/// of a bound.
+double clamp_difference(const InputFit& input, double mean_square, double largest, double lower,
+                        double upper) {
+  const double slope = input.saturation.slope;
+  const double anywhere = std::max(slope, 1.0 - slope) * mean_square;
+  if (!(input.deviation > 0.0) || !std::isfinite(largest)) return anywhere;
+  const double clamped =
+      std::min(1.0, normal_cumulative((lower + largest - input.mean) / input.deviation) +
+                        normal_cumulative((input.mean + largest - upper) / input.deviation));
+  return std::min(
+      anywhere, (1.0 - slope) * mean_square + std::min(mean_square, largest * std::sqrt(clamped)));
+}
+
+}  // namespace
+
+std::vector<InputFit> fit_inputs(const PredictedMotion& motion, Eigen::Index stage,
+                                 const Gaussian& law, const StageError& error) {
+  const Policy& policy = motion.policy;
+  const Eigen::MatrixXd& gain = policy.gains[stage];
+  std::vector<InputFit> inputs(gain.rows());
+  for (Eigen::Index b = 0; b < gain.rows(); ++b) {
+    InputFit& input = inputs[b];
+    const double lower = policy.bounds.lower[b];
+    const double upper = policy.bounds.upper[b];
+    const Eigen::VectorXd row = gain.row(b).transpose();
+    input.mean = policy.inputs(b, stage) + row.dot(law.mean - policy.states.col(stage));
+    input.deviation = std::sqrt(std::max(0.0, row.dot(law.covariance * row)));
+    input.saturation = fit_saturation(input.mean, input.deviation, lower, upper);
+    input.difference = clamp_difference(input, row.cwiseAbs().dot(error.mean_square),
+                                        row.cwiseAbs().dot(error.largest), lower, upper);
+  }
+  return inputs;
+}
+
+std::vector<bool> affine_coordinates(const Dynamics& dynamics) {
+  const int states = dynamics.state_dim();
+  const int total = states + dynamics.input_dim();
+  const DerivativeBounds bounds = dynamics.derivative_bounds(
+      Eigen::VectorXd::Constant(total, -kInfinity), Eigen::VectorXd::Constant(total, kInfinity));
+  std::vector<bool> affine(total, true);
+  for (int a = 0; a < total; ++a) {
+    for (int i = 0; i < states; ++i) {
+      if (!bounds.hessian_lower[i].row(a).isZero(0.0) ||
+          !bounds.hessian_upper[i].row(a).isZero(0.0)) {
+        affine[a] = false;
+      }
+    }
+  }
+  return affine;
+}
+
+StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaussian& law,
+                   const StageError& error, const std::vector<InputFit>& inputs,
+                   const std::vector<bool>& affine) {
+  const Eigen::MatrixXd& gain = motion.policy.gains[stage];
+  const Eigen::Index states = law.mean.size();
+  const Neighbourhood near = neighbourhood(motion, law, error.largest, gain, inputs, affine);
+  StageFit fit;
+  fit.residual = Eigen::VectorXd::Zero(states);
+  fit.largest = Eigen::VectorXd::Zero(states);
+  fit.region = {.lower = near.lower.head(states), .upper = near.upper.head(states)};
+  fit.outside = outside_core(law, inputs, affine);
+  if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
+    fit_unicycle(*unicycle, law, gain, inputs, near, fit);
+  } else {
+    fit_by_derivatives(motion, law, gain, inputs, near, fit);
+  }
+  for (Eigen::Index b = 0; b < gain.rows(); ++b) {
+    const InputFit& input = inputs[b];
+    const double span = kCore * input.deviation + gain.row(b).cwiseAbs().dot(error.largest);
+    const double worst =
+        largest_saturation_residual(input.saturation, input.mean, span,
+                                    motion.policy.bounds.lower[b], motion.policy.bounds.upper[b]);
+    fit.residual += fit.input_gain.col(b) * input.saturation.residual;
+    fit.largest += fit.input_gain.col(b) * worst;
+  }
+  return fit;
+}
+
+}  // namespace qsmpc

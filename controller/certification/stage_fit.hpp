@@ -1,0 +1,58 @@
+// One step of the closed loop near a Gaussian: the affine map that stands for it, and how far the
+// step can be from this map. Derivation: docs/theory/surrogate.md.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/certification/saturation.hpp"
+#include "controller/measure/measures.hpp"
+#include "controller/planning/safe_set.hpp"
+#include "controller/prediction/prediction.hpp"
+
+namespace qsmpc {
+
+/// The affine map z ↦ next_mean + transition (z − m) about the law N(m, S) of a stage, and the
+/// residual r(x) = f(x, u(x)) − map(x).
+struct StageFit {
+  Eigen::MatrixXd transition;  ///< A, n x n
+  Eigen::VectorXd next_mean;   ///< n
+  Eigen::VectorXd residual;    ///< n, bounds √E[r_i(z)²; z in the core] without `closed_form`
+  Eigen::VectorXd largest;     ///< n, bounds |r_i(x)| over the region
+  Eigen::MatrixXd stretch;  ///< n x n: |r_i(x) − r_i(z)| ≤ Σ_a stretch_ia |x_a − z_a| + …
+  Eigen::MatrixXd input_gain;  ///< n x m: … + Σ_b input_gain_ib |q_b(x) − q_b(z)|
+  Box region;                  ///< core, widened by what x can be from z; infinite if affine there
+  double outside = 0.0;        ///< bounds P(z not in the core)
+  bool closed_form = false;    ///< the unicycle's part of r is left to its closed form
+};
+
+/// What is known of x − z before the step.
+struct StageError {
+  Eigen::VectorXd mean_square;  ///< n, bounds √E[(x_i − z_i)²; inside]
+  Eigen::VectorXd largest;      ///< n, bounds |x_i − z_i| inside
+};
+
+/// One input's feedback under the law of a stage.
+struct InputFit {
+  double mean = 0.0;       ///< of v + K (z − x̄), before the clamp
+  double deviation = 0.0;  ///< of the same
+  SaturationFit saturation;
+  double difference = 0.0;  ///< bounds √E[(q(x) − q(z))²; inside], q the clamp's residual
+};
+
+/// The inputs' fits at stage `stage` about `law`.
+[[nodiscard]] std::vector<InputFit> fit_inputs(const PredictedMotion& motion, Eigen::Index stage,
+                                               const Gaussian& law, const StageError& error);
+
+/// Which coordinates of (x, u) f depends on in an affine way with constant coefficients,
+/// everywhere.
+[[nodiscard]] std::vector<bool> affine_coordinates(const Dynamics& dynamics);
+
+/// The fit of stage `stage`. affine: as `affine_coordinates` says.
+[[nodiscard]] StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage,
+                                 const Gaussian& law, const StageError& error,
+                                 const std::vector<InputFit>& inputs,
+                                 const std::vector<bool>& affine);
+
+}  // namespace qsmpc
