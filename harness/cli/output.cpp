@@ -1,5 +1,6 @@
 #include "harness/cli/output.hpp"
 
+#include <cctype>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -7,6 +8,15 @@
 #include "harness/errors.hpp"
 
 namespace qsmpc {
+
+std::string default_folder(const Scenario& scenario, const std::string& suffix) {
+  std::string name = scenario.name;
+  for (char& c : name) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
+    if (!plain) c = '_';
+  }
+  return "out/" + name + "-" + suffix;
+}
 
 void print_result(const std::string& text) {
   errno = 0;

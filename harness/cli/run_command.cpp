@@ -43,16 +43,6 @@ struct RunArguments {
   std::vector<std::string> fail_on = {"fault"};
 };
 
-/// "out/NAME-SEED", with what does not belong in a file name replaced.
-std::string default_folder(const Scenario& scenario, std::uint64_t seed) {
-  std::string name = scenario.name;
-  for (char& c : name) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-    if (!plain) c = '_';
-  }
-  return fmt::format("out/{}-{}", name, seed);
-}
-
 Trace drive(const Scenario& scenario, std::uint64_t seed, const std::string& folder, bool quiet) {
   TraceWriter writer(folder + "/" + kTraceFile, trace_header(scenario, seed));
   Progress progress("driving", quiet);
@@ -79,7 +69,8 @@ int run(const RunArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
-  const std::string folder = arguments.out.empty() ? default_folder(scenario, seed) : arguments.out;
+  const std::string folder =
+      arguments.out.empty() ? default_folder(scenario, fmt::format("{}", seed)) : arguments.out;
   make_output_folder(folder);
   write_file(folder + "/" + kScenarioFile, to_yaml(scenario));
 
@@ -90,7 +81,9 @@ int run(const RunArguments& arguments) {
     std::cerr << "qsmpc: the plant broke: " << printable(trace.fault, 1000) << '\n';
   }
   // An episode that ended before it began, e.g. because its plant's file is broken, shows nothing.
-  const bool with_video = arguments.video && !trace.steps.empty();
+  const std::string no_video = why_not_drawn(scenario);
+  if (arguments.video && !no_video.empty()) std::cerr << "qsmpc: no video: " << no_video << '\n';
+  const bool with_video = arguments.video && no_video.empty() && !trace.steps.empty();
   if (with_video) {
     make_video(trace, folder, video_options(scenario), arguments.quiet);
     write_summary(trace, folder, with_video);

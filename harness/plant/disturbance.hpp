@@ -18,6 +18,7 @@ enum class RandomStream : std::uint64_t {
   kInitialState = 0,
   kDisturbance = 1,
   kInput = 2,  ///< random inputs, as for measuring the mismatch between plant and model
+  kPrediction = 3,  ///< paths of the model, one an episode; step 0 is the initial state
 };
 
 struct RandomKey {

@@ -42,7 +42,7 @@ std::string find_scenario(const std::string& path_or_name) {
 
 Scenario load_scenario(const std::string& path_or_name, const std::vector<std::string>& overrides) {
   const std::string path = find_scenario(path_or_name);
-  return parse_scenario(read_yaml_text(path),
+  return parse_scenario(read_text_file(path),
                         {.file = path, .folder = folder_of(path), .overrides = overrides});
 }
 
@@ -57,7 +57,7 @@ std::vector<InputError::Where> validate_scenario_file(const std::string& path_or
   try {
     const std::string path = find_scenario(path_or_name);
     Problems problems(path);
-    (void)read_text(read_yaml_text(path), {.file = path, .folder = folder_of(path)}, problems);
+    (void)read_text(read_text_file(path), {.file = path, .folder = folder_of(path)}, problems);
     return problems.sorted();
   } catch (const InputError& error) {
     return {error.where()};

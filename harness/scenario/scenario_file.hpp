@@ -12,6 +12,9 @@
 
 namespace qsmpc {
 
+/// What the resolved scenario is called among the files that a command leaves.
+inline constexpr const char* kScenarioFile = "scenario.yaml";
+
 /// Where a scenario's text comes from.
 struct ScenarioSource {
   std::string file = "scenario";  ///< what errors call it

@@ -23,7 +23,7 @@ constexpr std::size_t kLongestPath = 1024;        // bytes
 constexpr std::size_t kMostObstacles = 1000;      // every particle is held against each of them
 constexpr double kShortestPeriod = 1e-4;          // s, a simulator's step at its finest
 constexpr double kLongestPeriod = 10.0;           // s
-constexpr WholeRange kHorizonRange{1, 1000};
+constexpr WholeRange kHorizonRange{1, kMostStages};
 constexpr WholeRange kPointsRange{1, 100000};
 constexpr WholeRange kIterationsRange{1, 100000};
 constexpr WholeRange kStepsRange{1, 1000000};

@@ -45,7 +45,7 @@ std::vector<fs::path> shipped_in(const char* folder, const char* extension) {
 
 std::string description_in(const std::string& path) {
   try {
-    const YamlNode tree = parse_yaml(read_yaml_text(path), path);
+    const YamlNode tree = parse_yaml(read_text_file(path), path);
     const YamlNode* node = tree.find("description");
     return node == nullptr ? "" : printable(node->text, 200);
   } catch (const InputError&) {

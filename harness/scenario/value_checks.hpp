@@ -31,6 +31,8 @@ struct FrameSize {
   int height = 0;
 };
 
+inline constexpr int kMostStages = 1000;  // of a horizon
+
 inline constexpr int kLeastFrameSide = 64;    // pixels; less shows nothing
 inline constexpr int kMostFrameWidth = 7680;  // pixels, 8K
 inline constexpr int kMostFrameHeight = 4320;

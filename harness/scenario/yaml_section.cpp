@@ -10,6 +10,7 @@
 
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/text_encoding.hpp"
+#include "harness/scenario/text_file.hpp"
 
 namespace qsmpc {
 namespace {
@@ -53,15 +54,7 @@ std::optional<double> parse_number(const YamlNode& node) {
   if (text == ".nan" || text == ".NaN" || text == ".NAN") {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  // from_chars also knows a second sign and words such as "infinity", which YAML does not.
-  if (text.empty() || text.find_first_not_of("0123456789.eE+-") != std::string_view::npos ||
-      text.front() == '-' || text.front() == '+') {
-    return std::nullopt;
-  }
-  double value = 0.0;
-  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || stopped != text.data() + text.size()) return std::nullopt;
-  return negative ? -value : value;
+  return parse_decimal(node.text);
 }
 
 void Problems::add(const YamlNode& node, std::string key, std::string found, std::string expected) {

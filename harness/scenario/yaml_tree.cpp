@@ -1,15 +1,10 @@
 #include "harness/scenario/yaml_tree.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <sstream>
-#include <system_error>
 #include <unordered_set>
 #include <utility>
 
-#include <fcntl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/mark.h>
@@ -173,36 +168,6 @@ void check_text(const std::string& text, const std::string& file) {
   }
 }
 
-[[noreturn]] void fail_to_read(const std::string& path, const std::string& found) {
-  throw InputError({.file = path, .found = found, .expected = "a readable file"});
-}
-
-std::string words(int error) { return std::generic_category().message(error); }
-
-std::string read_descriptor(int descriptor, const std::string& path) {
-  struct stat status {};
-  if (::fstat(descriptor, &status) != 0) fail_to_read(path, words(errno));
-  if (S_ISDIR(status.st_mode)) fail_to_read(path, "a folder");
-  if (!S_ISREG(status.st_mode)) fail_to_read(path, "a device or pipe");
-  // One byte more than allowed is enough to see that a file is too large, whatever its size says.
-  std::string text(kMaxYamlBytes + 1, '\0');
-  std::size_t size = 0;
-  while (size < text.size()) {
-    const ssize_t count = ::read(descriptor, text.data() + size, text.size() - size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) fail_to_read(path, words(errno));
-    if (count == 0) break;
-    size += static_cast<std::size_t>(count);
-  }
-  if (size > kMaxYamlBytes) {
-    throw InputError({.file = path,
-                      .found = "more than " + std::to_string(kMaxYamlBytes) + " bytes",
-                      .expected = "a file of at most 1 MiB"});
-  }
-  text.resize(size);
-  return text;
-}
-
 }  // namespace
 
 const YamlNode* YamlNode::find(std::string_view key) const {
@@ -247,20 +212,6 @@ YamlNode parse_yaml(const std::string& text, const std::string& file) {
     throw InputError({.file = file, .found = "an empty text", .expected = "YAML"});
   }
   return builder.take_root();
-}
-
-std::string read_yaml_text(const std::string& path) {
-  // Without O_NONBLOCK, opening a named pipe would wait for its writer.
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) fail_to_read(path, words(errno));
-  try {
-    std::string text = read_descriptor(descriptor, path);
-    ::close(descriptor);
-    return text;
-  } catch (...) {
-    ::close(descriptor);
-    throw;
-  }
 }
 
 }  // namespace qsmpc

@@ -11,9 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/scenario/text_file.hpp"
+
 namespace qsmpc {
 
-inline constexpr std::size_t kMaxYamlBytes = std::size_t{1} << 20U;
+inline constexpr std::size_t kMaxYamlBytes = kMaxTextFileBytes;
 inline constexpr std::size_t kMaxYamlDepth = 16;
 
 struct YamlNode {
@@ -40,9 +42,5 @@ struct YamlNode {
 /// Throws InputError on a text over kMaxYamlBytes, one that is not UTF-8, not YAML, empty, nested
 /// deeper than kMaxYamlDepth, or that has a key twice or something else that is not accepted.
 [[nodiscard]] YamlNode parse_yaml(const std::string& text, const std::string& file);
-
-/// The content of a regular file. Throws InputError when there is none at `path`, when it cannot be
-/// read, or when it is larger than kMaxYamlBytes.
-[[nodiscard]] std::string read_yaml_text(const std::string& path);
 
 }  // namespace qsmpc

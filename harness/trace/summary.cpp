@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/planning/safe_set.hpp"
+#include "harness/trace/json_values.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
@@ -132,16 +133,6 @@ void add_mismatch(const Trace& trace, Summary& summary) {
   summary.mismatch_covariance = centred * centred.transpose() / count;
 }
 
-nlohmann::ordered_json as_json(const Eigen::VectorXd& values) {
-  return std::vector<double>(values.begin(), values.end());
-}
-
-nlohmann::ordered_json as_json(const Eigen::MatrixXd& matrix) {
-  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  for (const auto& row : matrix.rowwise()) rows.push_back(as_json(Eigen::VectorXd(row)));
-  return rows;
-}
-
 nlohmann::ordered_json timing_json(const Summary& summary) {
   return {{"median", summary.ocp_ms.median},
           {"p95", summary.ocp_ms.p95},
@@ -201,9 +192,9 @@ std::string summary_json(const Trace& trace, const SummaryOptions& options) {
                          {"horizon", {{"max", summary.horizon_max}}},
                          {"thesis", {{"max", summary.thesis_max}}}};
   json["mismatch"] = {{"one_step",
-                       {{"rmse", as_json(summary.mismatch_rmse)},
-                        {"mean", as_json(summary.mismatch_mean)},
-                        {"covariance", as_json(summary.mismatch_covariance)}}}};
+                       {{"rmse", vector_json(summary.mismatch_rmse)},
+                        {"mean", vector_json(summary.mismatch_mean)},
+                        {"covariance", rows_json(summary.mismatch_covariance)}}}};
   json["video"] = nullptr;
   if (!options.video_file.empty()) json["video"] = options.video_file;
   // Names come from files: what is no UTF-8 is replaced, not thrown about.

@@ -262,7 +262,7 @@ TEST(Commands, list_and_validate_and_help) {
   EXPECT_THAT(run_qsmpc({"list", "systems", "--json"}).output, HasSubstr("\"dubins\""));
   EXPECT_EQ(run_qsmpc({"list", "wheels"}).exit_code, 2);
   EXPECT_EQ(run_qsmpc({"validate", "dubins_obstacles"}).exit_code, 0);
-  for (const char* command : {"run", "render", "report", "list", "validate"}) {
+  for (const char* command : {"run", "predict", "render", "report", "list", "validate"}) {
     const ProcessResult help = run_qsmpc({command, "--help"});
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.output, HasSubstr("Example"));

@@ -1,0 +1,145 @@
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/exit_codes.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/output.hpp"
+#include "harness/cli/progress.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/prediction/input_table.hpp"
+#include "harness/prediction/prediction_file.hpp"
+#include "harness/prediction/prediction_json.hpp"
+#include "harness/prediction/prediction_report.hpp"
+#include "harness/prediction/prediction_table.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/value_checks.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kHelp =
+    "Plans once from the scenario's initial belief, without a plant, and writes the measures "
+    "along\n"
+    "the horizon, their error and their certificates: predict.h5, predict.json and scenario.yaml.";
+constexpr const char* kExample =
+    "Examples: qsmpc predict dubins_corridor --steps 6 --monte-carlo 100000\n"
+    "          qsmpc predict dubins_corridor --inputs my_inputs.csv --json\n"
+    "FILE has one line a stage and one number an input, separated by commas; a first line may "
+    "name\n"
+    "the inputs. A certificate of stage k speaks of this plan followed for k stages.";
+// Paths; their numbers are shown in the progress as whole numbers of 32 bits.
+constexpr std::int64_t kMostSamples = 1'000'000'000;
+
+struct PredictArguments {
+  std::string scenario;
+  std::vector<std::string> overrides;
+  std::string inputs;
+  std::optional<int> steps;
+  std::int64_t samples = 0;
+  std::optional<std::uint64_t> seed;
+  std::string out;
+  bool quiet = false;
+  bool json = false;
+};
+
+/// The inputs of the file, if one is given; the horizon of `scenario` becomes what is to be
+/// predicted.
+std::optional<Eigen::MatrixXd> take_inputs(const PredictArguments& arguments, Scenario& scenario) {
+  if (arguments.steps) scenario.controller.horizon = *arguments.steps;
+  if (arguments.inputs.empty()) return std::nullopt;
+  const Scenario::Controller& controller = scenario.controller;
+  Eigen::MatrixXd inputs = read_input_table(
+      arguments.inputs,
+      {.inputs = model_of(scenario)->description().inputs,
+       .bounds = {.lower = controller.input_lower, .upper = controller.input_upper},
+       .stages = arguments.steps});
+  scenario.controller.horizon = static_cast<int>(inputs.cols());
+  return inputs;
+}
+
+std::string files_table(const std::string& folder) {
+  std::string text;
+  for (const auto& [what, file] : {std::pair("numbers", kPredictionNumbersFile),
+                                   std::pair("particles, policy", kPredictionFile)}) {
+    text += fmt::format("  {:<20} {}/{}\n", what, folder, file);
+  }
+  return text;
+}
+
+/// Says on standard error what must not go unseen, and returns the exit code.
+int conclude(const PredictionReport& report) {
+  if (const std::vector<int> stages = contradicted_stages(report); !stages.empty()) {
+    std::cerr << fmt::format(
+        "qsmpc: internal error: more simulated paths are unsafe than the certificate allows, at "
+        "stage {}\n",
+        fmt::join(stages, ", "));
+    return kInternalError;
+  }
+  if (report.interrupted) {
+    std::cerr << "qsmpc: interrupted; the files hold the prediction without the simulation\n";
+    return kInterruptedExit;
+  }
+  return kDone;
+}
+
+int predict(const PredictArguments& arguments) {
+  Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
+  scenario.seed = arguments.seed.value_or(scenario.seed);
+  PredictionOptions options{.inputs = take_inputs(arguments, scenario)};
+  const std::string folder =
+      arguments.out.empty() ? default_folder(scenario, "predict") : arguments.out;
+  make_output_folder(folder);
+
+  Progress progress("simulating", arguments.quiet);
+  options.monte_carlo = {.samples = arguments.samples,
+                         .should_stop = [] { return interrupts() > 0; },
+                         .on_progress =
+                             [&](std::int64_t done, std::int64_t total) {
+                               progress.update(static_cast<int>(done), static_cast<int>(total),
+                                               "paths");
+                             }};
+  const PredictionReport report = predict_scenario(scenario, options);
+  write_prediction(report, folder);
+  print_result(arguments.json ? prediction_json(report)
+                              : prediction_table(report) + files_table(folder));
+  return conclude(report);
+}
+
+}  // namespace
+
+void add_predict_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("predict", kHelp);
+  command->footer(kExample);
+  const auto arguments = std::make_shared<PredictArguments>();
+  command
+      ->add_option("scenario", arguments->scenario, "a scenario file, or the name of a shipped one")
+      ->required();
+  command->add_option("--set", arguments->overrides, "KEY=VALUE: replaces a key of the scenario")
+      ->allow_extra_args(false);
+  command->add_option("--inputs", arguments->inputs,
+                      "FILE (CSV): inputs to predict for; default: planned ones");
+  command
+      ->add_option("--steps", arguments->steps,
+                   "stages; default: the rows of --inputs, or the scenario's horizon")
+      ->check(CLI::Range(1, kMostStages));
+  command
+      ->add_option("--monte-carlo", arguments->samples,
+                   "simulate so many paths of the model as a check of the certificates")
+      ->check(CLI::Range(std::int64_t{1}, kMostSamples));
+  command->add_option("--seed", arguments->seed, "of the simulated paths; default: the scenario's");
+  command->add_option("--out", arguments->out, "output folder; default: out/NAME-predict");
+  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--json", arguments->json, "print predict.json instead of the table");
+  command->callback([arguments, &exit_code] { exit_code = predict(*arguments); });
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,122 @@
+#include "harness/prediction/monte_carlo.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+#include <thread>
+
+#include "harness/plant/disturbance.hpp"
+
+namespace qsmpc {
+namespace {
+
+// Paths that are simulated together: enough to keep the dynamics' loops long, few enough for the
+// cache and for an answer to Ctrl-C.
+constexpr std::int64_t kBatch = 1024;
+
+/// Simulates batches of paths; the batches are shared out among threads.
+class Simulation {
+ public:
+  Simulation(const PredictedMotion& motion, const SafeSet& safe_set,
+             const MonteCarloOptions& options)
+      : motion_(motion),
+        safe_set_(safe_set),
+        options_(options),
+        initial_(motion.belief.mean, motion.belief.covariance),
+        noise_(Eigen::VectorXd::Zero(motion.belief.mean.size()), motion.noise_covariance) {}
+
+  /// Takes batches until none is left or the work is given up. report: whether to tell progress.
+  UnsafeCounts work(bool report) {
+    UnsafeCounts counts;
+    counts.stages.assign(static_cast<std::size_t>(motion_.policy.horizon()), 0);
+    while (!stopped_) {
+      const std::int64_t begin = next_.fetch_add(kBatch);
+      if (begin >= options_.samples) break;
+      if (options_.should_stop && options_.should_stop()) {
+        stopped_ = true;
+        break;
+      }
+      const std::int64_t size = std::min(kBatch, options_.samples - begin);
+      simulate(begin, size, counts);
+      done_ += size;
+      if (report && options_.on_progress) options_.on_progress(done_, options_.samples);
+    }
+    return counts;
+  }
+
+  [[nodiscard]] bool stopped() const { return stopped_; }
+
+ private:
+  [[nodiscard]] RandomKey key(std::int64_t path, Eigen::Index stage) const {
+    return {.seed = options_.seed,
+            .episode = static_cast<std::uint64_t>(path),
+            .stream = RandomStream::kPrediction,
+            .step = static_cast<std::uint64_t>(stage)};
+  }
+
+  void simulate(std::int64_t begin, std::int64_t size, UnsafeCounts& counts) const {
+    Points states(motion_.belief.mean.size(), size);
+    Points next(states.rows(), size);
+    Points inputs(motion_.policy.inputs.rows(), size);
+    std::vector<char> was_unsafe(static_cast<std::size_t>(size), 0);
+    for (Eigen::Index i = 0; i < size; ++i) states.col(i) = initial_.sample(key(begin + i, 0));
+    for (Eigen::Index k = 0; k < motion_.policy.horizon(); ++k) {
+      policy_inputs(motion_.policy, k, states, inputs);
+      motion_.dynamics.step(states, inputs, next);
+      for (Eigen::Index i = 0; i < size; ++i) next.col(i) += noise_.sample(key(begin + i, k + 1));
+      states.swap(next);
+      counts.stages[static_cast<std::size_t>(k)] += count_unsafe(states, was_unsafe);
+    }
+    counts.samples += size;
+    counts.any_stage += std::count(was_unsafe.begin(), was_unsafe.end(), 1);
+  }
+
+  std::int64_t count_unsafe(const Points& states, std::vector<char>& was_unsafe) const {
+    std::int64_t count = 0;
+    for (Eigen::Index i = 0; i < states.cols(); ++i) {
+      const Eigen::VectorXd state = states.col(i);
+      if (state.allFinite() && distance_to_unsafe(state, safe_set_) > 0.0) continue;
+      was_unsafe[static_cast<std::size_t>(i)] = 1;
+      ++count;
+    }
+    return count;
+  }
+
+  const PredictedMotion& motion_;
+  const SafeSet& safe_set_;
+  const MonteCarloOptions& options_;
+  GaussianSampler initial_;
+  GaussianSampler noise_;
+  std::atomic<std::int64_t> next_ = 0;  // first path that no thread has taken
+  std::atomic<std::int64_t> done_ = 0;
+  std::atomic<bool> stopped_ = false;
+};
+
+void add_to(UnsafeCounts& total, const UnsafeCounts& more) {
+  total.samples += more.samples;
+  total.any_stage += more.any_stage;
+  for (std::size_t k = 0; k < total.stages.size(); ++k) total.stages[k] += more.stages[k];
+}
+
+}  // namespace
+
+std::optional<UnsafeCounts> simulate_unsafe_counts(const PredictedMotion& motion,
+                                                   const SafeSet& safe_set,
+                                                   const MonteCarloOptions& options) {
+  Simulation simulation(motion, safe_set, options);
+  const auto available = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  const int threads = options.threads > 0 ? options.threads : available;
+  std::vector<std::future<UnsafeCounts>> others;
+  for (int i = 1; i < threads; ++i) {
+    others.push_back(
+        std::async(std::launch::async, [&simulation] { return simulation.work(false); }));
+  }
+  UnsafeCounts total = simulation.work(true);
+  for (std::future<UnsafeCounts>& other : others) add_to(total, other.get());
+  if (simulation.stopped()) return std::nullopt;
+  // The last batch may have been another thread's.
+  if (options.on_progress) options.on_progress(total.samples, options.samples);
+  return total;
+}
+
+}  // namespace qsmpc

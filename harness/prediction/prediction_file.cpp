@@ -1,0 +1,294 @@
+#include "harness/prediction/prediction_file.hpp"
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include "harness/atomic_file.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/errors.hpp"
+#include "harness/prediction/prediction_json.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/certificate_fields.hpp"
+#include "harness/trace/coordinate_labels.hpp"
+#include "harness/trace/rows.hpp"
+
+namespace qsmpc {
+namespace {
+
+using Layout = std::vector<DatasetSpec>;
+using Type = DatasetSpec::Type;
+
+constexpr const char* kRateMeaning =
+    "share of the simulated paths that are unsafe, and its Clopper-Pearson limits, each of "
+    "confidence 1 - 1e-6";
+
+/// Names, units and numbers of states and inputs.
+struct Labels {
+  CoordinateLabels states;
+  CoordinateLabels inputs;
+  [[nodiscard]] std::size_t state_dim() const { return states.names.size(); }
+  [[nodiscard]] std::size_t input_dim() const { return inputs.names.size(); }
+};
+
+void add_plan(Layout& layout, const Labels& n) {
+  layout.push_back({.path = "/belief/mean",
+                    .axes = {"state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = "of the Gaussian that the plan is made for",
+                    .chunk_rows = n.state_dim()});
+  layout.push_back({.path = "/belief/covariance",
+                    .row_shape = {n.state_dim()},
+                    .axes = {"state", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = "an entry has the unit of its row times that of its column",
+                    .chunk_rows = n.state_dim()});
+  layout.push_back({.path = "/plan/time",
+                    .axes = {"stage"},
+                    .units = {"s"},
+                    .comment = "of the stage; stage 0 is the present"});
+  layout.push_back({.path = "/plan/inputs",
+                    .row_shape = {n.input_dim()},
+                    .axes = {"stage", "input"},
+                    .units = n.inputs.units,
+                    .columns = n.inputs.names,
+                    .comment = "nominal inputs v of the policy u(x) = clamp(v + K (x - nominal))"});
+  layout.push_back({.path = "/plan/states",
+                    .row_shape = {n.state_dim()},
+                    .axes = {"stage", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = "nominal states: under the nominal inputs, without noise"});
+  layout.push_back({.path = "/plan/gains",
+                    .row_shape = {n.input_dim(), n.state_dim()},
+                    .axes = {"stage", "input", "state"},
+                    .units = {"unit of the input per unit of the state"},
+                    .comment = "K; zero for an open-loop policy"});
+  layout.push_back({.path = "/plan/cost",
+                    .axes = {"part"},
+                    .units = {"1"},
+                    .columns = {"state", "input", "terminal", "box", "obstacle"},
+                    .comment = "expected cost by part"});
+}
+
+void add_particles(Layout& layout, const Labels& n) {
+  const std::string slices =
+      "the points of stage s are the rows offsets[s] up to, without, offsets[s + 1], counted from "
+      "0; stage 0 is the quantised belief";
+  layout.push_back({.path = "/particles/locations",
+                    .row_shape = {n.state_dim()},
+                    .axes = {"point", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = slices,
+                    .compress = true});
+  layout.push_back({.path = "/particles/weights",
+                    .axes = {"point"},
+                    .units = {"1"},
+                    .comment = slices,
+                    .compress = true});
+  layout.push_back({.path = "/particles/offsets",
+                    .type = Type::kInt64,
+                    .axes = {"stage"},
+                    .units = {"row of locations and weights"},
+                    .comment = slices});
+  layout.push_back({.path = "/particles/stepped",
+                    .row_shape = {n.state_dim()},
+                    .axes = {"point", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = "where the dynamics take the point of the same row, before noise "
+                               "and compression; none for the last stage",
+                    .compress = true});
+  layout.push_back({.path = "/particles/mean",
+                    .row_shape = {n.state_dim()},
+                    .axes = {"stage", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names});
+  layout.push_back(
+      {.path = "/particles/covariance",
+       .row_shape = {n.state_dim(), n.state_dim()},
+       .axes = {"stage", "state", "state"},
+       .units = n.states.units,
+       .columns = n.states.names,
+       .comment = "of the points: without what quantisation and compression left out"});
+}
+
+void add_certificate(Layout& layout) {
+  std::vector<std::string> sources;
+  for (const BudgetField& field : kBudgetColumns) sources.emplace_back(field.name);
+  layout.push_back({.path = "/certificate/budget",
+                    .row_shape = {sources.size()},
+                    .axes = {"stage", "source"},
+                    .units = {kStateNorm},
+                    .columns = sources,
+                    .comment = kBudgetMeaning});
+  layout.push_back({.path = kDynamicsPath,
+                    .axes = {"stage"},
+                    .units = {kStateNorm},
+                    .comment = kDynamicsMeaning});
+  layout.push_back({.path = "/certificate/lipschitz",
+                    .axes = {"stage"},
+                    .units = {"1"},
+                    .comment = kLipschitzMeaning});
+  for (const CertificateField& field : kCertificateFields) {
+    layout.push_back({.path = certificate_path(field),
+                      .axes = {"stage"},
+                      .units = {"1"},
+                      .comment = field.meaning});
+  }
+  layout.push_back({.path = "/certificate/kind",
+                    .type = Type::kText,
+                    .axes = {"stage"},
+                    .units = {"1"},
+                    .comment = kKindMeaning});
+  layout.push_back({.path = "/certificate/horizon",
+                    .axes = {"plan"},
+                    .units = {"1"},
+                    .comment = "upper bound of the probability of being unsafe at any stage",
+                    .chunk_rows = 1});
+}
+
+void add_monte_carlo(Layout& layout) {
+  layout.push_back({.path = "/monte_carlo/unsafe",
+                    .type = Type::kInt64,
+                    .axes = {"stage"},
+                    .units = {"paths"},
+                    .comment = "how many are unsafe at the stage; the first is stage 1"});
+  layout.push_back({.path = "/monte_carlo/rate",
+                    .row_shape = {3},
+                    .axes = {"stage", "limit"},
+                    .units = {"1"},
+                    .columns = {"rate", "lower", "upper"},
+                    .comment = kRateMeaning});
+  layout.push_back({.path = "/monte_carlo/any_stage",
+                    .row_shape = {3},
+                    .axes = {"plan", "limit"},
+                    .units = {"1"},
+                    .columns = {"rate", "lower", "upper"},
+                    .comment = "the same for being unsafe at any stage",
+                    .chunk_rows = 1});
+}
+
+void write_header(Hdf5File& file, const PredictionReport& report) {
+  file.set_text("/", "kind", "prediction");
+  file.set_integer("/", "schema", kPredictionSchema);
+  file.set_text("/", "version", report.version);
+  file.set_text("/", "scenario", report.scenario_text);
+  file.set_text("/", "scenario_name", report.scenario.name);
+  file.set_unsigned("/", "seed", report.scenario.seed);
+  file.set_text("/", "inputs", report.inputs_given ? "given" : "planned");
+  file.set_text("/", "solver_status", report.solver_status);
+}
+
+void write_plan(Hdf5File& file, const PredictionReport& report) {
+  const Policy& policy = report.policy;
+  file.append("/belief/mean", by_rows(report.scenario.initial_state.mean));
+  file.append("/belief/covariance", by_rows(report.scenario.initial_state.covariance));
+  std::vector<double> times;
+  for (Eigen::Index k = 0; k <= policy.horizon(); ++k) {
+    times.push_back(static_cast<double>(k) * report.scenario.time_step);
+  }
+  file.append("/plan/time", times);
+  // A stage is a column in memory and a row in the file.
+  file.append("/plan/inputs", by_rows(policy.inputs.transpose()));
+  file.append("/plan/states", by_rows(policy.states.transpose()));
+  std::vector<double> gains;
+  for (const Eigen::MatrixXd& gain : policy.gains) append_to(gains, by_rows(gain));
+  file.append("/plan/gains", gains);
+  const CostParts& cost = report.cost;
+  file.append("/plan/cost",
+              std::vector<double>{cost.state, cost.input, cost.terminal, cost.box, cost.obstacle});
+}
+
+void write_particles(Hdf5File& file, const Prediction& prediction) {
+  std::vector<std::int64_t> offsets = {0};
+  for (const DiscreteMeasure& stage : prediction.stages) {
+    file.append("/particles/locations", by_rows(stage.locations.transpose()));
+    file.append("/particles/weights", by_rows(stage.weights));
+    file.append("/particles/mean", by_rows(mean_of(stage)));
+    file.append("/particles/covariance", by_rows(covariance_of(stage)));
+    offsets.push_back(offsets.back() + stage.size());
+  }
+  file.append("/particles/offsets", offsets);
+  for (const Points& stepped : prediction.stepped) {
+    file.append("/particles/stepped", by_rows(stepped.transpose()));
+  }
+}
+
+void write_certificate(Hdf5File& file, const PredictionReport& report) {
+  std::vector<double> budgets;
+  for (const StageBudget& stage : report.budgets) {
+    for (const BudgetField& field : kBudgetColumns) budgets.push_back(stage.*field.member);
+  }
+  file.append("/certificate/budget", budgets);
+  file.append(kDynamicsPath, column_of(report.budgets, &StageBudget::dynamics));
+  file.append("/certificate/lipschitz", column_of(report.budgets, &StageBudget::lipschitz));
+  for (const CertificateField& field : kCertificateFields) {
+    file.append(certificate_path(field), column_of(report.certificates, field.member));
+  }
+  file.append("/certificate/kind", column_of(report.certificates, &StageCertificate::kind));
+  file.append("/certificate/horizon", std::vector<double>{report.horizon_bound});
+}
+
+void write_monte_carlo(Hdf5File& file, const UnsafeCounts& counts) {
+  const auto append_rate = [&](const char* path, std::int64_t events) {
+    const SimulatedRate simulated = simulated_rate(events, counts.samples);
+    file.append(
+        path, std::vector<double>{simulated.rate, simulated.limits.lower, simulated.limits.upper});
+  };
+  file.set_integer("/monte_carlo", "samples", counts.samples);
+  file.append("/monte_carlo/unsafe", counts.stages);
+  for (const std::int64_t events : counts.stages) append_rate("/monte_carlo/rate", events);
+  append_rate("/monte_carlo/any_stage", counts.any_stage);
+}
+
+void write_hdf5(const PredictionReport& report, const std::string& path) {
+  Hdf5File file = Hdf5File::create(path);
+  write_header(file, report);
+  for (const DatasetSpec& spec : prediction_layout(report)) file.create_dataset(spec);
+  write_plan(file, report);
+  write_particles(file, report.prediction);
+  write_certificate(file, report);
+  if (report.monte_carlo) write_monte_carlo(file, *report.monte_carlo);
+  file.close();
+}
+
+void remove_file(const std::string& path) {
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (error) throw IoError(path + ": " + error.message());
+}
+
+}  // namespace
+
+std::vector<DatasetSpec> prediction_layout(const PredictionReport& report) {
+  const std::unique_ptr<const Dynamics> model = model_of(report.scenario);
+  const Labels labels{.states = labels_of(model->description().states),
+                      .inputs = labels_of(model->description().inputs)};
+  Layout layout;
+  add_plan(layout, labels);
+  add_particles(layout, labels);
+  add_certificate(layout);
+  if (report.monte_carlo) add_monte_carlo(layout);
+  return layout;
+}
+
+void write_prediction(const PredictionReport& report, const std::string& folder) {
+  PendingFile measures(folder + "/" + kPredictionFile);
+  PendingFile scenario(folder + "/" + kScenarioFile);
+  PendingFile numbers(folder + "/" + kPredictionNumbersFile);
+  write_hdf5(report, measures.partial_path());
+  scenario.write(report.scenario_text);
+  numbers.write(prediction_json(report));
+  // Killed from here on, there is no predict.json of an older prediction beside a new predict.h5.
+  remove_file(numbers.path());
+  measures.commit();
+  scenario.commit();
+  numbers.commit();
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,71 @@
+#include "harness/prediction/prediction_json.hpp"
+
+#include <cstddef>
+
+#include "harness/prediction/prediction_file.hpp"
+#include "harness/trace/json_values.hpp"
+
+namespace qsmpc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rate_json(std::int64_t events, std::int64_t samples) {
+  const SimulatedRate simulated = simulated_rate(events, samples);
+  return {{"rate", simulated.rate},
+          {"lower", simulated.limits.lower},
+          {"upper", simulated.limits.upper},
+          {"samples", samples}};
+}
+
+Json certificate_json(const StageCertificate& certificate) {
+  return {{"value", certificate.value},
+          {"kind", certificate.kind},
+          {"all",
+           {{"c1", certificate.particles},
+            {"c2", certificate.mixture},
+            {"c3", certificate.surrogate},
+            {"c4", certificate.smoothed}}},
+          {"thesis", certificate.thesis}};
+}
+
+Json stage_json(const PredictionReport& report, std::size_t stage) {
+  const DiscreteMeasure& particles = report.prediction.stages[stage];
+  const StageBudget& budget = report.budgets[stage];
+  Json json;
+  json["stage"] = stage;
+  json["mean"] = vector_json(mean_of(particles));
+  json["covariance"] = rows_json(covariance_of(particles));
+  json["w2_bound"] = budget.total;
+  json["budget"] = {{"belief", budget.belief},
+                    {"noise", budget.noise},
+                    {"compression", budget.compression},
+                    {"dynamics", budget.dynamics}};
+  json["certificate"] = certificate_json(report.certificates[stage - 1]);
+  if (report.monte_carlo) {
+    json["monte_carlo"] =
+        rate_json(report.monte_carlo->stages[stage - 1], report.monte_carlo->samples);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string prediction_json(const PredictionReport& report) {
+  Json json;
+  json["inputs"] = rows_json(report.policy.inputs.transpose());
+  json["cost"] = report.cost.total();
+  json["stages"] = Json::array();
+  for (std::size_t stage = 1; stage < report.prediction.stages.size(); ++stage) {
+    json["stages"].push_back(stage_json(report, stage));
+  }
+  json["horizon"] = {{"value", report.horizon_bound}};
+  if (report.monte_carlo) {
+    json["horizon"]["monte_carlo"] =
+        rate_json(report.monte_carlo->any_stage, report.monte_carlo->samples);
+  }
+  json["particles"] = kPredictionFile;
+  return json.dump(2) + "\n";
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,61 @@
+#include "harness/prediction/prediction_report.hpp"
+
+#include <memory>
+
+#include "controller/planning/planner.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/version.hpp"
+
+namespace qsmpc {
+
+PredictionReport predict_scenario(const Scenario& scenario, const PredictionOptions& options) {
+  const std::unique_ptr<const Dynamics> model = model_of(scenario);
+  Planner planner(*model, planner_settings(scenario));
+  const Gaussian belief{.mean = scenario.initial_state.mean,
+                        .covariance = scenario.initial_state.covariance};
+  const Plan& plan =
+      options.inputs ? planner.prescribe(belief, *options.inputs) : planner.plan(belief);
+
+  PredictionReport report;
+  report.scenario = scenario;
+  report.scenario_text = to_yaml(scenario);
+  report.version = kVersion;
+  report.inputs_given = options.inputs.has_value();
+  if (!report.inputs_given) report.solver_status = solver_status_name(plan.status);
+  report.policy = plan.policy;
+  report.cost = plan.cost;
+  report.prediction = plan.prediction;
+  const PredictedMotion motion = motion_of(planner, belief, plan);
+  report.budgets = error_budget(motion);
+  report.certificates = certify(motion, scenario.safe_set, report.budgets);
+  report.horizon_bound = horizon_bound(report.certificates);
+  if (options.monte_carlo.samples > 0) {
+    MonteCarloOptions simulation = options.monte_carlo;
+    simulation.seed = scenario.seed;
+    report.monte_carlo = simulate_unsafe_counts(motion, scenario.safe_set, simulation);
+    report.interrupted = !report.monte_carlo;
+  }
+  return report;
+}
+
+SimulatedRate simulated_rate(std::int64_t events, std::int64_t samples) {
+  return {.rate = static_cast<double>(events) / static_cast<double>(samples),
+          .limits = clopper_pearson(events, samples, kRateTail)};
+}
+
+std::vector<int> contradicted_stages(const PredictionReport& report) {
+  std::vector<int> stages;
+  if (!report.monte_carlo) return stages;
+  const UnsafeCounts& counts = *report.monte_carlo;
+  for (std::size_t k = 0; k < report.certificates.size(); ++k) {
+    const SimulatedRate simulated = simulated_rate(counts.stages[k], counts.samples);
+    // Written so that a certificate that is not a number is one that does not hold.
+    if (!(report.certificates[k].value >= simulated.limits.lower)) {
+      stages.push_back(static_cast<int>(k) + 1);
+    }
+  }
+  return stages;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,118 @@
+#include "harness/prediction/prediction_table.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/episode/assembly.hpp"
+#include "harness/errors.hpp"
+
+namespace qsmpc {
+namespace {
+
+// Characters of columns: together with the others at most 78, a terminal has 80.
+constexpr std::size_t kStageWidth = 5;
+constexpr std::size_t kStateWidth = 10;
+
+/// Two states stand for all of them: the position in the plane, else the first two.
+std::vector<int> shown_states(const SystemDescription& system) {
+  if (system.position_x >= 0 && system.position_y >= 0) {
+    return {system.position_x, system.position_y};
+  }
+  return system.states.size() > 1 ? std::vector<int>{0, 1} : std::vector<int>{0};
+}
+
+/// What rounding leaves of zero, in any unit that states have.
+constexpr double kRoundedToZero = 1e-9;
+
+/// Three decimals where that shows enough and is not too long; at most 9 characters.
+std::string coordinate(double value) {
+  const double size = std::abs(value);
+  const bool plain = size < kRoundedToZero || (size >= 1e-2 && size < 1e4);
+  return plain ? fmt::format("{:.3f}", size < kRoundedToZero ? 0.0 : value)
+               : fmt::format("{:.3g}", value);
+}
+
+std::string probability(double value) { return fmt::format("{:.2e}", value); }
+
+/// The columns after the states: widths shared by head, stages and total.
+std::string tail(const std::string& distance, const std::string& bound, const std::string& kind,
+                 const std::string& thesis) {
+  return fmt::format("{:>9}{:>12}  {:<3}{:>9}", distance, bound, kind, thesis);
+}
+
+std::string simulated_columns(const std::string& rate, const std::string& upper) {
+  return fmt::format("{:>9}{:>9}", rate, upper);
+}
+
+std::string simulated_columns(const UnsafeCounts& counts, std::int64_t events) {
+  const SimulatedRate simulated = simulated_rate(events, counts.samples);
+  return simulated_columns(probability(simulated.rate), probability(simulated.limits.upper));
+}
+
+std::string head(const PredictionReport& report, const SystemDescription& system,
+                 const std::vector<int>& states) {
+  std::string text = "stage";
+  for (const int state : states) {
+    const Coordinate& shown = system.states[static_cast<std::size_t>(state)];
+    text += fmt::format("{:>{}}", fmt::format("{} ({})", shown.name, shown.unit), kStateWidth);
+  }
+  text += tail("W2 <=", "P(unsafe)<=", "by", "thesis*");
+  if (report.monte_carlo) text += simulated_columns("rate", "rate <=");
+  return text + "\n";
+}
+
+std::string stage_row(const PredictionReport& report, std::size_t stage,
+                      const std::vector<int>& states) {
+  const Eigen::VectorXd mean = mean_of(report.prediction.stages[stage]);
+  const StageCertificate& certificate = report.certificates[stage - 1];
+  std::string text = fmt::format("{:>{}}", stage, kStageWidth);
+  for (const int state : states)
+    text += fmt::format("{:>{}}", coordinate(mean[state]), kStateWidth);
+  text += tail(fmt::format("{:#.3g}", report.budgets[stage].total), probability(certificate.value),
+               certificate.kind, probability(certificate.thesis));
+  if (report.monte_carlo) {
+    text += simulated_columns(*report.monte_carlo, report.monte_carlo->stages[stage - 1]);
+  }
+  return text + "\n";
+}
+
+std::string total_row(const PredictionReport& report, std::size_t states) {
+  std::string text = fmt::format("{:<{}}", "  any", kStageWidth + kStateWidth * states);
+  text += tail("", probability(report.horizon_bound), "sum", "-");
+  if (report.monte_carlo) {
+    text += simulated_columns(*report.monte_carlo, report.monte_carlo->any_stage);
+  }
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string prediction_table(const PredictionReport& report) {
+  const std::unique_ptr<const Dynamics> model = model_of(report.scenario);
+  const std::vector<int> states = shown_states(model->description());
+  std::string text = fmt::format(
+      "{}: {} stages of {:.3g} s, inputs {}, expected cost {:.5g}\n",
+      printable(report.scenario.name), report.certificates.size(), report.scenario.time_step,
+      report.inputs_given ? "given" : "planned (" + report.solver_status + ")",
+      report.cost.total());
+  text += head(report, model->description(), states);
+  for (std::size_t stage = 1; stage < report.prediction.stages.size(); ++stage) {
+    text += stage_row(report, stage, states);
+  }
+  text += total_row(report, states.size());
+  text +=
+      "P(unsafe)<= holds for the model under this plan as planned: a plant that\n"
+      "differs from it, and planning anew on the way, are not in it.\n"
+      "* the published algorithms' value: NOT a bound\n";
+  if (report.monte_carlo) {
+    text += fmt::format("rate: of {} simulated paths; rate <=: its limit, wrong once in {:.0e}\n",
+                        report.monte_carlo->samples, 1.0 / kRateTail);
+  }
+  return text;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,22 @@
+// Vectors and matrices as JSON.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+namespace qsmpc {
+
+[[nodiscard]] inline nlohmann::ordered_json vector_json(const Eigen::VectorXd& values) {
+  return std::vector<double>(values.begin(), values.end());
+}
+
+/// An array of the rows.
+[[nodiscard]] inline nlohmann::ordered_json rows_json(const Eigen::MatrixXd& matrix) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const auto& row : matrix.rowwise()) rows.push_back(vector_json(row));
+  return rows;
+}
+
+}  // namespace qsmpc
