@@ -2,13 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <queue>
 #include <stdexcept>
 
+#include "controller/measure/nearest_centre.hpp"
+
 namespace qsmpc {
 namespace {
+
+// The cost falls in every round, so that rounds come to an end; this guards against rounding.
+constexpr int kRoundLimit = 10000;
 
 /// A contiguous range of the permuted points, and the axis along which it spreads most.
 struct Cell {
@@ -104,24 +108,14 @@ void update_clusters(const DiscreteMeasure& measure, int clusters, Compression& 
   }
 }
 
-/// Reassigns every point to the nearest of the cluster means. The distances of all points to one
-/// mean are computed at a time, so that the inner loops run along contiguous memory.
-void reassign_to_nearest(const DiscreteMeasure& measure, Compression& result) {
-  const Eigen::Index size = measure.size();
-  Eigen::ArrayXd nearest = Eigen::ArrayXd::Constant(size, std::numeric_limits<double>::infinity());
-  Eigen::ArrayXd distance(size);
-  for (Eigen::Index n = 0; n < result.measure.size(); ++n) {
-    distance.setZero();
-    for (Eigen::Index axis = 0; axis < measure.dim(); ++axis) {
-      distance += (measure.locations.row(axis).array() - result.measure.locations(axis, n))
-                      .square()
-                      .transpose();
-    }
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const bool nearer = distance[i] < nearest[i];
-      nearest[i] = nearer ? distance[i] : nearest[i];
-      result.assignment[i] = nearer ? static_cast<int>(n) : result.assignment[i];
-    }
+/// Lloyd's method: at most `rounds` rounds of reassignment to the nearest mean, fewer if no point
+/// moves any more.
+void refine(const DiscreteMeasure& measure, int rounds, Compression& result) {
+  const Eigen::MatrixXd points = measure.locations;
+  NearestCentre nearest(points);
+  for (int round = 0; round < rounds; ++round) {
+    if (nearest.assign(result.measure.locations, result.assignment) == 0) return;
+    update_clusters(measure, static_cast<int>(result.measure.size()), result);
   }
 }
 
@@ -136,9 +130,8 @@ Compression compress(const DiscreteMeasure& measure, int count, int refinements)
   result.assignment = split_cells(measure, count, clusters);
   update_clusters(measure, clusters, result);
   // With a cluster for every point there is nothing to refine.
-  for (int round = 0; round < refinements && result.measure.size() < measure.size(); ++round) {
-    reassign_to_nearest(measure, result);
-    update_clusters(measure, static_cast<int>(result.measure.size()), result);
+  if (refinements > 0 && result.measure.size() < measure.size()) {
+    refine(measure, std::min(refinements, kRoundLimit), result);
   }
   Points offsets(measure.dim(), measure.size());
   for (Eigen::Index i = 0; i < measure.size(); ++i) {

@@ -1,6 +1,7 @@
 // Compression of a weighted point set to fewer points, with a known Wasserstein error.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,16 +19,25 @@ struct Compression {
       within_covariance;  ///< d x d, Σ ρ_i (c_i − c̃)(c_i − c̃)ᵀ: what the compression lost
 };
 
+/// As `refinements` of `compress`: until no point moves.
+inline constexpr int kToConvergence = std::numeric_limits<int>::max();
+
 /// Compresses `measure` to at most `count` points, deterministically.
 ///
 /// The points are split recursively, always the cluster with the largest second moment along one
-/// axis, at that axis's mean; then `refinements` rounds of reassignment to the nearest mean follow.
-/// The result's points are the means of their clusters and its weights their masses, so that mass
-/// and mean are kept exactly (up to rounding), the lost covariance is `within_covariance`, and
-/// `w2`, the cost of a coupling, bounds the 2-Wasserstein distance from above; with Voronoi
-/// clusters it is equal to it. Points of weight zero are assigned but carry nothing. Costs O(n log
-/// count) and, for each refinement, O(n count). Throws std::invalid_argument if count < 1,
-/// refinements < 0, or as check_measure.
+/// axis, at that axis's mean; then at most `refinements` rounds of reassignment to the nearest mean
+/// follow (Lloyd's method), fewer if no point moves any more. The result's points are the means of
+/// their clusters and its weights their masses, so that mass and mean are kept exactly (up to
+/// rounding) and the lost covariance is `within_covariance`. `w2`, the cost of a coupling, bounds
+/// the 2-Wasserstein distance from above:
+///
+/// - refinements = 0: the split tree alone, a partition into boxes; the cheapest.
+/// - refinements = 1, 2, …: never more costly, but a bound still: the means move after every round.
+/// - kToConvergence: the clusters are the points' Voronoi cells, and `w2` is equal to the distance.
+///
+/// Points of weight zero are assigned but carry nothing. Costs O(n log count), and for each
+/// refinement O(count²) and as many distances as the triangle inequality leaves, O(n count) at
+/// most. Throws std::invalid_argument if count < 1, refinements < 0, or as check_measure.
 [[nodiscard]] Compression compress(const DiscreteMeasure& measure, int count, int refinements = 1);
 
 }  // namespace qsmpc

@@ -69,6 +69,25 @@ TEST(Compression, refinements_never_cost_more) {
   }
 }
 
+TEST(Compression, at_convergence_clusters_are_voronoi_cells_and_their_means) {
+  Generator generator(28);
+  for (const Eigen::Index dim : {1, 2, 3, 7}) {
+    const DiscreteMeasure measure = random_measure(generator, dim, 400);
+    const Compression compression = compress(measure, 20, kToConvergence);
+    double to_nearest = 0.0;
+    for (Eigen::Index i = 0; i < measure.size(); ++i) {
+      to_nearest +=
+          measure.weights[i] * (compression.measure.locations.colwise() - measure.locations.col(i))
+                                   .colwise()
+                                   .squaredNorm()
+                                   .minCoeff();
+    }
+    EXPECT_NEAR(compression.w2, std::sqrt(to_nearest), kRounding);
+    EXPECT_LE((mean_of(compression.measure) - mean_of(measure)).norm(), kRounding);
+    EXPECT_LT(compression.w2, compress(measure, 20, 1).w2);  // one round was not enough here
+  }
+}
+
 TEST(Compression, is_deterministic) {
   Generator generator(24);
   const DiscreteMeasure measure = random_measure(generator, 3, 200);

@@ -135,7 +135,7 @@ TEST(Wasserstein, is_no_more_than_the_cost_of_a_compression_and_equals_it_on_vor
   for (const int count : {5, 40}) {
     const Compression tree = compress(measure, count, 0);
     EXPECT_LE(wasserstein2(measure, tree.measure), tree.w2 + kRounding);
-    const Compression voronoi = compress(measure, count, 100);  // more than enough to settle
+    const Compression voronoi = compress(measure, count, kToConvergence);
     EXPECT_NEAR(wasserstein2(measure, voronoi.measure), voronoi.w2, kRounding);
   }
 }
