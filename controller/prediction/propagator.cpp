@@ -1,138 +1,112 @@
 #include "controller/prediction/propagator.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <stdexcept>
 
 #include "controller/measure/compression.hpp"
+#include "controller/measure/soft_compression.hpp"
 #include "controller/prediction/moment_matching.hpp"
+#include "controller/prediction/product_map.hpp"
 
 namespace qsmpc {
 namespace {
 
 constexpr const char* kCompressed = "compressed";
 constexpr const char* kMomentMatched = "moment_matched";
+constexpr const char* kSoft = "soft";
 constexpr const char* kNoiseFree = "noise_free";
 
-/// Products with the noise quantiser, compressed to a number of clusters.
-class CompressedPropagator : public Propagator {
+/// Products with the noise quantiser, brought to a number of clusters.
+class ProductPropagator : public Propagator {
  public:
-  CompressedPropagator(const PropagatorSettings& settings, int refinements)
-      : noise_(quantise(settings.noise, settings.noise_points)),
-        compressed_points_(settings.compressed_points),
-        refinements_(refinements) {
-    if (compressed_points_ < 1) {
+  [[nodiscard]] StageMap stage_map(const Points& stepped,
+                                   const Eigen::VectorXd& weights) const final {
+    const DiscreteMeasure measure{.locations = stepped, .weights = weights};
+    if (!stepped.allFinite()) return lost_map(measure);
+    return compressed_map(measure, product_measure(measure, noise_.measure));
+  }
+
+  [[nodiscard]] double noise_w2() const final { return noise_.w2; }
+
+ protected:
+  ProductPropagator(const PropagatorSettings& settings, QuantiserKind kind)
+      : settings_(settings), noise_(quantise(settings.noise, settings.noise_points, kind)) {
+    if (settings.compressed_points < 1) {
       throw std::invalid_argument("propagator: at least one point must be kept");
     }
-    if (refinements_ < 0) {
+  }
+
+  [[nodiscard]] const PropagatorSettings& settings() const { return settings_; }
+  [[nodiscard]] const DiscreteMeasure& noise() const { return noise_.measure; }
+
+ private:
+  /// The map from `stepped` to clusters of `product`, its products with the noise.
+  [[nodiscard]] virtual StageMap compressed_map(const DiscreteMeasure& stepped,
+                                                const DiscreteMeasure& product) const = 0;
+
+  PropagatorSettings settings_;
+  GaussianQuantisation noise_;
+};
+
+/// The clusters of the split tree.
+class CompressedPropagator final : public ProductPropagator {
+ public:
+  explicit CompressedPropagator(const PropagatorSettings& settings)
+      : ProductPropagator(settings, QuantiserKind::kProduct) {}
+
+ private:
+  [[nodiscard]] StageMap compressed_map(const DiscreteMeasure& stepped,
+                                        const DiscreteMeasure& product) const override {
+    return cluster_map(compress(product, settings().compressed_points, /*refinements=*/0),
+                       stepped.weights, noise());
+  }
+};
+
+/// Refined clusters, spread about their mean so that they have the covariance of the stepped points
+/// plus that of the noise: what the noise quantiser and the compression lost.
+class MomentMatchedPropagator final : public ProductPropagator {
+ public:
+  explicit MomentMatchedPropagator(const PropagatorSettings& settings)
+      : ProductPropagator(settings, QuantiserKind::kLloyd) {
+    if (settings.refinements < 0) {
       throw std::invalid_argument("propagator: refinements must not be negative");
     }
   }
-
-  [[nodiscard]] StageMap stage_map(const Points& stepped,
-                                   const Eigen::VectorXd& weights) const override {
-    if (!stepped.allFinite()) return lost_map(stepped, weights);
-    const DiscreteMeasure product = product_measure(stepped, weights);
-    const Compression compression = compress(product, compressed_points_, refinements_);
-    StageMap map = sparse_map(compression, weights);
-    finish({.locations = stepped, .weights = weights}, compression, map);
-    return map;
-  }
-
-  [[nodiscard]] double noise_w2() const override { return noise_.w2; }
-
- private:
-  /// What is done to the map from `stepped` to the cluster means, which is complete by itself.
-  virtual void finish(const DiscreteMeasure& /*stepped*/, const Compression& /*compression*/,
-                      StageMap& /*map*/) const {}
-
-  /// The map of points that are not finite: all into one cluster, at infinite cost.
-  [[nodiscard]] static StageMap lost_map(const Points& stepped, const Eigen::VectorXd& weights) {
-    StageMap map;
-    map.row_begin = {0, static_cast<int>(weights.size())};
-    map.column.resize(weights.size());
-    std::iota(map.column.begin(), map.column.end(), 0);
-    map.coefficient.assign(weights.begin(), weights.end());
-    map.offset = Points::Zero(stepped.rows(), 1);
-    map.weights = Eigen::VectorXd::Constant(1, weights.sum());
-    map.compression_w2 = std::numeric_limits<double>::infinity();
-    return map;
-  }
-
-  /// All sums f_i + d_j; the product of point i and noise j stands at i·m + j.
-  [[nodiscard]] DiscreteMeasure product_measure(const Points& stepped,
-                                                const Eigen::VectorXd& weights) const {
-    const Eigen::Index noise_size = noise_.measure.size();
-    DiscreteMeasure product{.locations = Points(stepped.rows(), stepped.cols() * noise_size),
-                            .weights = Eigen::VectorXd(stepped.cols() * noise_size)};
-    for (Eigen::Index i = 0; i < stepped.cols(); ++i) {
-      product.locations.middleCols(i * noise_size, noise_size) =
-          noise_.measure.locations.colwise() + stepped.col(i);
-      product.weights.segment(i * noise_size, noise_size) = weights[i] * noise_.measure.weights;
-    }
-    return product;
-  }
-
-  /// With Γ_ni = Σ_{j: a(i,j) = n} γ_j: A_ni = ρ_i Γ_ni / ρ̃_n and
-  /// b_n = Σ_i ρ_i Σ_{j: a(i,j) = n} γ_j d_j / ρ̃_n.
-  [[nodiscard]] StageMap sparse_map(const Compression& compression,
-                                    const Eigen::VectorXd& weights) const {
-    const Eigen::Index sources = weights.size();
-    const Eigen::Index noise_size = noise_.measure.size();
-    const Eigen::Index clusters = compression.measure.size();
-    StageMap map;
-    map.weights = compression.measure.weights;
-    map.compression_w2 = compression.w2;
-    map.offset = Points::Zero(noise_.measure.dim(), clusters);
-    Eigen::MatrixXd share = Eigen::MatrixXd::Zero(sources, clusters);  // ρ_i Γ_ni, by column n
-    for (Eigen::Index i = 0; i < sources; ++i) {
-      for (Eigen::Index j = 0; j < noise_size; ++j) {
-        const int n = compression.assignment[i * noise_size + j];
-        const double mass = weights[i] * noise_.measure.weights[j];
-        share(i, n) += mass;
-        map.offset.col(n) += mass * noise_.measure.locations.col(j);
-      }
-    }
-    map.row_begin.push_back(0);
-    for (Eigen::Index n = 0; n < clusters; ++n) {
-      map.offset.col(n) /= map.weights[n];
-      for (Eigen::Index i = 0; i < sources; ++i) {
-        if (share(i, n) == 0.0) continue;
-        map.column.push_back(static_cast<int>(i));
-        map.coefficient.push_back(share(i, n) / map.weights[n]);
-      }
-      map.row_begin.push_back(static_cast<int>(map.column.size()));
-    }
-    return map;
-  }
-
-  GaussianQuantisation noise_;
-  int compressed_points_;
-  int refinements_;
-};
-
-/// The clusters, spread about their mean so that they have the covariance of the stepped points
-/// plus that of the noise: what the noise quantiser and the compression lost.
-class MomentMatchedPropagator final : public CompressedPropagator {
- public:
-  explicit MomentMatchedPropagator(const PropagatorSettings& settings)
-      : CompressedPropagator(settings, settings.refinements),
-        noise_covariance_(settings.noise.covariance) {}
 
  private:
   /// The clusters' means are conditional means of the products, so that the two parts of a
   /// product's way, to its cluster's mean and from there to where the spread puts it, are
   /// uncorrelated: their squares add.
-  void finish(const DiscreteMeasure& stepped, const Compression& compression,
-              StageMap& map) const override {
-    const Eigen::MatrixXd target = covariance_of(stepped) + noise_covariance_;
-    map.spread = spread_between(covariance_of(compression.measure), target);
-    map.compression_w2 =
-        std::hypot(compression.w2, spread_w2(covariance_of(compression.measure), map.spread));
+  [[nodiscard]] StageMap compressed_map(const DiscreteMeasure& stepped,
+                                        const DiscreteMeasure& product) const override {
+    const Compression compression =
+        compress(product, settings().compressed_points, settings().refinements);
+    StageMap map = cluster_map(compression, stepped.weights, noise());
+    const Eigen::MatrixXd covariance = covariance_of(compression.measure);
+    map.spread = spread_between(covariance, covariance_of(stepped) + settings().noise.covariance);
+    map.compression_w2 = std::hypot(compression.w2, spread_w2(covariance, map.spread));
+    return map;
+  }
+};
+
+/// Algorithm 1, with the shares held.
+class SoftPropagator final : public ProductPropagator {
+ public:
+  explicit SoftPropagator(const PropagatorSettings& settings)
+      : ProductPropagator(settings, QuantiserKind::kProduct) {
+    if (!(settings.sharpness > 0.0) || !std::isfinite(settings.sharpness)) {
+      throw std::invalid_argument("propagator: the sharpness must be positive and finite");
+    }
   }
 
-  Eigen::MatrixXd noise_covariance_;
+ private:
+  [[nodiscard]] StageMap compressed_map(const DiscreteMeasure& stepped,
+                                        const DiscreteMeasure& product) const override {
+    return cluster_map(compress_soft(product, {.count = settings().compressed_points,
+                                               .sharpness = settings().sharpness}),
+                       stepped.weights, noise());
+  }
 };
 
 /// Every point stays as it is. The noise is represented by its mean, so its whole standard
@@ -207,7 +181,8 @@ const std::vector<PropagatorEntry>& propagators() {
   static const std::vector<PropagatorEntry> table = {
       {kCompressed, "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)"},
       {kMomentMatched,
-       "the same, compressed with refinements and spread to the covariance that it should have"},
+       "the same with Lloyd's quantiser and refined compression, spread to the covariance due"},
+      {kSoft, "as \"compressed\", but with the soft assignments of Algorithm 1; slow"},
       {kNoiseFree, "the belief's points only; the noise counts as error of the certificate"},
   };
   return table;
@@ -219,10 +194,9 @@ std::unique_ptr<const Propagator> make_propagator(std::string_view name,
   if (!settings.noise.mean.isZero(0.0)) {
     throw std::invalid_argument("propagator: the noise must have zero mean");
   }
-  if (name == kCompressed) {
-    return std::make_unique<CompressedPropagator>(settings, /*refinements=*/0);
-  }
+  if (name == kCompressed) return std::make_unique<CompressedPropagator>(settings);
   if (name == kMomentMatched) return std::make_unique<MomentMatchedPropagator>(settings);
+  if (name == kSoft) return std::make_unique<SoftPropagator>(settings);
   if (name == kNoiseFree) return std::make_unique<NoiseFreePropagator>(settings);
   std::string known;
   for (const PropagatorEntry& entry : propagators()) {

@@ -51,7 +51,7 @@ class Propagator {
   [[nodiscard]] virtual StageMap stage_map(const Points& stepped,
                                            const Eigen::VectorXd& weights) const = 0;
 
-  /// W2 between the noise and the discrete measure that stands for it in the map.
+  /// W2 between the noise and the discrete measure that stands for it in the map, or a bound on it.
   [[nodiscard]] virtual double noise_w2() const = 0;
 };
 
@@ -60,6 +60,7 @@ struct PropagatorSettings {
   int noise_points = 100;       ///< budget of the noise quantiser
   int compressed_points = 100;  ///< points kept after a step
   int refinements = 3;          ///< of the compression (`compress`), in "moment_matched" only
+  double sharpness = 20.0;      ///< β of Algorithm 1, in one over the state's unit; "soft" only
 };
 
 struct PropagatorEntry {
@@ -68,8 +69,9 @@ struct PropagatorEntry {
 };
 
 /// The table of propagators: "compressed" (product with the noise quantiser, then compression by
-/// the split tree alone), "moment_matched" (the same with refined compression and spread to the
-/// covariance of the stepped points plus that of the noise) and "noise_free" (only the belief is
+/// the split tree alone), "moment_matched" (the same with Lloyd's noise quantiser and refined
+/// compression, spread to the covariance of the stepped points plus that of the noise), "soft" (as
+/// "compressed", with the soft assignments of Algorithm 1) and "noise_free" (only the belief is
 /// propagated; the noise counts fully as error).
 [[nodiscard]] const std::vector<PropagatorEntry>& propagators();
 

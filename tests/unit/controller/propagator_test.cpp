@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/measure/compression.hpp"
+#include "controller/measure/soft_compression.hpp"
 #include "controller/measure/wasserstein.hpp"
 #include "controller/prediction/moment_matching.hpp"
 #include "tests/unit/controller/random_measures.hpp"
@@ -162,11 +163,16 @@ TEST(Propagator, cost_of_a_map_is_no_less_than_the_distance_from_the_products) {
       const DiscreteMeasure stepped = random_measure(generator, 3, 20);
       const StageMap map =
           make_propagator(entry.name, settings)->stage_map(stepped.locations, stepped.weights);
-      const DiscreteMeasure sums =
-          all_sums(stepped, quantise(settings.noise, settings.noise_points).measure);
+      const QuantiserKind kind =
+          entry.name == "moment_matched" ? QuantiserKind::kLloyd : QuantiserKind::kProduct;
+      const GaussianQuantisation noise = quantise(settings.noise, settings.noise_points, kind);
+      const DiscreteMeasure sums = all_sums(stepped, noise.measure);
       const double distance = wasserstein2(sums, mapped(map, stepped));
       EXPECT_GE(map.compression_w2, distance - kRounding) << entry.name;
-      EXPECT_LE(map.compression_w2, 1.5 * distance) << entry.name << ": says too little";
+      // Soft shares pay for their softness; the others say something.
+      if (entry.name != "soft") {
+        EXPECT_LE(map.compression_w2, 1.5 * distance) << entry.name;
+      }
     }
   }
 }
@@ -184,6 +190,13 @@ TEST(MomentMatchedPropagator, restores_what_quantised_noise_and_compression_lose
     EXPECT_LE((covariance("moment_matched") - full).cwiseAbs().maxCoeff(), kRounding);
     EXPECT_GE((covariance("compressed") - full).cwiseAbs().maxCoeff(), 1e-2);
   }
+}
+
+TEST(MomentMatchedPropagator, knows_the_error_of_its_own_noise_quantiser) {
+  Generator generator(55);
+  const PropagatorSettings settings = random_settings(generator, 30, 20);
+  EXPECT_EQ(make_propagator("moment_matched", settings)->noise_w2(),
+            quantise(settings.noise, settings.noise_points, QuantiserKind::kLloyd).w2);
 }
 
 TEST(MomentMatchedPropagator, refinements_lower_the_cost) {
@@ -229,6 +242,23 @@ TEST(MomentMatchedPropagator, directions_without_particles_are_left_alone) {
   const Eigen::MatrixXd difference = covariance_of(next) - covariance_of(stepped);
   EXPECT_LE(difference.cwiseAbs().maxCoeff(), kRounding);  // the other axes are restored
   EXPECT_LE((next.locations.row(2).array() - 0.7).abs().maxCoeff(), kRounding);
+}
+
+TEST(SoftPropagator, map_gives_the_soft_means_of_all_sums) {
+  Generator generator(56);
+  PropagatorSettings settings = random_settings(generator, 12, 10);
+  settings.sharpness = 3.0;
+  const DiscreteMeasure stepped = random_measure(generator, 3, 25);
+  const StageMap map =
+      make_propagator("soft", settings)->stage_map(stepped.locations, stepped.weights);
+  const GaussianQuantisation noise = quantise(settings.noise, settings.noise_points);
+  const SoftCompression expected = compress_soft(all_sums(stepped, noise.measure),
+                                                 {.count = 10, .sharpness = settings.sharpness});
+  const DiscreteMeasure next = mapped(map, stepped);
+  ASSERT_EQ(next.size(), expected.measure.size());
+  EXPECT_LE((next.locations - expected.measure.locations).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_LE((next.weights - expected.measure.weights).cwiseAbs().maxCoeff(), kRounding);
+  EXPECT_EQ(map.compression_w2, expected.w2);
 }
 
 TEST(SpreadBetween, meets_the_covariance_and_moves_no_more_than_two_gaussians_are_apart) {
@@ -305,6 +335,9 @@ TEST(MakePropagator, refuses_unknown_names_and_senseless_settings) {
   settings = random_settings(generator, 20, 15);
   settings.refinements = -1;
   EXPECT_THROW((void)make_propagator("moment_matched", settings), std::invalid_argument);
+  settings = random_settings(generator, 20, 15);
+  settings.sharpness = 0.0;
+  EXPECT_THROW((void)make_propagator("soft", settings), std::invalid_argument);
   settings = random_settings(generator, 20, 15);
   settings.noise.mean[0] = 0.1;
   EXPECT_THROW((void)make_propagator("compressed", settings), std::invalid_argument);

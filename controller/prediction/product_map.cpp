@@ -1,0 +1,98 @@
+#include "controller/prediction/product_map.hpp"
+
+#include <limits>
+#include <numeric>
+
+namespace qsmpc {
+namespace {
+
+/// What clusters of products f_i + d_j consist of; cluster n of mass ρ̃_n.
+struct Clusters {
+  Eigen::MatrixXd share;  ///< sources x clusters; the mass of n that comes from products of i
+  Points noise_moment;    ///< d x clusters; Σ mass · d_j over the products in n
+};
+
+/// A_ni = share_in / ρ̃_n and b_n = noise_moment_n / ρ̃_n. Clusters without mass are left out.
+StageMap map_to_means(const Clusters& clusters, const Eigen::VectorXd& masses) {
+  const Eigen::Index kept = (masses.array() > 0.0).count();
+  StageMap map;
+  map.weights.resize(kept);
+  map.offset.resize(clusters.noise_moment.rows(), kept);
+  map.row_begin.push_back(0);
+  Eigen::Index at = 0;
+  for (Eigen::Index n = 0; n < masses.size(); ++n) {
+    if (masses[n] <= 0.0) continue;
+    map.weights[at] = masses[n];
+    map.offset.col(at) = clusters.noise_moment.col(n) / masses[n];
+    for (Eigen::Index i = 0; i < clusters.share.rows(); ++i) {
+      if (clusters.share(i, n) == 0.0) continue;
+      map.column.push_back(static_cast<int>(i));
+      map.coefficient.push_back(clusters.share(i, n) / masses[n]);
+    }
+    map.row_begin.push_back(static_cast<int>(map.column.size()));
+    ++at;
+  }
+  return map;
+}
+
+}  // namespace
+
+DiscreteMeasure product_measure(const DiscreteMeasure& stepped, const DiscreteMeasure& noise) {
+  const Eigen::Index noise_size = noise.size();
+  DiscreteMeasure product{.locations = Points(stepped.dim(), stepped.size() * noise_size),
+                          .weights = Eigen::VectorXd(stepped.size() * noise_size)};
+  for (Eigen::Index i = 0; i < stepped.size(); ++i) {
+    product.locations.middleCols(i * noise_size, noise_size) =
+        noise.locations.colwise() + stepped.locations.col(i);
+    product.weights.segment(i * noise_size, noise_size) = stepped.weights[i] * noise.weights;
+  }
+  return product;
+}
+
+StageMap cluster_map(const Compression& compression, const Eigen::VectorXd& weights,
+                     const DiscreteMeasure& noise) {
+  const Eigen::Index count = compression.measure.size();
+  Clusters clusters{.share = Eigen::MatrixXd::Zero(weights.size(), count),
+                    .noise_moment = Points::Zero(noise.dim(), count)};
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    for (Eigen::Index j = 0; j < noise.size(); ++j) {
+      const int n = compression.assignment[i * noise.size() + j];
+      const double mass = weights[i] * noise.weights[j];
+      clusters.share(i, n) += mass;
+      clusters.noise_moment.col(n) += mass * noise.locations.col(j);
+    }
+  }
+  StageMap map = map_to_means(clusters, compression.measure.weights);
+  map.compression_w2 = compression.w2;
+  return map;
+}
+
+StageMap cluster_map(const SoftCompression& compression, const Eigen::VectorXd& weights,
+                     const DiscreteMeasure& noise) {
+  const Eigen::Index count = compression.measure.size();
+  Clusters clusters{.share = Eigen::MatrixXd(weights.size(), count),
+                    .noise_moment = Points::Zero(noise.dim(), count)};
+  for (Eigen::Index i = 0; i < weights.size(); ++i) {
+    const auto belonging = compression.responsibilities.middleRows(i * noise.size(), noise.size());
+    const Eigen::MatrixXd masses = weights[i] * (noise.weights.asDiagonal() * belonging);
+    clusters.share.row(i) = masses.colwise().sum();
+    clusters.noise_moment += noise.locations * masses;
+  }
+  StageMap map = map_to_means(clusters, clusters.share.colwise().sum().transpose());
+  map.compression_w2 = compression.w2;
+  return map;
+}
+
+StageMap lost_map(const DiscreteMeasure& stepped) {
+  StageMap map;
+  map.row_begin = {0, static_cast<int>(stepped.size())};
+  map.column.resize(stepped.size());
+  std::iota(map.column.begin(), map.column.end(), 0);
+  map.coefficient.assign(stepped.weights.begin(), stepped.weights.end());
+  map.offset = Points::Zero(stepped.dim(), 1);
+  map.weights = Eigen::VectorXd::Constant(1, stepped.weights.sum());
+  map.compression_w2 = std::numeric_limits<double>::infinity();
+  return map;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,28 @@
+// The products of stepped points and noise points, and the maps to the means of their clusters.
+#pragma once
+
+#include "controller/measure/compression.hpp"
+#include "controller/measure/measures.hpp"
+#include "controller/measure/soft_compression.hpp"
+#include "controller/prediction/propagator.hpp"
+
+namespace qsmpc {
+
+/// All sums f_i + d_j of stepped points and noise points (Eq. 4-5); that of i and j stands at
+/// i·m + j, m being the number of noise points.
+[[nodiscard]] DiscreteMeasure product_measure(const DiscreteMeasure& stepped,
+                                              const DiscreteMeasure& noise);
+
+/// The map from stepped points with these weights to the means of the clusters into which
+/// `compression` puts their products with `noise`.
+[[nodiscard]] StageMap cluster_map(const Compression& compression, const Eigen::VectorXd& weights,
+                                   const DiscreteMeasure& noise);
+
+/// The same with the shares that products have in clusters held instead of assignments.
+[[nodiscard]] StageMap cluster_map(const SoftCompression& compression,
+                                   const Eigen::VectorXd& weights, const DiscreteMeasure& noise);
+
+/// The map of stepped points that are not finite: all into one cluster, at infinite cost.
+[[nodiscard]] StageMap lost_map(const DiscreteMeasure& stepped);
+
+}  // namespace qsmpc
