@@ -3,11 +3,11 @@
 // Each bound holds for the law of the model under the plan's policy from the plan's belief:
 //   C1  worst case over the W2 ball about the particles,
 //   C2  the same before the last noise, which stays Gaussian,
-//   C3  the affine-Gaussian surrogate of a unicycle, where the policy is open loop up to the
-//   heading
-//       that carries the position: every stage of an open-loop plan, stage 1 of any plan.
-// Proofs: docs/theory/certificates.md. A bound says nothing of a plant that is not the model, and
-// one of a later stage speaks of the plan as planned, not of what is planned anew in between.
+//   C3  a Gaussian surrogate of the state, with a bound of what separates the two,
+//   C4  the same, smoothed by noise that is independent of this error.
+// Proofs: docs/theory/certificates.md and surrogate.md. A bound says nothing of a plant that is not
+// the model, and one of a later stage speaks of the plan as planned, not of what is planned anew in
+// between.
 #pragma once
 
 #include <string>
@@ -24,8 +24,8 @@ struct StageCertificate {
   std::string kind;          ///< which one it was: "c1", "c2", "c3" or "c4"
   double particles = 1.0;    ///< C1
   double mixture = 1.0;      ///< C2
-  double surrogate = 1.0;    ///< C3; 1 where it does not apply
-  double smoothed = 1.0;     ///< C4; 1 where it does not apply
+  double surrogate = 1.0;    ///< C3; 1 where nothing is known of the derivatives
+  double smoothed = 1.0;     ///< C4; never above C3
   double thesis = 1.0;       ///< Algorithms 3 and 4 as printed: NOT a bound
   double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe: NOT a bound
 };

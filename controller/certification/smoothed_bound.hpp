@@ -1,5 +1,5 @@
 // Upper bounds of P(x ∈ U) for x = y + e, where y is a Gaussian mixture and e any error of known
-// mean square: the bounds C2 and C3 of docs/theory/certificates.md.
+// mean square: bound C2, and the form that C3 takes (docs/theory/certificates.md, section 3).
 //
 // If y + e is unsafe, then |e| is at least the distance d(y) to the unsafe set, so for every t > 0
 //     1{y + e ∈ U} ≤ (1 − d(y)²/t²)₊ + |e|²/t²,
