@@ -42,7 +42,7 @@ install_packages() {
   rm -f "$log"
 }
 
-# build PRESET: configures and builds a preset of CMakePresets.json.
+# build PRESET [options of cmake --build]: configures and builds a preset of CMakePresets.json.
 build() {
   say "Building the preset '$1' into build/$1"
   cmake --preset "$1" >"build-$1.log" 2>&1 || {
@@ -50,6 +50,6 @@ build() {
     fail "cmake could not configure; see build-$1.log, or remove build/$1 and try again"
   }
   rm -f "build-$1.log"
-  cmake --build --preset "$1" -- --quiet ||
+  cmake --build --preset "$1" "${@:2}" -- --quiet ||
     fail "the build failed; the compiler's first error is above"
 }

@@ -1,0 +1,108 @@
+#include "tests/support/prediction_quality.hpp"
+
+#include <memory>
+
+#include <Eigen/Cholesky>
+
+#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/measure/wasserstein.hpp"
+#include "controller/prediction/policy.hpp"
+#include "controller/prediction/prediction.hpp"
+#include "controller/prediction/propagator.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::testing {
+namespace {
+
+constexpr double kSpeed = 1.5;             // m/s
+constexpr double kYawRate = 0.3;           // rad/s
+constexpr double kTimeStep = 0.1;          // s
+constexpr double kInitialVariance = 0.01;  // m², m², rad²
+constexpr int kDim = 3;
+
+std::unique_ptr<const Dynamics> make_car() {
+  return make_dynamics("dubins", {{"speed", kSpeed}}, kTimeStep);
+}
+
+Points normal_points(int count, std::mt19937_64& generator) {
+  std::normal_distribution<double> normal;
+  return Points::NullaryExpr(kDim, count, [&] { return normal(generator); });
+}
+
+DiscreteMeasure uniform_measure(const Points& points) {
+  return {.locations = points,
+          .weights =
+              Eigen::VectorXd::Constant(points.cols(), 1.0 / static_cast<double>(points.cols()))};
+}
+
+double squared_distance(const DiscreteMeasure& first, const DiscreteMeasure& second) {
+  const double distance = wasserstein2(first, second);
+  return distance * distance;
+}
+
+}  // namespace
+
+std::vector<DiscreteMeasure> quality_prediction(const QualityProblem& problem,
+                                                const std::string& propagator, int points) {
+  const std::unique_ptr<const Dynamics> car = make_car();
+  const Eigen::VectorXd zero = Eigen::VectorXd::Zero(kDim);
+  const GaussianQuantisation belief = quantise(
+      {.mean = zero, .covariance = kInitialVariance * Eigen::MatrixXd::Identity(kDim, kDim)},
+      points, QuantiserKind::kLloyd);
+  const Eigen::MatrixXd inputs = Eigen::MatrixXd::Constant(1, problem.steps, kYawRate);
+  const Policy policy{
+      .inputs = inputs,
+      .states = nominal_states(*car, zero, inputs),
+      .gains = std::vector<Eigen::MatrixXd>(problem.steps, Eigen::MatrixXd::Zero(1, kDim)),
+      .bounds = {.lower = Eigen::VectorXd::Constant(1, -kYawRate),
+                 .upper = Eigen::VectorXd::Constant(1, kYawRate)}};
+  return predict(*car,
+                 *make_propagator(propagator,
+                                  {.noise = {.mean = zero, .covariance = problem.noise_covariance},
+                                   .noise_points = points,
+                                   .compressed_points = points}),
+                 belief.measure, policy)
+      .stages;
+}
+
+std::vector<DiscreteMeasure> simulated_states(const QualityProblem& problem, int count,
+                                              unsigned seed, unsigned stream) {
+  std::seed_seq sequence{seed, stream};
+  std::mt19937_64 generator(sequence);
+  const std::unique_ptr<const Dynamics> car = make_car();
+  const Eigen::MatrixXd root = problem.noise_covariance.llt().matrixL();
+  const StateBatch inputs = StateBatch::Constant(1, count, kYawRate);
+  StateBatch states = std::sqrt(kInitialVariance) * normal_points(count, generator);
+  StateBatch next(kDim, count);
+  std::vector<DiscreteMeasure> result = {uniform_measure(states)};
+  for (int step = 0; step < problem.steps; ++step) {
+    car->step(states, inputs, next);
+    states = next + root * normal_points(count, generator);
+    result.push_back(uniform_measure(states));
+  }
+  return result;
+}
+
+std::vector<SquaredDistances> squared_distances(
+    const QualityProblem& problem, const std::vector<std::vector<DiscreteMeasure>>& predictions,
+    const QualitySettings& settings) {
+  constexpr unsigned kReferenceStream = 0;
+  constexpr unsigned kSampleStream = 1;
+  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(settings.seeds);
+  std::vector<SquaredDistances> result(
+      problem.steps + 1,
+      {.monte_carlo = none, .predictions = std::vector<Eigen::ArrayXd>(predictions.size(), none)});
+  for (int seed = 0; seed < settings.seeds; ++seed) {
+    const auto reference = simulated_states(problem, settings.reference, seed, kReferenceStream);
+    const auto samples = simulated_states(problem, settings.samples, seed, kSampleStream);
+    for (int step = 0; step <= problem.steps; ++step) {
+      result[step].monte_carlo[seed] = squared_distance(samples[step], reference[step]);
+      for (std::size_t i = 0; i < predictions.size(); ++i) {
+        result[step].predictions[i][seed] = squared_distance(predictions[i][step], reference[step]);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace qsmpc::testing
