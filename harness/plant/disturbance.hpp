@@ -17,7 +17,7 @@ namespace qsmpc {
 enum class RandomStream : std::uint64_t {
   kInitialState = 0,
   kDisturbance = 1,
-  kInput = 2,  ///< random inputs, as for measuring the mismatch between plant and model
+  kInput = 2,       ///< random inputs, as for measuring the mismatch between plant and model
   kPrediction = 3,  ///< paths of the model, one an episode; step 0 is the initial state
 };
 

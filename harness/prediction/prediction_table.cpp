@@ -16,6 +16,7 @@ namespace {
 // Characters of columns: together with the others at most 78, a terminal has 80.
 constexpr std::size_t kStageWidth = 5;
 constexpr std::size_t kStateWidth = 10;
+constexpr std::size_t kNameLimit = 8;  // of a state; a longer one is cut and marked
 
 /// Two states stand for all of them: the position in the plane, else the first two.
 std::vector<int> shown_states(const SystemDescription& system) {
@@ -29,7 +30,7 @@ std::vector<int> shown_states(const SystemDescription& system) {
 constexpr double kRoundedToZero = 1e-9;
 
 /// Three decimals where that shows enough and is not too long; at most 9 characters.
-std::string coordinate(double value) {
+std::string number(double value) {
   const double size = std::abs(value);
   const bool plain = size < kRoundedToZero || (size >= 1e-2 && size < 1e4);
   return plain ? fmt::format("{:.3f}", size < kRoundedToZero ? 0.0 : value)
@@ -55,14 +56,16 @@ std::string simulated_columns(const UnsafeCounts& counts, std::int64_t events) {
 
 std::string head(const PredictionReport& report, const SystemDescription& system,
                  const std::vector<int>& states) {
-  std::string text = "stage";
+  std::string names = fmt::format("{:>{}}", "stage", kStageWidth);
+  std::string units(kStageWidth, ' ');
   for (const int state : states) {
     const Coordinate& shown = system.states[static_cast<std::size_t>(state)];
-    text += fmt::format("{:>{}}", fmt::format("{} ({})", shown.name, shown.unit), kStateWidth);
+    names += fmt::format("{:>{}}", printable(shown.name, kNameLimit), kStateWidth);
+    units += fmt::format("{:>{}}", shown.unit, kStateWidth);
   }
-  text += tail("W2 <=", "P(unsafe)<=", "by", "thesis*");
-  if (report.monte_carlo) text += simulated_columns("rate", "rate <=");
-  return text + "\n";
+  names += tail("W2 <=", "P(unsafe)<=", "by", "thesis*");
+  if (report.monte_carlo) names += simulated_columns("rate", "rate <=");
+  return names + "\n" + units + "\n";
 }
 
 std::string stage_row(const PredictionReport& report, std::size_t stage,
@@ -70,9 +73,8 @@ std::string stage_row(const PredictionReport& report, std::size_t stage,
   const Eigen::VectorXd mean = mean_of(report.prediction.stages[stage]);
   const StageCertificate& certificate = report.certificates[stage - 1];
   std::string text = fmt::format("{:>{}}", stage, kStageWidth);
-  for (const int state : states)
-    text += fmt::format("{:>{}}", coordinate(mean[state]), kStateWidth);
-  text += tail(fmt::format("{:#.3g}", report.budgets[stage].total), probability(certificate.value),
+  for (const int state : states) text += fmt::format("{:>{}}", number(mean[state]), kStateWidth);
+  text += tail(number(report.budgets[stage].total), probability(certificate.value),
                certificate.kind, probability(certificate.thesis));
   if (report.monte_carlo) {
     text += simulated_columns(*report.monte_carlo, report.monte_carlo->stages[stage - 1]);

@@ -72,7 +72,8 @@ TEST_P(PredictScenario, certificates_are_probabilities_that_the_simulation_does_
 }
 
 INSTANTIATE_TEST_SUITE_P(Shipped, PredictScenario,
-                         ::testing::Values("dubins_obstacles", "dubins_corridor"),
+                         ::testing::Values("dubins_obstacles", "dubins_corridor",
+                                           "double_integrator", "bicycle_obstacles"),
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(Predict, prints_a_table_and_uses_the_named_folder_by_default) {
