@@ -173,6 +173,27 @@ TEST(Smoothed, is_at_least_the_probability_under_an_adversarial_error) {
   }
 }
 
+TEST(Smoothed, search_that_ends_early_ends_with_a_bound_of_no_use) {
+  Generator generator(63);
+  for (int repetition = 0; repetition < 40; ++repetition) {
+    const SafeSet room = random_room(generator, repetition % 3);
+    const DiscreteMeasure centres = random_measure(generator, 3, 8);
+    const Eigen::MatrixXd covariance = random_spd(generator, 3, 0.05);
+    const double radius = std::pow(10.0, uniform(generator, -4.0, -0.5));
+    const double full = smoothed_probability(centres, covariance, room, radius);
+    for (const double useful : {-0.1, 0.0, 1e-6, 0.5 * full, 1.2 * full, 1.0}) {
+      const double value = smoothed_probability(centres, covariance, room, radius, useful);
+      // Two searches in t: each ends within a few percent of the best.
+      EXPECT_GE(value, 0.97 * full);
+      if (useful <= full) {
+        EXPECT_GE(value, useful);
+      } else {
+        EXPECT_LE(value, 1.03 * full);
+      }
+    }
+  }
+}
+
 TEST(Smoothed, says_one_where_nothing_is_known) {
   SafeSet wall = unbounded_safe_set(1);
   wall.bounds.upper[0] = 2.0;
