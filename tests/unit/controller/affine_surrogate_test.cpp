@@ -434,6 +434,21 @@ TEST(Smoothing, has_the_known_form_for_the_known_example) {
   EXPECT_EQ(smoothing_covariance(cart.motion(), 3, {0}), cart.settings.noise_covariance);
 }
 
+TEST(Smoothing, leaves_out_what_moves_a_restricted_heading) {
+  Generator generator(117);
+  const Case one = skewed_dubins({}, generator);
+  const auto beside = [](const Eigen::MatrixXd& covariance) {
+    const Eigen::Vector2d cross = covariance.col(2).head<2>();
+    return Eigen::Matrix2d(covariance.topLeftCorner<2, 2>() -
+                           cross * cross.transpose() / covariance(2, 2));
+  };
+  const Eigen::Matrix2d expected =
+      beside(one.belief.covariance) + 3.0 * beside(one.settings.noise_covariance);
+  const Eigen::MatrixXd smoothing = smoothing_covariance(one.motion(), 3, {0, 2});
+  EXPECT_LE((smoothing.topLeftCorner<2, 2>() - expected).norm(), 1e-15);
+  EXPECT_EQ(smoothing.row(2), Eigen::RowVector3d::Zero());
+}
+
 /// What of the positions in `draws` is independent of their headings, under `covariance`.
 Points beside_heading(const Points& draws, const Eigen::MatrixXd& covariance) {
   const Eigen::Vector2d slope = covariance.col(2).head<2>() / covariance(2, 2);

@@ -95,6 +95,18 @@ TEST(BivariateNormal, quadrants_have_their_known_values) {
   }
 }
 
+TEST(BivariateNormal, edges_through_the_mean_halve_independent_coordinates) {
+  const Eigen::Vector2d below = Eigen::Vector2d::Constant(-kInfinity);
+  for (const double edge : {-2.0, -0.3, 0.4, 1.7}) {
+    const double expected = 0.5 * normal_cumulative(edge);
+    for (const Eigen::Vector2d& upper : {Eigen::Vector2d(0.0, edge), Eigen::Vector2d(edge, 0.0)}) {
+      EXPECT_NEAR(
+          rectangle_probability(Eigen::Vector2d::Zero(), Eigen::Matrix2d::Identity(), below, upper),
+          expected, kRectangleError);
+    }
+  }
+}
+
 TEST(BivariateNormal, independent_coordinates_multiply) {
   Generator generator(82);
   for (int repetition = 0; repetition < 100; ++repetition) {

@@ -202,6 +202,27 @@ TEST(SmoothBound, counts_an_error_along_one_axis_once) {
   EXPECT_LT(bound, 0.3 * slab);
 }
 
+TEST(MarkovBound, is_attained_by_the_worst_error) {
+  // All of (c, 2) is moved onto the wall at 2: what E e² = ∫(2 − y)² φ dy moves most. The bound is
+  // the dual of this problem.
+  const Gaussian law{.mean = Eigen::VectorXd::Zero(1), .covariance = Eigen::MatrixXd::Ones(1, 1)};
+  const UnsafePart wall =
+      part_of(Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd::Constant(1, kInfinity));
+  for (const double c : {1.99, 1.9, 1.5, 1.0}) {
+    // Against the cumulative moments of the normal density between c and 2.
+    const double mass = normal_probability(c, 2.0);
+    const double first = normal_density(c) - normal_density(2.0);
+    const double second = mass + c * normal_density(c) - 2.0 * normal_density(2.0);
+    const Eigen::VectorXd error =
+        Eigen::VectorXd::Constant(1, std::sqrt(4.0 * mass - 4.0 * first + second));
+    const double worst = normal_cumulative(-c);
+    const double bound = markov_part_bound(
+        {.law = law, .error = error, .smoothing = Eigen::MatrixXd::Zero(1, 1)}, wall);
+    EXPECT_GE(bound, worst * (1.0 - 1e-9)) << c;  // cancellation in the error
+    EXPECT_LE(bound, 1.05 * worst) << c;          // the search for t
+  }
+}
+
 TEST(PartBounds, without_error_are_the_probability) {
   Generator generator(123);
   for (int repetition = 0; repetition < 50; ++repetition) {
