@@ -40,6 +40,7 @@ class SurrogateRecursion {
     return {.law = law_,
             .transition = {},
             .error = error_.mean_square,
+            .largest = error_.largest,
             .leaving = leaving_,
             .region = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
                        .upper = Eigen::VectorXd::Constant(dim, kInfinity)}};
@@ -67,7 +68,14 @@ class SurrogateRecursion {
       before.region = fit.region;
     }
     if (residual_) residual_->add_stage(law_, fit.transition);
+    const StageError before_step = error_;
     carry(fit, fit.residual + difference);
+    // Where feedback is clamped and large, the step's own slopes may grow less than the products'.
+    if (!difference.isZero(0.0)) {
+      error_.mean_square = error_.mean_square.cwiseMin(fit.growth * before_step.mean_square +
+                                                       fit.residual + fit.closed_form);
+      error_.largest = error_.largest.cwiseMin(fit.growth * before_step.largest + fit.largest);
+    }
     law_.covariance =
         fit.transition * law_.covariance * fit.transition.transpose() + motion_.noise_covariance;
     law_.covariance = 0.5 * (law_.covariance + law_.covariance.transpose()).eval();
@@ -141,6 +149,7 @@ std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion) {
     if (known) continue;
     SurrogateStage& lost = stages.back();
     lost.error.setConstant(kInfinity);
+    lost.largest.setConstant(kInfinity);
     lost.leaving = 1.0;
   }
   return stages;

@@ -20,6 +20,7 @@ struct SurrogateStage {
   Gaussian law;                ///< of z
   Eigen::MatrixXd transition;  ///< A, to the next stage; empty at the last and once all is lost
   Eigen::VectorXd error;       ///< bounds √E[(x_i − z_i)²; inside], coordinate by coordinate
+  Eigen::VectorXd largest;     ///< bounds |x_i − z_i| inside
   double leaving = 0.0;        ///< bounds P(not inside)
   Box region;                  ///< x is here in the event that is inside at the next stage
 };

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 
+#include "controller/certification/unicycle_residual.hpp"
 #include "controller/measure/normal_distribution.hpp"
 
 namespace qsmpc {
@@ -127,6 +129,21 @@ Eigen::MatrixXd deviation(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& u
   return (upper - value).cwiseMax(value - lower).cwiseMax(0.0);
 }
 
+/// Largest size of every entry of ∂f/∂x + ∂f/∂u diag(s) K over the bounds and all slopes
+/// 0 ≤ s ≤ 1 of the clamp.
+Eigen::MatrixXd closed_loop_growth(const DerivativeBounds& bounds, const Eigen::MatrixXd& gain) {
+  const Eigen::Index states = gain.cols();
+  Eigen::MatrixXd lower = bounds.jacobian_lower.leftCols(states);
+  Eigen::MatrixXd upper = bounds.jacobian_upper.leftCols(states);
+  for (Eigen::Index b = 0; b < gain.rows(); ++b) {
+    const Eigen::MatrixXd low = bounds.jacobian_lower.col(states + b) * gain.row(b);
+    const Eigen::MatrixXd high = bounds.jacobian_upper.col(states + b) * gain.row(b);
+    lower += low.cwiseMin(high).cwiseMin(0.0);
+    upper += low.cwiseMax(high).cwiseMax(0.0);
+  }
+  return lower.cwiseAbs().cwiseMax(upper.cwiseAbs());
+}
+
 /// The step of any system, by its derivatives' bounds over the neighbourhood (Taylor's formula).
 void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
                         const Eigen::MatrixXd& gain, const std::vector<InputFit>& inputs,
@@ -162,7 +179,11 @@ void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
   jacobian << by_state, by_input;
   const Eigen::MatrixXd off = deviation(bounds.jacobian_lower, bounds.jacobian_upper, jacobian);
   fit.stretch = off.leftCols(states) + off.rightCols(count) * gain.cwiseAbs();
+  fit.growth = closed_loop_growth(bounds, gain);
 }
+
+/// max |sin δ| over |δ| ≤ reach.
+double largest_sine(double reach) { return reach < 0.5 * std::numbers::pi ? std::sin(reach) : 1.0; }
 
 /// The step of a unicycle: e^{iφ} by its best affine fit e^{im − v/2}(1 + i(φ − m)).
 void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
@@ -180,7 +201,9 @@ void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
   // A car at rest does not depend on its heading, of which nothing is bounded then.
   const double away = unicycle.reach == 0.0 ? 0.0 : near.reach[heading];
 
-  fit.closed_form = true;
+  const Eigen::Matrix2d moments = residual_moments(mean, variance, mean, variance, variance);
+  fit.closed_form[unicycle.x] = unicycle.reach * std::sqrt(moments(0, 0));
+  fit.closed_form[unicycle.y] = unicycle.reach * std::sqrt(moments(1, 1));
   fit.transition = Eigen::MatrixXd::Identity(states, states);
   fit.transition(unicycle.x, heading) = -unicycle.reach * shrink * sine;
   fit.transition(unicycle.y, heading) = unicycle.reach * shrink * cosine;
@@ -191,18 +214,28 @@ void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
   fit.next_mean[heading] += unicycle.input_gain * saturation.mean;
   fit.input_gain = Eigen::MatrixXd::Zero(states, gain.rows());
   fit.input_gain(heading, unicycle.input) = std::abs(unicycle.input_gain);
-  // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit takes the share `lost` off 1 + iδ.
+  // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit takes the share `lost` off 1 + iδ; far off, both are as
+  // large as they can be.
+  const double fitted = std::sqrt(1.0 + away * away);
   const double position =
-      unicycle.reach * (0.5 * away * away + lost * std::sqrt(1.0 + away * away));
+      unicycle.reach * std::min(0.5 * away * away + lost * fitted, 1.0 + shrink * fitted);
   fit.largest[unicycle.x] = position;
   fit.largest[unicycle.y] = position;
   // The residual's slope is reach · i e^{im} (e^{iδ} − e^{−v/2}): sin δ along the mean heading,
-  // cos δ − e^{−v/2} across it.
-  const double along = unicycle.reach * away;
-  const double across = unicycle.reach * (0.5 * away * away + lost);
+  // cos δ − e^{−v/2} across it. That of the step itself is reach · i e^{im} e^{iδ}.
+  const double turned = largest_sine(away);
+  const double across = std::max(lost, shrink - std::cos(std::min(away, std::numbers::pi)));
+  const double x_part = std::abs(cosine);
+  const double y_part = std::abs(sine);
   fit.stretch = Eigen::MatrixXd::Zero(states, states);
-  fit.stretch(unicycle.x, heading) = along * std::abs(cosine) + across * std::abs(sine);
-  fit.stretch(unicycle.y, heading) = along * std::abs(sine) + across * std::abs(cosine);
+  fit.stretch(unicycle.x, heading) = unicycle.reach * (turned * x_part + across * y_part);
+  fit.stretch(unicycle.y, heading) = unicycle.reach * (turned * y_part + across * x_part);
+  fit.growth = Eigen::MatrixXd::Identity(states, states);
+  fit.growth(unicycle.x, heading) = unicycle.reach * std::min(1.0, y_part + turned * x_part);
+  fit.growth(unicycle.y, heading) = unicycle.reach * std::min(1.0, x_part + turned * y_part);
+  const Eigen::RowVectorXd feedback = unicycle.input_gain * gain.row(unicycle.input);
+  fit.growth.row(heading) = feedback.cwiseAbs();
+  fit.growth(heading, heading) = std::max(1.0, std::abs(1.0 + feedback[heading]));
 }
 
 /// P(z outside of the core): two tails for every coordinate and input that the core restricts.
@@ -281,6 +314,7 @@ StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaus
   StageFit fit;
   fit.residual = Eigen::VectorXd::Zero(states);
   fit.largest = Eigen::VectorXd::Zero(states);
+  fit.closed_form = Eigen::VectorXd::Zero(states);
   fit.region = {.lower = near.lower.head(states), .upper = near.upper.head(states)};
   fit.outside = outside_core(law, inputs, affine);
   if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {

@@ -16,15 +16,16 @@ namespace qsmpc {
 /// The affine map z ↦ next_mean + transition (z − m) about the law N(m, S) of a stage, and the
 /// residual r(x) = f(x, u(x)) − map(x).
 struct StageFit {
-  Eigen::MatrixXd transition;  ///< A, n x n
-  Eigen::VectorXd next_mean;   ///< n
-  Eigen::VectorXd residual;    ///< n, bounds √E[r_i(z)²; z in the core] without `closed_form`
-  Eigen::VectorXd largest;     ///< n, bounds |r_i(x)| over the region
+  Eigen::MatrixXd transition;   ///< A, n x n
+  Eigen::VectorXd next_mean;    ///< n
+  Eigen::VectorXd residual;     ///< n, bounds √E[r_i(z)²; z in the core] without `closed_form`
+  Eigen::VectorXd largest;      ///< n, bounds |r_i(x)| over the region
+  Eigen::VectorXd closed_form;  ///< n, √E[…²] of the unicycle's part of r(z); else zero
+  Eigen::MatrixXd growth;  ///< n x n: |g_i(x) − g_i(z)| ≤ Σ_a growth_ia |x_a − z_a|, g the step
   Eigen::MatrixXd stretch;  ///< n x n: |r_i(x) − r_i(z)| ≤ Σ_a stretch_ia |x_a − z_a| + …
   Eigen::MatrixXd input_gain;  ///< n x m: … + Σ_b input_gain_ib |q_b(x) − q_b(z)|
   Box region;                  ///< core, widened by what x can be from z; infinite if affine there
   double outside = 0.0;        ///< bounds P(z not in the core)
-  bool closed_form = false;    ///< the unicycle's part of r is left to its closed form
 };
 
 /// What is known of x − z before the step.

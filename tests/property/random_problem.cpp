@@ -129,6 +129,19 @@ SafeSet random_safe_set(Generator& generator, const Family& family, const Eigen:
   return safe_set;
 }
 
+/// The propagator and its points; few where each would take long.
+void random_propagation(Generator& generator, PlannerSettings& settings) {
+  const double which = uniform(generator, 0.0, 1.0);
+  settings.propagator = which < 0.5    ? "compressed"
+                        : which < 0.75 ? "noise_free"
+                        : which < 0.9  ? "soft"
+                                       : "moment_matched";
+  const int most = which < 0.75 ? 200 : 25;
+  settings.state_points = uniform_int(generator, 10, most);
+  settings.noise_points = uniform_int(generator, 10, most);
+  settings.compressed_points = uniform_int(generator, 10, most);
+}
+
 void random_policy(Generator& generator, Problem& problem) {
   PlannerSettings& settings = problem.settings;
   const int dim = problem.dynamics->state_dim();
@@ -162,11 +175,7 @@ Problem random_problem(Generator& generator) {
   PlannerSettings& settings = problem.settings;
   settings.horizon = uniform_int(generator, 1, 8);
   random_policy(generator, problem);
-  const std::vector<PropagatorEntry>& table = propagators();
-  settings.propagator = table[uniform_int(generator, 0, static_cast<int>(table.size()) - 1)].name;
-  settings.state_points = uniform_int(generator, 10, 200);
-  settings.noise_points = uniform_int(generator, 10, 200);
-  settings.compressed_points = uniform_int(generator, 10, 200);
+  random_propagation(generator, settings);
   settings.max_evaluations = chance(generator, 0.5) ? 1 : 10;
   settings.noise_covariance = random_covariance(generator, dim, -3.0, -1.0);
   Eigen::VectorXd input = settings.bounds.lower;
