@@ -15,6 +15,39 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Applies `combine` to each bound of the one and of the other.
+template <class Combine>
+StageError combined(const StageError& one, const StageError& other, Combine combine) {
+  StageError result{.mean_square = combine(one.mean_square, other.mean_square),
+                    .higher = {},
+                    .largest = combine(one.largest, other.largest)};
+  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+    result.higher[k] = combine(one.higher[k], other.higher[k]);
+  }
+  return result;
+}
+
+/// Bounds of a sum.
+StageError added(const StageError& one, const StageError& other) {
+  return combined(one, other, [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return Eigen::VectorXd(a + b);
+  });
+}
+
+/// The better of two bounds of the same error.
+StageError lesser(const StageError& one, const StageError& other) {
+  return combined(one, other, [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
+    return Eigen::VectorXd(a.cwiseMin(b));
+  });
+}
+
+/// Bounds of an error after a map whose entries are at most `sizes` in size.
+StageError moved(const Eigen::MatrixXd& sizes, const StageError& error) {
+  return combined(error, error, [&](const Eigen::VectorXd& a, const Eigen::VectorXd&) {
+    return Eigen::VectorXd(sizes * a);
+  });
+}
+
 /// The recursion from stage to stage: the law, and the error
 ///     x − z = Σ_j Φ_{k,j+1} r_j(x_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
 /// with Φ the products of the affine maps' linear parts.
@@ -25,6 +58,7 @@ class SurrogateRecursion {
         affine_(affine_coordinates(motion.dynamics)),
         law_(motion.belief),
         error_{.mean_square = Eigen::VectorXd::Zero(law_.mean.size()),
+               .higher = zero_norms(law_.mean.size()),
                .largest = Eigen::VectorXd::Zero(law_.mean.size())} {
     // Then a residual is known on the whole space, and only its changes need the core.
     fits_everywhere_ = std::all_of(affine_.begin(), affine_.end(), [](bool one) { return one; });
@@ -40,6 +74,7 @@ class SurrogateRecursion {
     return {.law = law_,
             .transition = {},
             .error = error_.mean_square,
+            .higher = error_.higher,
             .largest = error_.largest,
             .leaving = leaving_,
             .region = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
@@ -58,23 +93,22 @@ class SurrogateRecursion {
     }
     const StageFit fit = fit_stage(motion_, stage, law_, error_, inputs, affine_);
     before.transition = fit.transition;
-    Eigen::VectorXd difference = fit.stretch * error_.mean_square;
-    for (std::size_t b = 0; b < inputs.size(); ++b) {
-      difference += fit.input_gain.col(static_cast<Eigen::Index>(b)) * inputs[b].difference;
-    }
+    const StageError difference = residual_difference(fit, inputs);
     outside_ += fit.outside;
-    if (!fits_everywhere_ || !difference.isZero(0.0)) {
+    const bool uses_core = !fits_everywhere_ || !difference.mean_square.isZero(0.0);
+    if (uses_core) {
       leaving_ = std::min(1.0, outside_);
       before.region = fit.region;
     }
     if (residual_) residual_->add_stage(law_, fit.transition);
+    const StageError own{.mean_square = fit.residual, .higher = fit.higher, .largest = fit.largest};
     const StageError before_step = error_;
-    carry(fit, fit.residual + difference);
+    carry(fit.transition, added(own, difference));
     // Where feedback is clamped and large, the step's own slopes may grow less than the products'.
-    if (!difference.isZero(0.0)) {
-      error_.mean_square = error_.mean_square.cwiseMin(fit.growth * before_step.mean_square +
-                                                       fit.residual + fit.closed_form);
-      error_.largest = error_.largest.cwiseMin(fit.growth * before_step.largest + fit.largest);
+    if (uses_core) {
+      StageError slopes = moved(fit.growth, before_step);
+      slopes.mean_square += fit.closed_form;
+      error_ = lesser(error_, added(slopes, own));
     }
     law_.covariance =
         fit.transition * law_.covariance * fit.transition.transpose() + motion_.noise_covariance;
@@ -85,27 +119,38 @@ class SurrogateRecursion {
   }
 
  private:
-  /// Adds this stage's residual, bounded in mean square by `bound`, to those carried along.
-  void carry(const StageFit& fit, const Eigen::VectorXd& bound) {
+  /// Bounds of r(x) − r(z); over the region `largest` holds of r(x) itself.
+  [[nodiscard]] StageError residual_difference(const StageFit& fit,
+                                               const std::vector<InputFit>& inputs) const {
+    StageError difference = moved(fit.stretch, error_);
+    difference.largest.setZero();
+    for (std::size_t b = 0; b < inputs.size(); ++b) {
+      const Eigen::VectorXd gain = fit.input_gain.col(static_cast<Eigen::Index>(b));
+      difference.mean_square += gain * inputs[b].difference;
+      for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+        difference.higher[k] += gain * inputs[b].higher_difference[k];
+      }
+    }
+    return difference;
+  }
+
+  /// Adds this stage's residual, bounded by `bound`, to those carried along.
+  void carry(const Eigen::MatrixXd& transition, const StageError& bound) {
     const Eigen::Index dim = law_.mean.size();
-    for (Past& past : past_) past.product = fit.transition * past.product;
-    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim),
-                     .mean_square = bound,
-                     .largest = fit.largest});
-    error_.mean_square.setZero();
-    error_.largest.setZero();
-    if (residual_) error_.mean_square = residual_->root_mean_squares();
+    for (Past& past : past_) past.product = transition * past.product;
+    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim), .bound = bound});
+    error_ = {.mean_square = residual_ ? residual_->root_mean_squares()
+                                       : Eigen::VectorXd(Eigen::VectorXd::Zero(dim)),
+              .higher = zero_norms(dim),
+              .largest = Eigen::VectorXd::Zero(dim)};
     for (const Past& past : past_) {
-      const Eigen::MatrixXd sizes = past.product.cwiseAbs();
-      error_.mean_square += sizes * past.mean_square;
-      error_.largest += sizes * past.largest;
+      error_ = added(error_, moved(past.product.cwiseAbs(), past.bound));
     }
   }
 
   struct Past {
     Eigen::MatrixXd product;  ///< Φ_{k,j+1}
-    Eigen::VectorXd mean_square;
-    Eigen::VectorXd largest;
+    StageError bound;         ///< of the residual
   };
 
   const PredictedMotion& motion_;
@@ -149,6 +194,7 @@ std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion) {
     if (known) continue;
     SurrogateStage& lost = stages.back();
     lost.error.setConstant(kInfinity);
+    for (Eigen::VectorXd& norms : lost.higher) norms.setConstant(kInfinity);
     lost.largest.setConstant(kInfinity);
     lost.leaving = 1.0;
   }

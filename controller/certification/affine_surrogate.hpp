@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/certification/higher_norms.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
@@ -20,6 +21,7 @@ struct SurrogateStage {
   Gaussian law;                ///< of z
   Eigen::MatrixXd transition;  ///< A, to the next stage; empty at the last and once all is lost
   Eigen::VectorXd error;       ///< bounds √E[(x_i − z_i)²; inside], coordinate by coordinate
+  HigherNorms higher;          ///< the same for (E[|x_i − z_i|^p; inside])^{1/p}
   Eigen::VectorXd largest;     ///< bounds |x_i − z_i| inside
   double leaving = 0.0;        ///< bounds P(not inside)
   Box region;                  ///< x is here in the event that is inside at the next stage

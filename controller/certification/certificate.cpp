@@ -11,6 +11,11 @@
 namespace qsmpc {
 namespace {
 
+// What a part of the unsafe set may add without being worked out further.
+constexpr double kNegligible = 1e-8;
+// What it may add without a search that takes long.
+constexpr double kWorthwhile = 1e-4;
+
 double unsafe_mass(const DiscreteMeasure& measure, const SafeSet& safe_set) {
   double mass = 0.0;
   for (Eigen::Index i = 0; i < measure.size(); ++i) {
@@ -27,16 +32,31 @@ struct SurrogateBounds {
 
 SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
                                  const std::vector<UnsafePart>& parts, Eigen::Index stage,
-                                 const SurrogateStage& surrogate) {
+                                 const SurrogateStage& surrogate, CertificateEffort effort) {
+  const double worthwhile = effort == CertificateEffort::kEvery ? kNegligible : kWorthwhile;
   if (surrogate.leaving >= 1.0) return {};
   SurrogateBounds bounds{.markov = surrogate.leaving, .smooth = surrogate.leaving};
   for (const UnsafePart& part : parts) {
     const Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, part.axes);
     const PerturbedGaussian state{
         .law = surrogate.law, .error = surrogate.error, .smoothing = smoothing};
-    const double markov = markov_part_bound(state, part);
+    // One value of the highest order settles the parts that are far away.
+    const std::size_t highest = kHigherOrders.size() - 1;
+    double markov = far_part_bound(surrogate.law, surrogate.higher[highest], kHigherOrders[highest],
+                                   part, kNegligible);
+    double smooth = markov;
+    if (markov > kNegligible) {
+      markov = std::min(markov, markov_part_bound(state, part));
+      smooth = std::min(markov, smooth_part_bound(state, part));
+    }
+    // Searches in two coordinates are dear: only where they can matter.
+    for (std::size_t k = kHigherOrders.size(); k-- > 0 && smooth > worthwhile;) {
+      markov = std::min(
+          markov, tail_part_bound(surrogate.law, surrogate.higher[k], kHigherOrders[k], part));
+      smooth = std::min(smooth, markov);
+    }
     bounds.markov += markov;
-    bounds.smooth += std::min(markov, smooth_part_bound(state, part));
+    bounds.smooth += smooth;
   }
   return {.markov = std::min(1.0, bounds.markov), .smooth = std::min(1.0, bounds.smooth)};
 }
@@ -68,8 +88,8 @@ std::vector<StageCertificate> certify(const PredictedMotion& motion, const SafeS
   for (std::size_t k = 0; k < certificates.size(); ++k) {
     StageCertificate& certificate = certificates[k];
     const DiscreteMeasure& particles = motion.prediction.stages[k + 1];
-    const SurrogateBounds bounds =
-        surrogate_bounds(motion, parts, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1]);
+    const SurrogateBounds bounds = surrogate_bounds(motion, parts, static_cast<Eigen::Index>(k) + 1,
+                                                    surrogates[k + 1], effort);
     certificate.surrogate = bounds.markov;
     certificate.smoothed = bounds.smooth;
     const double leaving = budgets[k + 1].leaving;

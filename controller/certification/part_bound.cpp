@@ -21,6 +21,11 @@ constexpr double kCurvature = 0.24198;
 // Golden-section steps over seven decades of t: to within 2 %, and every t gives a bound.
 constexpr int kSearchSteps = 18;
 constexpr double kLargestRatio = 1e7;
+// The same for τ of the norms of higher order; beyond 30, no less than 1e-6 is left.
+constexpr double kLargestTailRatio = 30.0;
+constexpr int kTailSteps = 7;
+// A probability that no certificate needs to be told from zero.
+constexpr double kNegligible = 1e-9;
 // Of n's covariance, relative to the product of the variances: below it rounding decides.
 constexpr double kLeastDeterminant = 1e-12;
 
@@ -122,6 +127,86 @@ double smooth_rectangle(const PerturbedGaussian& state, const UnsafePart& part, 
   return bound + kCurvature * error[moved] * error[moved] / spread;
 }
 
+/// P(z ∈ slab of the part in `axis`).
+double slab_probability(const Gaussian& law, const UnsafePart& part, Eigen::Index axis) {
+  const double mean = law.mean[axis];
+  const double lower = part.box.lower[axis];
+  const double upper = part.box.upper[axis];
+  const double deviation = std::sqrt(std::max(0.0, law.covariance(axis, axis)));
+  if (deviation > 0.0) {
+    return normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
+  }
+  return mean >= lower && mean <= upper ? 1.0 : 0.0;
+}
+
+/// At least P(z ∈ part): the least over its coordinates and, unless one of these is small enough
+/// by itself, its pairs of coordinates.
+double probability_of_part(const Gaussian& law, const UnsafePart& part) {
+  double least = 1.0;
+  for (const Eigen::Index axis : part.axes) {
+    least = std::min(least, slab_probability(law, part, axis));
+  }
+  for (std::size_t i = 0; i < part.axes.size() && least > kNegligible; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const std::vector<Eigen::Index> pair = {part.axes[j], part.axes[i]};
+      const Eigen::Matrix2d covariance = law.covariance(pair, pair);
+      const double inside = rectangle_probability(law.mean(pair), covariance, part.box.lower(pair),
+                                                  part.box.upper(pair));
+      least = std::min(least, inside + rectangle_error(covariance));
+    }
+  }
+  return least;
+}
+
+bool usable(const Gaussian& law, const Eigen::VectorXd& norms, const UnsafePart& part) {
+  const bool known = std::all_of(part.axes.begin(), part.axes.end(),
+                                 [&](Eigen::Index axis) { return std::isfinite(norms[axis]); });
+  return known && law.mean.allFinite() && law.covariance.allFinite();
+}
+
+/// |axes| τ^−p + P(z ∈ part widened by τ · norms).
+double widened_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
+                     const UnsafePart& part, double ratio) {
+  UnsafePart wide = part;
+  for (const Eigen::Index axis : part.axes) {
+    wide.box.lower[axis] -= ratio * norms[axis];
+    wide.box.upper[axis] += ratio * norms[axis];
+  }
+  return static_cast<double>(part.axes.size()) * std::pow(ratio, -order) +
+         probability_of_part(law, wide);
+}
+
+/// The least of `value` found by golden sections over [first, first · ratio], in the logarithm. One
+/// valley is expected; where there are more, what is found is a value as well.
+template <class Value>
+double least_on_logarithmic_scale(const Value& value, double first, double ratio, int steps) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  double low = std::log(first);
+  double high = low + std::log(ratio);
+  double inner = high - golden * (high - low);
+  double outer = low + golden * (high - low);
+  double at_inner = value(std::exp(inner));
+  double at_outer = value(std::exp(outer));
+  double best = std::min({1.0, at_inner, at_outer});
+  for (int step = 0; step < steps; ++step) {
+    if (at_inner < at_outer) {
+      high = outer;
+      outer = inner;
+      at_outer = at_inner;
+      inner = high - golden * (high - low);
+      at_inner = value(std::exp(inner));
+    } else {
+      low = inner;
+      inner = outer;
+      at_inner = at_outer;
+      outer = low + golden * (high - low);
+      at_outer = value(std::exp(outer));
+    }
+    best = std::min({best, at_inner, at_outer});
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<UnsafePart> unsafe_parts(const SafeSet& safe_set) {
@@ -166,32 +251,22 @@ double markov_part_bound(const PerturbedGaussian& state, const UnsafePart& part)
            soft_part_probability(state.law.mean, state.law.covariance, part.box, t);
   };
   if (square == 0.0) return std::min(1.0, value(kSmallestReach));
-  // One valley in log t, as a rule; where there are more, any of them is a bound.
-  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
-  double low = std::log(1.02 * std::sqrt(square));
-  double high = low + std::log(kLargestRatio);
-  double inner = high - golden * (high - low);
-  double outer = low + golden * (high - low);
-  double at_inner = value(std::exp(inner));
-  double at_outer = value(std::exp(outer));
-  double best = std::min({1.0, at_inner, at_outer});
-  for (int step = 0; step < kSearchSteps; ++step) {
-    if (at_inner < at_outer) {
-      high = outer;
-      outer = inner;
-      at_outer = at_inner;
-      inner = high - golden * (high - low);
-      at_inner = value(std::exp(inner));
-    } else {
-      low = inner;
-      inner = outer;
-      at_inner = at_outer;
-      outer = low + golden * (high - low);
-      at_outer = value(std::exp(outer));
-    }
-    best = std::min({best, at_inner, at_outer});
-  }
-  return best;
+  return least_on_logarithmic_scale(value, 1.02 * std::sqrt(square), kLargestRatio, kSearchSteps);
+}
+
+double tail_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
+                       const UnsafePart& part) {
+  if (!usable(law, norms, part)) return 1.0;
+  const auto value = [&](double ratio) { return widened_bound(law, norms, order, part, ratio); };
+  return least_on_logarithmic_scale(value, 1.0, kLargestTailRatio, kTailSteps);
+}
+
+double far_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
+                      const UnsafePart& part, double enough) {
+  if (!usable(law, norms, part)) return 1.0;
+  const double tails = static_cast<double>(part.axes.size());
+  const double ratio = std::pow(2.0 * tails / enough, 1.0 / order);
+  return std::min(1.0, widened_bound(law, norms, order, part, ratio));
 }
 
 double smooth_part_bound(const PerturbedGaussian& state, const UnsafePart& part) {

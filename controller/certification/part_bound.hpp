@@ -31,6 +31,17 @@ struct PerturbedGaussian {
 /// C3: min over t of E|e|²/t² + E(1 − d(z, part)²/t²)₊, with e in the part's coordinates only.
 [[nodiscard]] double markov_part_bound(const PerturbedGaussian& state, const UnsafePart& part);
 
+/// C3 by a norm of higher order: min over τ of |axes| τ^−p + P(z ∈ part widened by τ · norms),
+/// since P(|e_a| > τ ‖e_a‖_p) ≤ τ^−p in each of the part's coordinates. norms: bounds of ‖e_a‖_p
+/// (dim). The search ends with the first value that is at most `enough`.
+[[nodiscard]] double tail_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
+                                     const UnsafePart& part);
+
+/// The same with the one τ that leaves half of `enough` (> 0) to the tails: as good as a search
+/// where the result is at most `enough`.
+[[nodiscard]] double far_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
+                                    const UnsafePart& part, double enough);
+
 /// C4: P(z ∈ part) and the first two orders in e of the probability smoothed by n,
 ///     P(z ∈ part) + Σ_a error_a ‖∂_a h‖ + 0.242 E[eᵀ N⁻¹ e],  h(y) = P(y + n ∈ part),
 /// the least over the part's coordinates and pairs of them.

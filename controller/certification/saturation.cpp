@@ -1,8 +1,11 @@
 #include "controller/certification/saturation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include <boost/math/quadrature/gauss.hpp>
 
 #include "controller/measure/normal_distribution.hpp"
 
@@ -11,6 +14,25 @@ namespace {
 
 // Relative to the terms of a difference: what cancellation between them can leave.
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+
+// Quadrature of moments: how far it goes, and what the nodes can leave, relative.
+constexpr double kQuadratureReach = 12.0;
+constexpr double kQuadratureError = 1e-8;
+
+double power(double base, int exponent) {
+  double result = 1.0;
+  for (int i = 0; i < exponent; ++i) result *= base;
+  return result;
+}
+
+/// At least E[|q/s|^p; |Z| > reach]. There |q/s| ≤ 3|Z|: a mean within `reach` deviations of E sat
+/// moves it by at most that, Z and the fit by |Z| each, and further outside the clamp is constant
+/// up to the reach. E[Z^p; |Z| > r] is at most 2 r^{p−1} φ(r)/(1 − p/r²).
+double beyond_reach(int order) {
+  const double squared = kQuadratureReach * kQuadratureReach;
+  return 2.0 * power(3.0, order) * power(kQuadratureReach, order - 1) *
+         normal_density(kQuadratureReach) / (1.0 - order / squared);
+}
 
 /// E (Z − z)₊ and E (Z − z)₊² for Z ~ N(0, 1).
 struct Excess {
@@ -54,6 +76,48 @@ SaturationFit fit_saturation(double mean, double deviation, double lower, double
       .mean = std::clamp(mean + deviation * shift, lower, upper),
       .slope = std::clamp(1.0 - outside, 0.0, 1.0),
       .residual = deviation * std::sqrt(std::max(0.0, variance) + over.rounding + under.rounding)};
+}
+
+std::array<double, kHigherOrders.size()> saturation_residual_norms(const SaturationFit& fit,
+                                                                   double mean, double deviation,
+                                                                   double lower, double upper) {
+  using Rule = boost::math::quadrature::gauss<double, 10>;  // half of the nodes; they are symmetric
+  std::array<double, kHigherOrders.size()> norms{};
+  if (!std::isfinite(mean) || !std::isfinite(deviation)) {
+    norms.fill(std::numeric_limits<double>::infinity());
+    return norms;
+  }
+  if (deviation <= 0.0) return norms;
+  const auto add = [&](double z, double weight) {
+    const double q =
+        (std::clamp(mean + deviation * z, lower, upper) - fit.mean) / deviation - fit.slope * z;
+    const double mass = weight * normal_density(z);
+    for (std::size_t k = 0; k < norms.size(); ++k) norms[k] += mass * power(q, kHigherOrders[k]);
+  };
+  // Panels of at most one deviation between the places where the clamp bends: the integrand is
+  // smooth on each, and ten nodes leave no more than rounding.
+  const auto inner = [&](double bound) {
+    return std::clamp((bound - mean) / deviation, -kQuadratureReach, kQuadratureReach);
+  };
+  const std::array<double, 4> ends = {-kQuadratureReach, inner(lower), inner(upper),
+                                      kQuadratureReach};
+  for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
+    const int panels = static_cast<int>(std::ceil(ends[piece + 1] - ends[piece]));
+    for (int i = 0; i < panels; ++i) {
+      const double half = 0.5 * (ends[piece + 1] - ends[piece]) / panels;
+      const double centre = ends[piece] + (2 * i + 1) * half;
+      for (std::size_t node = 0; node < Rule::abscissa().size(); ++node) {
+        const double offset = half * Rule::abscissa()[node];
+        add(centre - offset, half * Rule::weights()[node]);
+        add(centre + offset, half * Rule::weights()[node]);
+      }
+    }
+  }
+  for (std::size_t k = 0; k < norms.size(); ++k) {
+    const double total = norms[k] + beyond_reach(kHigherOrders[k]);
+    norms[k] = deviation * (1.0 + kQuadratureError) * std::pow(total, 1.0 / kHigherOrders[k]);
+  }
+  return norms;
 }
 
 double largest_saturation_residual(const SaturationFit& fit, double mean, double reach,

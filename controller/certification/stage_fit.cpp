@@ -8,6 +8,7 @@
 
 #include "controller/certification/unicycle_residual.hpp"
 #include "controller/measure/normal_distribution.hpp"
+#include "controller/measure/normal_norms.hpp"
 
 namespace qsmpc {
 namespace {
@@ -16,6 +17,29 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The core reaches this many standard deviations from the mean, in every coordinate in which f is
 // not affine and in every input: 4e-8 lies outside of each.
 constexpr double kCore = 5.5;
+
+/// The norms of polynomials of Z that the bounds of order p need, worked out once.
+struct NormalNorms {
+  explicit NormalNorms(int order)
+      : first(normal_power_norm(1, order)),
+        first_twice(normal_power_norm(1, 2 * order)),
+        fourth(normal_power_norm(4, order)),
+        fifth(normal_power_norm(5, order)),
+        square(normal_square_norm(order)),
+        cube(normal_cube_norm(order)) {}
+  double first;        ///< ‖Z‖_p
+  double first_twice;  ///< ‖Z‖_2p
+  double fourth;       ///< ‖Z⁴‖_p
+  double fifth;        ///< ‖Z⁵‖_p
+  double square;       ///< ‖Z² − 1‖_p
+  double cube;         ///< ‖Z³ − 3Z‖_p
+};
+
+const NormalNorms& normal_norms(std::size_t k) {
+  static const std::array<NormalNorms, kHigherOrders.size()> table = {
+      NormalNorms(kHigherOrders[0]), NormalNorms(kHigherOrders[1])};
+  return table[k];
+}
 
 /// z = (x, u): the box of a stage and how far its points are from the centre of the expansion.
 struct Neighbourhood {
@@ -38,7 +62,20 @@ struct Moments {
         2.0 * cross * cross + 4.0 * shift[a] * shift[b] * cross;
     return std::sqrt(std::max(0.0, square));
   }
+
+  /// At least ‖X_a‖_2p, p of index k.
+  [[nodiscard]] double norm(Eigen::Index a, std::size_t k) const {
+    const double deviation = std::sqrt(std::max(0.0, covariance(a, a)));
+    return std::abs(shift[a]) + deviation * normal_norms(k).first_twice;
+  }
 };
+
+/// ½ Σ_ab most_ab ‖X_a‖_2p ‖X_b‖_2p bounds ‖½ ξᵀHξ‖_p (Minkowski, Hölder).
+double quadratic_norm(const Eigen::MatrixXd& most, const Moments& moments, std::size_t k) {
+  Eigen::VectorXd norms(most.rows());
+  for (Eigen::Index a = 0; a < most.rows(); ++a) norms[a] = moments.norm(a, k);
+  return 0.5 * norms.dot(most * norms);
+}
 
 Neighbourhood neighbourhood(const PredictedMotion& motion, const Gaussian& law,
                             const Eigen::VectorXd& largest, const Eigen::MatrixXd& gain,
@@ -89,6 +126,7 @@ struct Curvature {
   double offset = 0.0;    ///< of the map
   double residual = 0.0;  ///< bounds the mean square's root
   double largest = 0.0;   ///< bounds the absolute value over the neighbourhood
+  std::array<double, kHigherOrders.size()> higher{};  ///< bounds the norms of higher order
 };
 
 /// ½ ξᵀH(·)ξ − offset with H between `lower` and `upper`: taken about zero, or, with H₀ the middle
@@ -115,12 +153,16 @@ Curvature curvature_of(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& uppe
   about_zero.largest = spread;
   const Eigen::MatrixXd product =
       0.5 * (lower + upper).topLeftCorner(states, states) * law.covariance;
-  const Curvature centred{
+  Curvature centred{
       .offset = 0.5 * product.trace(),
       .residual =
           std::sqrt(std::max(0.0, 0.5 * product.cwiseProduct(product.transpose()).sum())) + rest,
       .largest = spread + std::abs(0.5 * product.trace())};
-  return centred.residual < about_zero.residual ? centred : about_zero;
+  Curvature& better = centred.residual < about_zero.residual ? centred : about_zero;
+  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+    better.higher[k] = quadratic_norm(most, moments, k) + std::abs(better.offset);
+  }
+  return better;
 }
 
 /// Largest difference of an entry between `bounds` and `value`.
@@ -174,6 +216,9 @@ void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
     fit.next_mean[i] += curvature.offset;
     fit.residual[i] = curvature.residual;
     fit.largest[i] = curvature.largest;
+    for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+      fit.higher[k][i] = curvature.higher[k];
+    }
   }
   Eigen::MatrixXd jacobian(states, states + count);
   jacobian << by_state, by_input;
@@ -184,6 +229,26 @@ void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
 
 /// max |sin δ| over |δ| ≤ reach.
 double largest_sine(double reach) { return reach < 0.5 * std::numbers::pi ? std::sin(reach) : 1.0; }
+
+/// Bounds of ‖cos δ − e^{−v/2}‖_p and ‖sin δ − e^{−v/2}δ‖_p for δ ~ N(0, v): what the best affine
+/// fit leaves along and across the mean heading. From Taylor's formula,
+///     cos δ − e^{−v/2} = −(δ² − v)/2 + a,      |a| ≤ δ⁴/24 + v²/8,
+///     sin δ − e^{−v/2}δ = −(δ³ − 3vδ)/6 + b,  |b| ≤ |δ|⁵/120 + |δ| v²/8.
+struct HeadingNorms {
+  double along;
+  double across;
+};
+
+HeadingNorms heading_norms(double variance, std::size_t k) {
+  const NormalNorms& norms = normal_norms(k);
+  const double deviation = std::sqrt(variance);
+  const double square = variance * variance;
+  return {.along =
+              std::min(2.0, 0.5 * variance * norms.square + square * (norms.fourth / 24.0 + 0.125)),
+          .across = std::min(1.0 + deviation * norms.first,
+                             deviation * variance * norms.cube / 6.0 +
+                                 deviation * square * (norms.fifth / 120.0 + 0.125 * norms.first))};
+}
 
 /// The step of a unicycle: e^{iφ} by its best affine fit e^{im − v/2}(1 + i(φ − m)).
 void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
@@ -214,6 +279,13 @@ void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
   fit.next_mean[heading] += unicycle.input_gain * saturation.mean;
   fit.input_gain = Eigen::MatrixXd::Zero(states, gain.rows());
   fit.input_gain(heading, unicycle.input) = std::abs(unicycle.input_gain);
+  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+    const HeadingNorms norms = heading_norms(variance, k);
+    fit.higher[k][unicycle.x] =
+        unicycle.reach * (norms.along * std::abs(cosine) + norms.across * std::abs(sine));
+    fit.higher[k][unicycle.y] =
+        unicycle.reach * (norms.along * std::abs(sine) + norms.across * std::abs(cosine));
+  }
   // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit takes the share `lost` off 1 + iδ; far off, both are as
   // large as they can be.
   const double fitted = std::sqrt(1.0 + away * away);
@@ -254,17 +326,21 @@ double outside_core(const Gaussian& law, const std::vector<InputFit>& inputs,
 
 /// |q(x) − q(z)| is (1 − slope)|K(x − z)| where neither is clamped, and never more than
 /// max(slope, 1 − slope)|K(x − z)|; either is clamped only where z's feedback is within `largest`
-/// of a bound.
-double clamp_difference(const InputFit& input, double mean_square, double largest, double lower,
-                        double upper) {
+/// of a bound. norm: of K(x − z), of order `order`, as the result.
+double clamp_difference(const InputFit& input, double norm, double largest, double clamped,
+                        int order) {
   const double slope = input.saturation.slope;
-  const double anywhere = std::max(slope, 1.0 - slope) * mean_square;
+  const double anywhere = std::max(slope, 1.0 - slope) * norm;
   if (!(input.deviation > 0.0) || !std::isfinite(largest)) return anywhere;
-  const double clamped =
-      std::min(1.0, normal_cumulative((lower + largest - input.mean) / input.deviation) +
-                        normal_cumulative((input.mean + largest - upper) / input.deviation));
-  return std::min(
-      anywhere, (1.0 - slope) * mean_square + std::min(mean_square, largest * std::sqrt(clamped)));
+  const double near_bound = std::min(norm, largest * std::pow(clamped, 1.0 / order));
+  return std::min(anywhere, (1.0 - slope) * norm + near_bound);
+}
+
+/// P(v + K(z − x̄) beyond a bound less `margin`).
+double probability_near_bounds(const InputFit& input, double margin, double lower, double upper) {
+  if (!(input.deviation > 0.0)) return 1.0;
+  return std::min(1.0, normal_cumulative((lower + margin - input.mean) / input.deviation) +
+                           normal_cumulative((input.mean + margin - upper) / input.deviation));
 }
 
 }  // namespace
@@ -282,8 +358,16 @@ std::vector<InputFit> fit_inputs(const PredictedMotion& motion, Eigen::Index sta
     input.mean = policy.inputs(b, stage) + row.dot(law.mean - policy.states.col(stage));
     input.deviation = std::sqrt(std::max(0.0, row.dot(law.covariance * row)));
     input.saturation = fit_saturation(input.mean, input.deviation, lower, upper);
-    input.difference = clamp_difference(input, row.cwiseAbs().dot(error.mean_square),
-                                        row.cwiseAbs().dot(error.largest), lower, upper);
+    const Eigen::VectorXd sizes = row.cwiseAbs();
+    const double largest = sizes.dot(error.largest);
+    const double clamped = probability_near_bounds(input, largest, lower, upper);
+    input.difference = clamp_difference(input, sizes.dot(error.mean_square), largest, clamped, 2);
+    input.higher_residual =
+        saturation_residual_norms(input.saturation, input.mean, input.deviation, lower, upper);
+    for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+      input.higher_difference[k] =
+          clamp_difference(input, sizes.dot(error.higher[k]), largest, clamped, kHigherOrders[k]);
+    }
   }
   return inputs;
 }
@@ -315,6 +399,7 @@ StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaus
   fit.residual = Eigen::VectorXd::Zero(states);
   fit.largest = Eigen::VectorXd::Zero(states);
   fit.closed_form = Eigen::VectorXd::Zero(states);
+  fit.higher = zero_norms(states);
   fit.region = {.lower = near.lower.head(states), .upper = near.upper.head(states)};
   fit.outside = outside_core(law, inputs, affine);
   if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
@@ -330,6 +415,9 @@ StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaus
                                     motion.policy.bounds.lower[b], motion.policy.bounds.upper[b]);
     fit.residual += fit.input_gain.col(b) * input.saturation.residual;
     fit.largest += fit.input_gain.col(b) * worst;
+    for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+      fit.higher[k] += fit.input_gain.col(b) * input.higher_residual[k];
+    }
   }
   return fit;
 }

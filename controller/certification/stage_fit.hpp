@@ -2,10 +2,12 @@
 // step can be from this map. Derivation: docs/theory/surrogate.md.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "controller/certification/higher_norms.hpp"
 #include "controller/certification/saturation.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
@@ -21,6 +23,7 @@ struct StageFit {
   Eigen::VectorXd residual;     ///< n, bounds √E[r_i(z)²; z in the core] without `closed_form`
   Eigen::VectorXd largest;      ///< n, bounds |r_i(x)| over the region
   Eigen::VectorXd closed_form;  ///< n, √E[…²] of the unicycle's part of r(z); else zero
+  HigherNorms higher;           ///< bounds ‖r(z)‖_p, z in the core, all parts of r included
   Eigen::MatrixXd growth;  ///< n x n: |g_i(x) − g_i(z)| ≤ Σ_a growth_ia |x_a − z_a|, g the step
   Eigen::MatrixXd stretch;  ///< n x n: |r_i(x) − r_i(z)| ≤ Σ_a stretch_ia |x_a − z_a| + …
   Eigen::MatrixXd input_gain;  ///< n x m: … + Σ_b input_gain_ib |q_b(x) − q_b(z)|
@@ -31,6 +34,7 @@ struct StageFit {
 /// What is known of x − z before the step.
 struct StageError {
   Eigen::VectorXd mean_square;  ///< n, bounds √E[(x_i − z_i)²; inside]
+  HigherNorms higher;           ///< n each, bounds ‖x − z‖_p inside
   Eigen::VectorXd largest;      ///< n, bounds |x_i − z_i| inside
 };
 
@@ -40,6 +44,8 @@ struct InputFit {
   double deviation = 0.0;  ///< of the same
   SaturationFit saturation;
   double difference = 0.0;  ///< bounds √E[(q(x) − q(z))²; inside], q the clamp's residual
+  std::array<double, kHigherOrders.size()> higher_residual{};    ///< bounds ‖q(z)‖_p
+  std::array<double, kHigherOrders.size()> higher_difference{};  ///< ‖q(x) − q(z)‖_p inside
 };
 
 /// The inputs' fits at stage `stage` about `law`.

@@ -131,10 +131,12 @@ void check_problem(const Problem& problem, const std::string& name, Generator& g
     if (k > 0 && problem.settings.closed_loop) ++tally.late_closed;
   }
   EXPECT_GE(horizon_bound(certificates), lower_limit(truth.any)) << name;
-  // A search that may end early gives bounds, too, and the least one but for the search's grid.
+  // With the effort for control they are bounds, too, and little larger.
   const std::vector<StageCertificate> quick = certify(motion, problem.settings.safe_set, budgets);
+  const SafeSet& safe_set = problem.settings.safe_set;
+  const double parts = 2.0 * static_cast<double>(safe_set.dim() + safe_set.obstacles.size());
   for (std::size_t k = 0; k < quick.size(); ++k) {
-    EXPECT_LE(quick[k].value, 1.02 * certificates[k].value) << name;
+    EXPECT_LE(quick[k].value, 1.02 * certificates[k].value + 1e-4 * parts) << name;
     EXPECT_GE(quick[k].value, lower_limit(truth.stages[k])) << name;
     EXPECT_GE(quick[k].mixture, lower_limit(truth.stages[k])) << name;
   }

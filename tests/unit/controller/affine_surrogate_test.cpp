@@ -226,6 +226,17 @@ TEST(AffineSurrogate, error_and_region_bound_what_simulated_states_do) {
         EXPECT_LE(distance[i], 1.1 * stages[k].error[i] + 1e-14)
             << one.name << ", stage " << k << ", coordinate " << i;
       }
+      for (std::size_t order = 0; order < kHigherOrders.size(); ++order) {
+        const Points offset = pairs.state[k] - pairs.surrogate[k];
+        const double p = kHigherOrders[order];
+        const Eigen::VectorXd norms =
+            offset.array().abs().pow(p).rowwise().mean().pow(1.0 / p).matrix();
+        for (Eigen::Index i = 0; i < norms.size(); ++i) {
+          // Sample means of these powers are below the truth more often than above it.
+          EXPECT_LE(norms[i], 1.1 * stages[k].higher[order][i] + 1e-14)
+              << one.name << ", stage " << k << ", coordinate " << i << ", order " << p;
+        }
+      }
       EXPECT_LE(stages[k].leaving, 1e-5);
       EXPECT_GE(stages[k].leaving, k == 0 ? 0.0 : stages[k - 1].leaving);
       // 1e-5 of 10,000 paths are a tenth of a path.

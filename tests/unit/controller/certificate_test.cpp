@@ -174,7 +174,7 @@ TEST(Certificate, holds_and_says_something_for_a_bicycle) {
   }
 }
 
-TEST(Certificate, least_effort_gives_the_same_value) {
+TEST(Certificate, least_effort_gives_the_same_value_but_for_what_may_be_left_out) {
   const auto car = dubins_car();
   const Gaussian belief = dubins_belief();
   for (const double wall : {0.6, 1.0, 2.0}) {
@@ -188,10 +188,11 @@ TEST(Certificate, least_effort_gives_the_same_value) {
     const auto every = certify(motion, settings.safe_set, budgets, CertificateEffort::kEvery);
     for (std::size_t k = 0; k < every.size(); ++k) {
       EXPECT_EQ(least[k].particles, every[k].particles);
-      EXPECT_EQ(least[k].surrogate, every[k].surrogate);
-      EXPECT_EQ(least[k].smoothed, every[k].smoothed);
-      // The two searches in t end at different points, each within a few percent of the best.
-      EXPECT_NEAR(least[k].value, every[k].value, 0.03 * every[k].value);
+      EXPECT_GE(least[k].surrogate, every[k].surrogate);
+      EXPECT_GE(least[k].smoothed, every[k].smoothed);
+      // The searches in t end at different points, each within a few percent of the best; and a
+      // part of the unsafe set (there are four walls) is not searched further below 1e-4.
+      EXPECT_LE(least[k].value, 1.03 * every[k].value + 4e-4);
       EXPECT_GE(least[k].mixture, 0.97 * every[k].mixture);
     }
   }

@@ -1,6 +1,7 @@
 #include "controller/certification/part_bound.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -165,6 +166,52 @@ TEST(PartBounds, hold_under_adversarial_errors) {
     if (truth.frequency > 1e-3 && std::min(markov, smooth) < 0.9) ++informative;
   }
   EXPECT_GT(informative, 20);
+}
+
+TEST(TailBound, holds_under_adversarial_errors) {
+  Generator generator(129);
+  int informative = 0;
+  for (int repetition = 0; repetition < 60; ++repetition) {
+    const Perturbed state = random_state(generator, 2, repetition % 3 == 0);
+    const UnsafePart part = random_part(generator, state);
+    const Gaussian law{.mean = state.mean, .covariance = state.rest + state.smoothing};
+    // The worst error of a given size: straight towards the part, wherever the state is.
+    const double size =
+        std::sqrt(state.smoothing(0, 0)) * std::pow(10.0, uniform(generator, -1.5, 0.3));
+    NormalSampler draw(law.covariance);
+    double frequency = 0.0;
+    std::array<Eigen::VectorXd, kHigherOrders.size()> norms;
+    norms.fill(Eigen::VectorXd::Zero(2));
+    for (int i = 0; i < kSamples; ++i) {
+      const Eigen::VectorXd z = law.mean + draw(generator);
+      const Eigen::VectorXd towards = z.cwiseMax(part.box.lower).cwiseMin(part.box.upper) - z;
+      const double reach = size * std::abs(uniform(generator, -1.0, 1.0));
+      const Eigen::VectorXd error = towards.norm() <= reach ? towards : Eigen::VectorXd(0.0 * z);
+      if (inside(part.box, z + error)) frequency += 1.0 / kSamples;
+      for (std::size_t k = 0; k < norms.size(); ++k) {
+        norms[k] += error.array().pow(kHigherOrders[k]).matrix() / kSamples;
+      }
+    }
+    const double allowance = 5.0 * std::sqrt(frequency * (1.0 - frequency) / kSamples) + 1e-15;
+    for (std::size_t k = 0; k < norms.size(); ++k) {
+      const Eigen::VectorXd root = norms[k].array().pow(1.0 / kHigherOrders[k]).matrix();
+      const double tail = tail_part_bound(law, root, kHigherOrders[k], part);
+      EXPECT_GE(tail, frequency - allowance) << repetition;
+      EXPECT_GE(far_part_bound(law, root, kHigherOrders[k], part, 1e-3), frequency - allowance);
+      if (frequency > 1e-3 && tail < 0.9) ++informative;
+    }
+  }
+  EXPECT_GT(informative, 20);
+}
+
+TEST(TailBound, says_one_where_nothing_is_known_and_nearly_nothing_far_away) {
+  const Gaussian law{.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()};
+  const UnsafePart far =
+      part_of(Eigen::Vector2d(10.0, -kInfinity), Eigen::Vector2d(kInfinity, kInfinity));
+  const Eigen::Vector2d small(0.05, 0.05);
+  EXPECT_LT(far_part_bound(law, small, 8, far, 1e-8), 1e-8);
+  EXPECT_EQ(tail_part_bound(law, Eigen::Vector2d(kInfinity, 0.05), 8, far), 1.0);
+  EXPECT_EQ(far_part_bound(law, Eigen::Vector2d(kInfinity, 0.05), 8, far, 1e-8), 1.0);
 }
 
 TEST(SmoothBound, holds_for_an_error_along_one_axis_of_a_correlated_part) {

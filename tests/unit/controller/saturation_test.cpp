@@ -1,7 +1,9 @@
 #include "controller/certification/saturation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <random>
 #include <vector>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
@@ -85,6 +87,56 @@ TEST(Saturation, fit_equals_numerical_quadrature) {
     EXPECT_GE(actual.mean, clamp.lower);
     EXPECT_LE(actual.mean, clamp.upper);
   }
+}
+
+TEST(Saturation, higher_norms_equal_simulated_ones) {
+  Generator generator(93);
+  std::normal_distribution<double> normal;
+  for (const Clamp& clamp : {Clamp{0.0, 1.0, -0.5, 0.5}, Clamp{2.0, 0.5, -2.0, 2.0},
+                             Clamp{0.3, 1.0, -1.5, 2.5}, Clamp{1.5, 1.0, -1.0, 1.0}}) {
+    const SaturationFit affine = fit(clamp);
+    const auto norms =
+        saturation_residual_norms(affine, clamp.mean, clamp.deviation, clamp.lower, clamp.upper);
+    std::array<double, kHigherOrders.size()> sums{};
+    constexpr int kDraws = 400000;
+    for (int i = 0; i < kDraws; ++i) {
+      const double offset = clamp.deviation * normal(generator);
+      const double q = std::clamp(clamp.mean + offset, clamp.lower, clamp.upper) - affine.mean -
+                       affine.slope * offset;
+      for (std::size_t k = 0; k < sums.size(); ++k) {
+        sums[k] += std::pow(q, kHigherOrders[k]) / kDraws;
+      }
+    }
+    for (std::size_t k = 0; k < sums.size(); ++k) {
+      // The mean of an eighth power of a variable with normal tails is within some 10 %, its root
+      // within 2 %.
+      EXPECT_NEAR(norms[k], std::pow(sums[k], 1.0 / kHigherOrders[k]), 0.02 * norms[k])
+          << clamp.mean << " order " << kHigherOrders[k];
+    }
+  }
+}
+
+TEST(Saturation, higher_norms_grow_with_the_order_from_the_mean_square) {
+  Generator generator(94);
+  for (int repetition = 0; repetition < 200; ++repetition) {
+    // Not so far outside that the mean square is all allowance for cancellation.
+    const double deviation = std::pow(10.0, uniform(generator, -1.0, 1.0));
+    const double lower = uniform(generator, -3.0, 3.0);
+    const double upper = lower + uniform(generator, 0.01, 4.0);
+    const Clamp clamp{.mean = uniform(generator, lower - 2.0 * deviation, upper + 2.0 * deviation),
+                      .deviation = deviation,
+                      .lower = lower,
+                      .upper = upper};
+    const SaturationFit affine = fit(clamp);
+    const auto norms =
+        saturation_residual_norms(affine, clamp.mean, clamp.deviation, clamp.lower, clamp.upper);
+    // The mean square carries an allowance for cancellation.
+    EXPECT_GE(norms[0], affine.residual * (1.0 - 1e-6) - 1e-6 * clamp.deviation);
+    EXPECT_GE(norms[1], norms[0]);
+  }
+  const auto lost = saturation_residual_norms({}, std::nan(""), 1.0, -1.0, 1.0);
+  EXPECT_TRUE(std::isinf(lost[0]));
+  EXPECT_EQ(saturation_residual_norms({}, 0.0, 0.0, -1.0, 1.0)[1], 0.0);
 }
 
 TEST(Saturation, residual_of_rare_saturation_is_small_and_not_below_the_truth) {
