@@ -231,6 +231,25 @@ std::vector<int> allot_levels(const Eigen::Ref<const Eigen::VectorXd>& variances
   return levels;
 }
 
+const std::vector<QuantiserEntry>& quantisers() {
+  static const std::vector<QuantiserEntry> table = {
+      {"product", "grid of optimal points on each axis of the covariance; fast, W2 exact",
+       QuantiserKind::kProduct},
+      {"lloyd", "points spread by Lloyd's method: less W2, and a slow first call",
+       QuantiserKind::kLloyd},
+  };
+  return table;
+}
+
+QuantiserKind quantiser_kind(std::string_view name) {
+  std::string known;
+  for (const QuantiserEntry& entry : quantisers()) {
+    if (entry.name == name) return entry.kind;
+    known += (known.empty() ? "" : ", ") + entry.name;
+  }
+  throw std::invalid_argument("no quantiser '" + std::string(name) + "'; known are: " + known);
+}
+
 GaussianQuantisation quantise(const Gaussian& gaussian, int budget, QuantiserKind kind) {
   check_gaussian(gaussian);
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gaussian.covariance);

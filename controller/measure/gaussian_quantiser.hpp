@@ -9,6 +9,8 @@
 //   quantise(belief, 100, QuantiserKind::kLloyd).w2;  // a bound on it; no larger than the former
 #pragma once
 
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,6 +23,18 @@ enum class QuantiserKind {
   kProduct,  ///< a grid: microseconds
   kLloyd,    ///< centroidal: 8 to 11 % less W2 in two or three dimensions, and a slow first call
 };
+
+struct QuantiserEntry {
+  std::string name;
+  std::string summary;
+  QuantiserKind kind = QuantiserKind::kProduct;
+};
+
+/// The table of quantisers: "product" and "lloyd".
+[[nodiscard]] const std::vector<QuantiserEntry>& quantisers();
+
+/// Throws std::invalid_argument on an unknown name.
+[[nodiscard]] QuantiserKind quantiser_kind(std::string_view name);
 
 struct GaussianQuantisation {
   DiscreteMeasure measure;

@@ -146,6 +146,11 @@ const Plan& Planner::prescribe(const Gaussian& belief,
   return prescribed_;
 }
 
+void Planner::prepare(const Eigen::MatrixXd& covariance) {
+  (void)quantise_belief(
+      {.mean = Eigen::VectorXd::Zero(dynamics_.state_dim()), .covariance = covariance});
+}
+
 HorizonCostTerms Planner::terms(const Eigen::MatrixXd& noise_covariance,
                                 const GaussianQuantisation& belief) const {
   return {.dynamics = dynamics_,
@@ -164,7 +169,7 @@ GaussianQuantisation Planner::quantise_belief(const Gaussian& belief) {
   if (!last_belief_ || last_covariance_ != belief.covariance) {
     const Gaussian centred{.mean = Eigen::VectorXd::Zero(belief.mean.size()),
                            .covariance = belief.covariance};
-    last_belief_ = quantise(centred, settings_.state_points);
+    last_belief_ = quantise(centred, settings_.state_points, settings_.quantiser);
     last_covariance_ = belief.covariance;
   }
   GaussianQuantisation result = *last_belief_;

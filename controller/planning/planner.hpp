@@ -31,6 +31,7 @@ struct PlannerSettings {
   std::optional<Eigen::MatrixXd> feedback_gain;  ///< input_dim x state_dim; else from LQR
   std::string solver = "lbfgs";
   std::string propagator = "compressed";
+  QuantiserKind quantiser = QuantiserKind::kProduct;  ///< of the belief
   int state_points = 100;
   int noise_points = 100;
   int compressed_points = 100;
@@ -75,6 +76,11 @@ class Planner {
   /// the next call, which does not start from it. Throws std::invalid_argument as `plan`, and if
   /// the inputs are of another size, not finite or not within the bounds.
   const Plan& prescribe(const Gaussian& belief, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+
+  /// Quantises a Gaussian of this covariance (state_dim x state_dim), so that the quantiser's slow
+  /// first call for beliefs like it is over before a control loop starts. No plan depends on it.
+  /// Throws std::invalid_argument as `plan`.
+  void prepare(const Eigen::MatrixXd& covariance);
 
   /// Forgets the last plan: the next one is a cold start.
   void reset() { plan_.reset(); }

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "controller/measure/gaussian_quantiser.hpp"
 #include "controller/planning/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "harness/cli/commands.hpp"
@@ -40,8 +41,9 @@ std::vector<Table> tables() {
   for (const ShippedScenario& scenario : shipped_scenarios()) {
     scenarios.items.push_back({scenario.name, scenario.description});
   }
-  return {make_table("systems", systems()), make_table("plants", plants()),
-          make_table("solvers", solvers()), make_table("propagators", propagators()), scenarios};
+  return {make_table("systems", systems()),       make_table("plants", plants()),
+          make_table("solvers", solvers()),       make_table("propagators", propagators()),
+          make_table("quantisers", quantisers()), scenarios};
 }
 
 std::string as_text(const std::vector<Table>& chosen) {
@@ -82,8 +84,10 @@ void add_list_command(CLI::App& app, int& exit_code) {
   command->footer("Example: qsmpc list scenarios");
   const auto kind = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("kind", *kind, "systems, plants, solvers, propagators or scenarios")
-      ->check(CLI::IsMember({"systems", "plants", "solvers", "propagators", "scenarios"}));
+  command
+      ->add_option("kind", *kind, "systems, plants, solvers, propagators, quantisers or scenarios")
+      ->check(CLI::IsMember(
+          {"systems", "plants", "solvers", "propagators", "quantisers", "scenarios"}));
   command->add_flag("--json", *json, "as JSON");
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }

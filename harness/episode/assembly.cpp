@@ -14,7 +14,8 @@ PlannerSettings planner_settings(const Scenario& scenario) {
   settings.closed_loop = controller.policy == "closed_loop";
   settings.feedback_gain = controller.feedback_gain;
   settings.solver = controller.solver;
-  settings.propagator = controller.propagate_noise ? "compressed" : "noise_free";
+  settings.propagator = controller.propagate_noise ? controller.propagator : "noise_free";
+  settings.quantiser = quantiser_kind(controller.quantisation.quantiser);
   settings.state_points = controller.quantisation.state;
   settings.noise_points = controller.quantisation.noise;
   settings.compressed_points = controller.quantisation.compressed;

@@ -45,7 +45,11 @@ class Episode {
         planner_(*model_, planner_settings(scenario)),
         disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance_covariance),
         belief_{.mean = scenario.initial_state.mean,
-                .covariance = scenario.initial_state.covariance} {}
+                .covariance = scenario.initial_state.covariance} {
+    // The beliefs that will come have these; the last that was prepared for is at hand at once.
+    planner_.prepare(scenario.disturbance_covariance);
+    planner_.prepare(scenario.initial_state.covariance);
+  }
 
   Trace run() {
     Trace trace = trace_header(scenario_, options_.seed);

@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "controller/measure/gaussian_quantiser.hpp"
 #include "controller/planning/ocp_solver.hpp"
+#include "controller/prediction/propagator.hpp"
 
 namespace qsmpc {
 namespace {
@@ -20,14 +22,32 @@ std::size_t farthest_near(std::string_view name) {
   return std::max<std::size_t>(2, name.size() / 3);
 }
 
+template <class Entries>
+std::vector<std::string> names_of(const Entries& entries) {
+  std::vector<std::string> names;
+  names.reserve(entries.size());
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
 }  // namespace
 
 const std::vector<std::string>& solver_names() {
+  static const std::vector<std::string> names = names_of(solvers());
+  return names;
+}
+
+const std::vector<std::string>& propagator_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all;
-    for (const SolverEntry& solver : solvers()) all.push_back(solver.name);
+    std::vector<std::string> all = names_of(propagators());
+    std::erase(all, "noise_free");
     return all;
   }();
+  return names;
+}
+
+const std::vector<std::string>& quantiser_names() {
+  static const std::vector<std::string> names = names_of(quantisers());
   return names;
 }
 

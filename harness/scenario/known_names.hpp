@@ -10,6 +10,9 @@
 namespace qsmpc {
 
 [[nodiscard]] const std::vector<std::string>& solver_names();
+/// Those that propagate noise; `propagate_noise: false` stands for the other, "noise_free".
+[[nodiscard]] const std::vector<std::string>& propagator_names();
+[[nodiscard]] const std::vector<std::string>& quantiser_names();
 [[nodiscard]] const std::vector<std::string>& policy_names();
 [[nodiscard]] const std::vector<std::string>& penalty_shape_names();
 [[nodiscard]] const std::vector<std::string>& plant_kind_names();

@@ -34,9 +34,10 @@ struct Scenario {
     double radius = 0.5;    ///< m, in the plane of position (or over all states without one)
   };
   struct Quantisation {
-    int state = 100;       ///< points of the belief
-    int noise = 100;       ///< points of the process noise
-    int compressed = 100;  ///< points kept after each step
+    int state = 100;                    ///< points of the belief
+    int noise = 100;                    ///< points of the process noise
+    int compressed = 100;               ///< points kept after each step
+    std::string quantiser = "product";  ///< of the belief; a name from `qsmpc list quantisers`
   };
   struct Cost {
     Eigen::MatrixXd state;     ///< Q, state_dim x state_dim
@@ -56,6 +57,8 @@ struct Scenario {
     std::string solver = "lbfgs";                  ///< a name from `qsmpc list solvers`
     Quantisation quantisation;
     bool propagate_noise = true;
+    /// How, in the prediction; a name from `qsmpc list propagators`. "compressed" without noise.
+    std::string propagator = "compressed";
     Cost cost;
     Penalty penalty;
     Eigen::VectorXd input_lower;  ///< input_dim

@@ -105,6 +105,7 @@ class ScenarioReader {
   Box read_box(Section& section, bool& any);
   void read_target();
   void read_controller();
+  void read_propagation(Section& controller);
   void read_quantisation(Section& controller);
   void read_cost(Section& controller);
   void read_penalty(Section& controller);
@@ -282,12 +283,24 @@ void ScenarioReader::read_controller() {
   controller.solver = section.name("solver", controller.solver, solver_names());
   controller.max_iterations =
       section.whole("max_iterations", controller.max_iterations, kIterationsRange);
-  controller.propagate_noise = section.flag("propagate_noise", controller.propagate_noise);
+  read_propagation(section);
   read_quantisation(section);
   read_cost(section);
   read_penalty(section);
   read_input_bounds(section);
   section.refuse_unread();
+}
+
+// A way of propagating noise that is then not propagated is a contradiction, unless it is the
+// default: that stands in every resolved scenario.
+void ScenarioReader::read_propagation(Section& section) {
+  Scenario::Controller& controller = scenario_.controller;
+  controller.propagate_noise = section.flag("propagate_noise", controller.propagate_noise);
+  const std::string fallback = controller.propagator;
+  controller.propagator = section.name("propagator", fallback, propagator_names());
+  if (!controller.propagate_noise && controller.propagator != fallback) {
+    section.note("propagator", fallback + ", or controller.propagate_noise: true");
+  }
 }
 
 void ScenarioReader::read_quantisation(Section& controller) {
@@ -296,6 +309,7 @@ void ScenarioReader::read_quantisation(Section& controller) {
   points.state = section.whole("state", points.state, kPointsRange);
   points.noise = section.whole("noise", points.noise, kPointsRange);
   points.compressed = section.whole("compressed", points.compressed, kPointsRange);
+  points.quantiser = section.name("quantiser", points.quantiser, quantiser_names());
   section.refuse_unread();
 }
 

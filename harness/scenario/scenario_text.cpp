@@ -97,9 +97,10 @@ std::string controller_text(const Scenario::Controller& controller,
   const Scenario::Quantisation& points = controller.quantisation;
   const Scenario::Penalty& penalty = controller.penalty;
   out += fmt::format("  solver: {}\n", controller.solver);
-  out += fmt::format("  quantisation: {{state: {}, noise: {}, compressed: {}}}\n", points.state,
-                     points.noise, points.compressed);
-  out += fmt::format("  propagate_noise: {}\n", controller.propagate_noise);
+  out += fmt::format("  quantisation: {{state: {}, noise: {}, compressed: {}, quantiser: {}}}\n",
+                     points.state, points.noise, points.compressed, points.quantiser);
+  out += fmt::format("  propagate_noise: {}\n  propagator: {}\n", controller.propagate_noise,
+                     controller.propagator);
   out += fmt::format("  cost:\n    state: {}\n    input: {}\n    terminal: {}\n",
                      square(controller.cost.state), square(controller.cost.input),
                      square(controller.cost.terminal));

@@ -260,6 +260,8 @@ TEST(Run, a_fault_of_the_plant_is_an_outcome_with_mujocos_words) {
 TEST(Commands, list_and_validate_and_help) {
   EXPECT_THAT(run_qsmpc({"list"}).output, HasSubstr("dubins_obstacles"));
   EXPECT_THAT(run_qsmpc({"list", "systems", "--json"}).output, HasSubstr("\"dubins\""));
+  EXPECT_THAT(run_qsmpc({"list", "propagators"}).output, HasSubstr("moment_matched"));
+  EXPECT_THAT(run_qsmpc({"list", "quantisers"}).output, HasSubstr("lloyd"));
   EXPECT_EQ(run_qsmpc({"list", "wheels"}).exit_code, 2);
   EXPECT_EQ(run_qsmpc({"validate", "dubins_obstacles"}).exit_code, 0);
   for (const char* command : {"run", "predict", "render", "report", "list", "validate"}) {

@@ -170,6 +170,13 @@ TEST(GaussianQuantiser, rotated_singular_covariance_keeps_its_moments) {
   EXPECT_NEAR(quantised.w2 * quantised.w2, 3.0 * normal_quantiser(20).distortion, kRounding);
 }
 
+TEST(GaussianQuantiser, kinds_have_the_names_of_the_table) {
+  EXPECT_EQ(quantiser_kind("product"), QuantiserKind::kProduct);
+  EXPECT_EQ(quantiser_kind("lloyd"), QuantiserKind::kLloyd);
+  EXPECT_EQ(quantisers().size(), 2U);
+  EXPECT_THROW((void)quantiser_kind("Lloyd"), std::invalid_argument);
+}
+
 TEST(GaussianQuantiser, refuses_what_is_no_gaussian) {
   const double nan = std::nan("");
   const Eigen::Vector2d mean(0.0, 0.0);

@@ -223,6 +223,33 @@ TEST(Planner, one_stage_and_one_point_suffice) {
   }
 }
 
+TEST(Planner, the_belief_is_quantised_by_the_chosen_quantiser) {
+  const auto car = dubins_car();
+  for (const QuantiserEntry& entry : quantisers()) {
+    PlannerSettings settings = dubins_settings();
+    settings.quantiser = entry.kind;
+    Planner planner(*car, settings);
+    const GaussianQuantisation& belief = planner.plan(dubins_belief()).belief;
+    const GaussianQuantisation expected =
+        quantise(dubins_belief(), settings.state_points, entry.kind);
+    EXPECT_EQ(belief.w2, expected.w2) << entry.name;
+    EXPECT_EQ(belief.measure.locations, expected.measure.locations) << entry.name;
+  }
+}
+
+TEST(Planner, preparing_for_beliefs_changes_no_plan) {
+  const auto car = dubins_car();
+  PlannerSettings settings = dubins_settings();
+  settings.quantiser = QuantiserKind::kLloyd;
+  Planner prepared(*car, settings);
+  prepared.prepare(settings.noise_covariance);
+  Planner other(*car, settings);
+  EXPECT_EQ(prepared.plan(dubins_belief()).policy.inputs,
+            other.plan(dubins_belief()).policy.inputs);
+  EXPECT_THROW(prepared.prepare(Eigen::MatrixXd::Identity(2, 2)), std::invalid_argument);
+  EXPECT_THROW(prepared.prepare(-Eigen::MatrixXd::Identity(3, 3)), std::invalid_argument);
+}
+
 TEST(Planner, prescribes_given_inputs_without_optimising) {
   const auto car = dubins_car();
   Planner planner(*car, dubins_settings());

@@ -176,6 +176,28 @@ TEST(Episode, leaving_the_noise_out_of_the_prediction_keeps_the_belief_only) {
   }
 }
 
+// Compression loses covariance at every step, matched moments do not.
+TEST(Episode, a_chosen_propagator_and_quantiser_are_what_it_is_predicted_with) {
+  const auto plan_of = [](const std::string& propagator, const std::string& quantiser) {
+    const Trace trace =
+        run_episode(small_scenario({"limit.steps=2", "controller.propagator=" + propagator,
+                                    "controller.quantisation.quantiser=" + quantiser}),
+                    {.seed = 6});
+    EXPECT_EQ(trace.steps.size(), 2U);
+    return trace.steps.front();
+  };
+  const auto last_variance = [](const StepRecord& step) {
+    return covariance_of(step.particles.back()).trace();
+  };
+  const StepRecord usual = plan_of("compressed", "product");
+  const StepRecord chosen = plan_of("moment_matched", "lloyd");
+  EXPECT_LT(chosen.budgets[0].total, usual.budgets[0].total);
+  EXPECT_GT(last_variance(chosen), 1.05 * last_variance(usual));
+  // Each key on its own, too.
+  EXPECT_EQ(plan_of("compressed", "lloyd").budgets[0].total, chosen.budgets[0].total);
+  EXPECT_GT(last_variance(plan_of("moment_matched", "product")), 1.05 * last_variance(usual));
+}
+
 // A trace is what reports and videos are made from: every stage must be there, and consistent.
 TEST(Episode, records_every_stage) {
   const Trace trace = run_episode(small_scenario(), {.seed = 5});

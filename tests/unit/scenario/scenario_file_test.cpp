@@ -6,6 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/prediction/propagator.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
@@ -58,7 +60,9 @@ void expect_equal(const Scenario::Controller& a, const Scenario::Controller& b) 
   EXPECT_EQ(a.quantisation.state, b.quantisation.state);
   EXPECT_EQ(a.quantisation.noise, b.quantisation.noise);
   EXPECT_EQ(a.quantisation.compressed, b.quantisation.compressed);
+  EXPECT_EQ(a.quantisation.quantiser, b.quantisation.quantiser);
   EXPECT_EQ(a.propagate_noise, b.propagate_noise);
+  EXPECT_EQ(a.propagator, b.propagator);
   EXPECT_EQ(a.cost.state, b.cost.state);
   EXPECT_EQ(a.cost.input, b.cost.input);
   EXPECT_EQ(a.cost.terminal, b.cost.terminal);
@@ -91,6 +95,8 @@ TEST(ScenarioFile, what_is_left_out_gets_its_documented_default) {
   EXPECT_TRUE(scenario.safe_set.obstacles.empty());
   EXPECT_EQ(scenario.target.radius, 0.5);
   EXPECT_EQ(scenario.controller.horizon, 8);
+  EXPECT_EQ(scenario.controller.quantisation.quantiser, "product");
+  EXPECT_EQ(scenario.controller.propagator, "compressed");
   EXPECT_FALSE(scenario.controller.feedback_gain.has_value());
   EXPECT_EQ(scenario.controller.cost.state, Eigen::MatrixXd::Identity(3, 3));
   EXPECT_EQ(scenario.controller.cost.terminal, scenario.controller.cost.state);
@@ -121,8 +127,9 @@ controller:
   policy: open_loop
   feedback_gain: [[0.1, 0.2, 0.3]]
   solver: lbfgs
-  quantisation: {state: 11, noise: 12, compressed: 13}
+  quantisation: {state: 11, noise: 12, compressed: 13, quantiser: lloyd}
   propagate_noise: false
+  propagator: compressed
   cost: {state: [1, 2, 3], input: [[4]], terminal: [5, 6, 7]}
   penalty: {shape: thesis, box: 21, obstacle: 22, length: 23}
   input_bounds: {yaw_rate: [-0.5, 0.75]}
@@ -167,6 +174,7 @@ TEST(ScenarioFile, every_controller_key_reaches_its_value) {
   EXPECT_EQ(controller.quantisation.state, 11);
   EXPECT_EQ(controller.quantisation.noise, 12);
   EXPECT_EQ(controller.quantisation.compressed, 13);
+  EXPECT_EQ(controller.quantisation.quantiser, "lloyd");
   EXPECT_FALSE(controller.propagate_noise);
   EXPECT_EQ(controller.cost.state.diagonal(), Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(controller.cost.input(0, 0), 4.0);
@@ -178,6 +186,20 @@ TEST(ScenarioFile, every_controller_key_reaches_its_value) {
   EXPECT_EQ(controller.input_lower[0], -0.5);
   EXPECT_EQ(controller.input_upper[0], 0.75);
   EXPECT_EQ(controller.max_iterations, 31);
+}
+
+TEST(ScenarioFile, every_propagator_of_noise_and_every_quantiser_can_be_named) {
+  for (const PropagatorEntry& entry : propagators()) {
+    if (entry.name == "noise_free") continue;  // it is propagate_noise: false
+    const Scenario scenario = minimal_with({"controller.propagator=" + entry.name});
+    EXPECT_EQ(scenario.controller.propagator, entry.name);
+    expect_round_trip(scenario);
+  }
+  for (const QuantiserEntry& entry : quantisers()) {
+    const Scenario scenario = minimal_with({"controller.quantisation.quantiser=" + entry.name});
+    EXPECT_EQ(scenario.controller.quantisation.quantiser, entry.name);
+    expect_round_trip(scenario);
+  }
 }
 
 TEST(ScenarioFile, every_shipped_scenario_is_valid_and_named_like_its_file) {
