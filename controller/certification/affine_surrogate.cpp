@@ -53,15 +53,16 @@ StageError moved(const Eigen::MatrixXd& sizes, const StageError& error) {
 /// with Φ the products of the affine maps' linear parts.
 class SurrogateRecursion {
  public:
-  explicit SurrogateRecursion(const PredictedMotion& motion)
+  SurrogateRecursion(const PredictedMotion& motion, double core)
       : motion_(motion),
-        affine_(affine_coordinates(motion.dynamics)),
+        core_{.affine = affine_coordinates(motion.dynamics), .reach = core},
         law_(motion.belief),
         error_{.mean_square = Eigen::VectorXd::Zero(law_.mean.size()),
                .higher = zero_norms(law_.mean.size()),
                .largest = Eigen::VectorXd::Zero(law_.mean.size())} {
     // Then a residual is known on the whole space, and only its changes need the core.
-    fits_everywhere_ = std::all_of(affine_.begin(), affine_.end(), [](bool one) { return one; });
+    fits_everywhere_ =
+        std::all_of(core_.affine.begin(), core_.affine.end(), [](bool one) { return one; });
     if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
       residual_.emplace(*unicycle, law_.mean.size());
       fits_everywhere_ = true;
@@ -91,7 +92,7 @@ class SurrogateRecursion {
         })) {
       return false;
     }
-    const StageFit fit = fit_stage(motion_, stage, law_, error_, inputs, affine_);
+    const StageFit fit = fit_stage(motion_, stage, law_, error_, inputs, core_);
     before.transition = fit.transition;
     const StageError difference = residual_difference(fit, inputs);
     outside_ += fit.outside;
@@ -154,7 +155,7 @@ class SurrogateRecursion {
   };
 
   const PredictedMotion& motion_;
-  std::vector<bool> affine_;
+  CoreShape core_;
   Gaussian law_;
   StageError error_;
   bool fits_everywhere_ = false;
@@ -184,8 +185,8 @@ Eigen::Matrix2d beside_heading(const UnicycleStructure& unicycle,
 
 }  // namespace
 
-std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion) {
-  SurrogateRecursion recursion(motion);
+std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion, double core) {
+  SurrogateRecursion recursion(motion, core);
   std::vector<SurrogateStage> stages = {recursion.stage()};
   bool known = true;
   for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {

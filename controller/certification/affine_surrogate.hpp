@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "controller/certification/higher_norms.hpp"
+#include "controller/certification/stage_fit.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
@@ -30,7 +31,8 @@ struct SurrogateStage {
 /// The surrogates of stages 0 … horizon of `motion`. Where nothing finite is known (a pole in
 /// reach, a system without derivative bounds, entries that are not finite) `error` is infinite,
 /// `leaving` is 1 and `region` everything, from there on.
-[[nodiscard]] std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion);
+[[nodiscard]] std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion,
+                                                            double core = kWideCore);
 
 /// Covariance of a part n of z_stage, as wide as is known, that is independent both of z − n and of
 /// (x − z)_axes · 1{inside}: what smooths bounds on the coordinates `axes`. stage ≥ 1;

@@ -15,6 +15,8 @@ namespace {
 constexpr double kNegligible = 1e-8;
 // What it may add without a search that takes long.
 constexpr double kWorthwhile = 1e-4;
+// From where on another core, which alone costs some 1e-2, may help.
+constexpr double kTryNarrow = 0.03;
 
 double unsafe_mass(const DiscreteMeasure& measure, const SafeSet& safe_set) {
   double mass = 0.0;
@@ -61,6 +63,29 @@ SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
   return {.markov = std::min(1.0, bounds.markov), .smooth = std::min(1.0, bounds.smooth)};
 }
 
+/// C3 and C4 of all stages. Where they are large, the surrogate with the narrow core is tried, too:
+/// it is left more often, and its residuals are smaller.
+std::vector<SurrogateBounds> surrogate_bounds_of_stages(const PredictedMotion& motion,
+                                                        const SafeSet& safe_set,
+                                                        CertificateEffort effort) {
+  const std::vector<UnsafePart> parts = unsafe_parts(safe_set);
+  std::vector<SurrogateBounds> least(motion.policy.horizon());
+  for (const double core : {kWideCore, kNarrowCore}) {
+    const std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core);
+    double largest = 0.0;
+    for (std::size_t k = 0; k < least.size(); ++k) {
+      const SurrogateBounds bounds = surrogate_bounds(
+          motion, parts, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1], effort);
+      least[k] = {.markov = std::min(least[k].markov, bounds.markov),
+                  .smooth = std::min(least[k].smooth, bounds.smooth)};
+      largest = std::max(largest, least[k].smooth);
+    }
+    // Without a core in use the narrow one changes nothing.
+    if (largest < kTryNarrow || surrogates.back().leaving == 0.0) break;
+  }
+  return least;
+}
+
 /// The radius that the thesis would use: Eq. 4-4 and 4-6, without noise and without the feedback.
 /// Where no global constant is known, it is that of the closed loop on its region.
 std::vector<double> thesis_radii(const PredictedMotion& motion,
@@ -81,17 +106,15 @@ std::vector<double> thesis_radii(const PredictedMotion& motion,
 std::vector<StageCertificate> certify(const PredictedMotion& motion, const SafeSet& safe_set,
                                       const std::vector<StageBudget>& budgets,
                                       CertificateEffort effort) {
-  const std::vector<UnsafePart> parts = unsafe_parts(safe_set);
-  const std::vector<SurrogateStage> surrogates = affine_surrogates(motion);
+  const std::vector<SurrogateBounds> surrogates =
+      surrogate_bounds_of_stages(motion, safe_set, effort);
   const std::vector<double> radii = thesis_radii(motion, budgets);
   std::vector<StageCertificate> certificates(motion.policy.horizon());
   for (std::size_t k = 0; k < certificates.size(); ++k) {
     StageCertificate& certificate = certificates[k];
     const DiscreteMeasure& particles = motion.prediction.stages[k + 1];
-    const SurrogateBounds bounds = surrogate_bounds(motion, parts, static_cast<Eigen::Index>(k) + 1,
-                                                    surrogates[k + 1], effort);
-    certificate.surrogate = bounds.markov;
-    certificate.smoothed = bounds.smooth;
+    certificate.surrogate = surrogates[k].markov;
+    certificate.smoothed = surrogates[k].smooth;
     const double leaving = budgets[k + 1].leaving;
     certificate.particles =
         std::min(1.0, leaving + worst_case_probability(particles, safe_set, budgets[k + 1].total));

@@ -14,10 +14,6 @@ namespace qsmpc {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// The core reaches this many standard deviations from the mean, in every coordinate in which f is
-// not affine and in every input: 4e-8 lies outside of each.
-constexpr double kCore = 5.5;
-
 /// The norms of polynomials of Z that the bounds of order p need, worked out once.
 struct NormalNorms {
   explicit NormalNorms(int order)
@@ -79,21 +75,22 @@ double quadratic_norm(const Eigen::MatrixXd& most, const Moments& moments, std::
 
 Neighbourhood neighbourhood(const PredictedMotion& motion, const Gaussian& law,
                             const Eigen::VectorXd& largest, const Eigen::MatrixXd& gain,
-                            const std::vector<InputFit>& inputs, const std::vector<bool>& affine) {
+                            const std::vector<InputFit>& inputs, const CoreShape& core) {
   const Eigen::Index states = law.mean.size();
   const Eigen::Index total = states + static_cast<Eigen::Index>(inputs.size());
   Neighbourhood near{Eigen::VectorXd(total), Eigen::VectorXd(total), Eigen::VectorXd(total)};
   for (Eigen::Index a = 0; a < states; ++a) {
-    near.reach[a] =
-        affine[a] ? kInfinity : kCore * std::sqrt(std::max(0.0, law.covariance(a, a))) + largest[a];
+    near.reach[a] = core.affine[a]
+                        ? kInfinity
+                        : core.reach * std::sqrt(std::max(0.0, law.covariance(a, a))) + largest[a];
     near.lower[a] = law.mean[a] - near.reach[a];
     near.upper[a] = law.mean[a] + near.reach[a];
   }
   for (std::size_t b = 0; b < inputs.size(); ++b) {
     const Eigen::Index a = states + static_cast<Eigen::Index>(b);
     const InputFit& input = inputs[b];
-    const double span =
-        kCore * input.deviation + gain.row(static_cast<Eigen::Index>(b)).cwiseAbs().dot(largest);
+    const double span = core.reach * input.deviation +
+                        gain.row(static_cast<Eigen::Index>(b)).cwiseAbs().dot(largest);
     const double least = motion.policy.bounds.lower[static_cast<Eigen::Index>(b)];
     const double most = motion.policy.bounds.upper[static_cast<Eigen::Index>(b)];
     const double centre = input.saturation.mean;
@@ -312,11 +309,11 @@ void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
 
 /// P(z outside of the core): two tails for every coordinate and input that the core restricts.
 double outside_core(const Gaussian& law, const std::vector<InputFit>& inputs,
-                    const std::vector<bool>& affine) {
-  const double tails = 2.0 * normal_cumulative(-kCore);
+                    const CoreShape& core) {
+  const double tails = 2.0 * normal_cumulative(-core.reach);
   double sum = 0.0;
   for (Eigen::Index a = 0; a < law.mean.size(); ++a) {
-    if (!affine[a] && law.covariance(a, a) > 0.0) sum += tails;
+    if (!core.affine[a] && law.covariance(a, a) > 0.0) sum += tails;
   }
   for (const InputFit& input : inputs) {
     if (input.deviation > 0.0) sum += tails;
@@ -391,17 +388,17 @@ std::vector<bool> affine_coordinates(const Dynamics& dynamics) {
 
 StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaussian& law,
                    const StageError& error, const std::vector<InputFit>& inputs,
-                   const std::vector<bool>& affine) {
+                   const CoreShape& core) {
   const Eigen::MatrixXd& gain = motion.policy.gains[stage];
   const Eigen::Index states = law.mean.size();
-  const Neighbourhood near = neighbourhood(motion, law, error.largest, gain, inputs, affine);
+  const Neighbourhood near = neighbourhood(motion, law, error.largest, gain, inputs, core);
   StageFit fit;
   fit.residual = Eigen::VectorXd::Zero(states);
   fit.largest = Eigen::VectorXd::Zero(states);
   fit.closed_form = Eigen::VectorXd::Zero(states);
   fit.higher = zero_norms(states);
   fit.region = {.lower = near.lower.head(states), .upper = near.upper.head(states)};
-  fit.outside = outside_core(law, inputs, affine);
+  fit.outside = outside_core(law, inputs, core);
   if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
     fit_unicycle(*unicycle, law, gain, inputs, near, fit);
   } else {
@@ -409,7 +406,7 @@ StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaus
   }
   for (Eigen::Index b = 0; b < gain.rows(); ++b) {
     const InputFit& input = inputs[b];
-    const double span = kCore * input.deviation + gain.row(b).cwiseAbs().dot(error.largest);
+    const double span = core.reach * input.deviation + gain.row(b).cwiseAbs().dot(error.largest);
     const double worst =
         largest_saturation_residual(input.saturation, input.mean, span,
                                     motion.policy.bounds.lower[b], motion.policy.bounds.upper[b]);
