@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 
 #include <Eigen/Core>
 
@@ -20,5 +21,18 @@ using HigherNorms = std::array<Eigen::VectorXd, kHigherOrders.size()>;
   norms.fill(Eigen::VectorXd::Zero(dim));
   return norms;
 }
+
+/// The norms of polynomials of a standard normal Z that bounds of order p = kHigherOrders[k] need.
+struct NormalNorms {
+  double first;        ///< ‖Z‖_p
+  double first_twice;  ///< ‖Z‖_2p
+  double fourth;       ///< ‖Z⁴‖_p
+  double fifth;        ///< ‖Z⁵‖_p
+  double square;       ///< ‖Z² − 1‖_p
+  double cube;         ///< ‖Z³ − 3Z‖_p
+};
+
+/// Worked out once. k < kHigherOrders.size().
+[[nodiscard]] const NormalNorms& normal_norms(std::size_t k);
 
 }  // namespace qsmpc

@@ -38,18 +38,27 @@ double mean_square_density(double edge, double mean, double smooth, double rest)
   return height * normal_density((edge - mean) / std::sqrt(variance)) / std::sqrt(variance);
 }
 
+/// P(z ∈ slab of the part in `axis`).
+double slab_probability(const Gaussian& law, const UnsafePart& part, Eigen::Index axis) {
+  const double mean = law.mean[axis];
+  const double lower = part.box.lower[axis];
+  const double upper = part.box.upper[axis];
+  const double deviation = std::sqrt(std::max(0.0, law.covariance(axis, axis)));
+  if (deviation > 0.0) {
+    return normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
+  }
+  return mean >= lower && mean <= upper ? 1.0 : 0.0;
+}
+
 /// C4 on one coordinate: the slab of the part.
 double smooth_slab(const PerturbedGaussian& state, const UnsafePart& part, Eigen::Index axis) {
   const double mean = state.law.mean[axis];
   const double variance = state.law.covariance(axis, axis);
-  const double deviation = std::sqrt(std::max(0.0, variance));
   const double lower = part.box.lower[axis];
   const double upper = part.box.upper[axis];
   const double error = state.error[axis];
   if (!std::isfinite(error) || !std::isfinite(mean)) return 1.0;
-  const double inside =
-      deviation > 0.0 ? normal_probability((lower - mean) / deviation, (upper - mean) / deviation)
-                      : (mean >= lower && mean <= upper ? 1.0 : 0.0);
+  const double inside = slab_probability(state.law, part, axis);
   if (error == 0.0) return inside;
   const double smooth = state.smoothing(axis, axis);
   if (!(smooth > 0.0)) return 1.0;
@@ -125,18 +134,6 @@ double smooth_rectangle(const PerturbedGaussian& state, const UnsafePart& part, 
   if (other > 0.0 && !regular) return 1.0;
   const double spread = other > 0.0 ? determinant / other : smooth(moved, moved);
   return bound + kCurvature * error[moved] * error[moved] / spread;
-}
-
-/// P(z ∈ slab of the part in `axis`).
-double slab_probability(const Gaussian& law, const UnsafePart& part, Eigen::Index axis) {
-  const double mean = law.mean[axis];
-  const double lower = part.box.lower[axis];
-  const double upper = part.box.upper[axis];
-  const double deviation = std::sqrt(std::max(0.0, law.covariance(axis, axis)));
-  if (deviation > 0.0) {
-    return normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
-  }
-  return mean >= lower && mean <= upper ? 1.0 : 0.0;
 }
 
 /// At least P(z ∈ part): the least over its coordinates and, unless one of these is small enough

@@ -3,40 +3,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <optional>
 
-#include "controller/certification/unicycle_residual.hpp"
+#include "controller/certification/unicycle_fit.hpp"
 #include "controller/measure/normal_distribution.hpp"
-#include "controller/measure/normal_norms.hpp"
 
 namespace qsmpc {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// The norms of polynomials of Z that the bounds of order p need, worked out once.
-struct NormalNorms {
-  explicit NormalNorms(int order)
-      : first(normal_power_norm(1, order)),
-        first_twice(normal_power_norm(1, 2 * order)),
-        fourth(normal_power_norm(4, order)),
-        fifth(normal_power_norm(5, order)),
-        square(normal_square_norm(order)),
-        cube(normal_cube_norm(order)) {}
-  double first;        ///< ‖Z‖_p
-  double first_twice;  ///< ‖Z‖_2p
-  double fourth;       ///< ‖Z⁴‖_p
-  double fifth;        ///< ‖Z⁵‖_p
-  double square;       ///< ‖Z² − 1‖_p
-  double cube;         ///< ‖Z³ − 3Z‖_p
-};
-
-const NormalNorms& normal_norms(std::size_t k) {
-  static const std::array<NormalNorms, kHigherOrders.size()> table = {
-      NormalNorms(kHigherOrders[0]), NormalNorms(kHigherOrders[1])};
-  return table[k];
-}
-
 /// z = (x, u): the box of a stage and how far its points are from the centre of the expansion.
 struct Neighbourhood {
   Eigen::VectorXd lower;
@@ -224,89 +199,6 @@ void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
   fit.growth = closed_loop_growth(bounds, gain);
 }
 
-/// max |sin δ| over |δ| ≤ reach.
-double largest_sine(double reach) { return reach < 0.5 * std::numbers::pi ? std::sin(reach) : 1.0; }
-
-/// Bounds of ‖cos δ − e^{−v/2}‖_p and ‖sin δ − e^{−v/2}δ‖_p for δ ~ N(0, v): what the best affine
-/// fit leaves along and across the mean heading. From Taylor's formula,
-///     cos δ − e^{−v/2} = −(δ² − v)/2 + a,      |a| ≤ δ⁴/24 + v²/8,
-///     sin δ − e^{−v/2}δ = −(δ³ − 3vδ)/6 + b,  |b| ≤ |δ|⁵/120 + |δ| v²/8.
-struct HeadingNorms {
-  double along;
-  double across;
-};
-
-HeadingNorms heading_norms(double variance, std::size_t k) {
-  const NormalNorms& norms = normal_norms(k);
-  const double deviation = std::sqrt(variance);
-  const double square = variance * variance;
-  return {.along =
-              std::min(2.0, 0.5 * variance * norms.square + square * (norms.fourth / 24.0 + 0.125)),
-          .across = std::min(1.0 + deviation * norms.first,
-                             deviation * variance * norms.cube / 6.0 +
-                                 deviation * square * (norms.fifth / 120.0 + 0.125 * norms.first))};
-}
-
-/// The step of a unicycle: e^{iφ} by its best affine fit e^{im − v/2}(1 + i(φ − m)).
-void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
-                  const Eigen::MatrixXd& gain, const std::vector<InputFit>& inputs,
-                  const Neighbourhood& near, StageFit& fit) {
-  const Eigen::Index states = law.mean.size();
-  const int heading = unicycle.heading;
-  const SaturationFit& saturation = inputs[unicycle.input].saturation;
-  const double mean = law.mean[heading];
-  const double variance = law.covariance(heading, heading);
-  const double shrink = std::exp(-0.5 * variance);
-  const double lost = -std::expm1(-0.5 * variance);
-  const double cosine = std::cos(mean);
-  const double sine = std::sin(mean);
-  // A car at rest does not depend on its heading, of which nothing is bounded then.
-  const double away = unicycle.reach == 0.0 ? 0.0 : near.reach[heading];
-
-  const Eigen::Matrix2d moments = residual_moments(mean, variance, mean, variance, variance);
-  fit.closed_form[unicycle.x] = unicycle.reach * std::sqrt(moments(0, 0));
-  fit.closed_form[unicycle.y] = unicycle.reach * std::sqrt(moments(1, 1));
-  fit.transition = Eigen::MatrixXd::Identity(states, states);
-  fit.transition(unicycle.x, heading) = -unicycle.reach * shrink * sine;
-  fit.transition(unicycle.y, heading) = unicycle.reach * shrink * cosine;
-  fit.transition.row(heading) += unicycle.input_gain * saturation.slope * gain.row(unicycle.input);
-  fit.next_mean = law.mean;
-  fit.next_mean[unicycle.x] += unicycle.reach * shrink * cosine;
-  fit.next_mean[unicycle.y] += unicycle.reach * shrink * sine;
-  fit.next_mean[heading] += unicycle.input_gain * saturation.mean;
-  fit.input_gain = Eigen::MatrixXd::Zero(states, gain.rows());
-  fit.input_gain(heading, unicycle.input) = std::abs(unicycle.input_gain);
-  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
-    const HeadingNorms norms = heading_norms(variance, k);
-    fit.higher[k][unicycle.x] =
-        unicycle.reach * (norms.along * std::abs(cosine) + norms.across * std::abs(sine));
-    fit.higher[k][unicycle.y] =
-        unicycle.reach * (norms.along * std::abs(sine) + norms.across * std::abs(cosine));
-  }
-  // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit takes the share `lost` off 1 + iδ; far off, both are as
-  // large as they can be.
-  const double fitted = std::sqrt(1.0 + away * away);
-  const double position =
-      unicycle.reach * std::min(0.5 * away * away + lost * fitted, 1.0 + shrink * fitted);
-  fit.largest[unicycle.x] = position;
-  fit.largest[unicycle.y] = position;
-  // The residual's slope is reach · i e^{im} (e^{iδ} − e^{−v/2}): sin δ along the mean heading,
-  // cos δ − e^{−v/2} across it. That of the step itself is reach · i e^{im} e^{iδ}.
-  const double turned = largest_sine(away);
-  const double across = std::max(lost, shrink - std::cos(std::min(away, std::numbers::pi)));
-  const double x_part = std::abs(cosine);
-  const double y_part = std::abs(sine);
-  fit.stretch = Eigen::MatrixXd::Zero(states, states);
-  fit.stretch(unicycle.x, heading) = unicycle.reach * (turned * x_part + across * y_part);
-  fit.stretch(unicycle.y, heading) = unicycle.reach * (turned * y_part + across * x_part);
-  fit.growth = Eigen::MatrixXd::Identity(states, states);
-  fit.growth(unicycle.x, heading) = unicycle.reach * std::min(1.0, y_part + turned * x_part);
-  fit.growth(unicycle.y, heading) = unicycle.reach * std::min(1.0, x_part + turned * y_part);
-  const Eigen::RowVectorXd feedback = unicycle.input_gain * gain.row(unicycle.input);
-  fit.growth.row(heading) = feedback.cwiseAbs();
-  fit.growth(heading, heading) = std::max(1.0, std::abs(1.0 + feedback[heading]));
-}
-
 /// P(z outside of the core): two tails for every coordinate and input that the core restricts.
 double outside_core(const Gaussian& law, const std::vector<InputFit>& inputs,
                     const CoreShape& core) {
@@ -400,7 +292,11 @@ StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaus
   fit.region = {.lower = near.lower.head(states), .upper = near.upper.head(states)};
   fit.outside = outside_core(law, inputs, core);
   if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
-    fit_unicycle(*unicycle, law, gain, inputs, near, fit);
+    fit_unicycle(*unicycle, law,
+                 {.gain = gain.row(unicycle->input),
+                  .saturation = inputs[unicycle->input].saturation,
+                  .away = near.reach[unicycle->heading]},
+                 gain.rows(), fit);
   } else {
     fit_by_derivatives(motion, law, gain, inputs, near, fit);
   }

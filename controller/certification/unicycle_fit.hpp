@@ -1,0 +1,26 @@
+// One step of a unicycle near a Gaussian: its best affine map, and what is known of the residual.
+// Derivation: docs/theory/surrogate.md, section 3.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/certification/saturation.hpp"
+#include "controller/certification/stage_fit.hpp"
+#include "controller/measure/measures.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// The feedback that steers a unicycle, and how far its heading may be from the mean.
+struct UnicycleFeedback {
+  Eigen::RowVectorXd gain;   ///< of the input that turns it, 1 x n
+  SaturationFit saturation;  ///< of this input
+  double away = 0.0;         ///< rad, over the region
+};
+
+/// Fills `fit` for the step of `unicycle` from `law`, but for what the clamp leaves: e^{iφ} by its
+/// best affine fit e^{im − v/2}(1 + i(φ − m)). The vectors of `fit` come zero, of size n.
+void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
+                  const UnicycleFeedback& feedback, Eigen::Index inputs, StageFit& fit);
+
+}  // namespace qsmpc
