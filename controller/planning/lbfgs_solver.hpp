@@ -1,15 +1,35 @@
-// NLopt's limited-memory BFGS, with the inputs kept in their bounds by a sigmoid (Eq. 5-3).
+// NLopt's limited-memory BFGS, which knows no bounds: they are kept by a change of variables, or by
+// a penalty.
 #pragma once
 
+#include <limits>
+
+#include "controller/planning/input_bounding.hpp"
+#include "controller/planning/metered_cost.hpp"
 #include "controller/planning/ocp_solver.hpp"
 
 namespace qsmpc {
 
 class LbfgsSolver final : public OcpSolver {
  public:
-  [[nodiscard]] SolverResult minimise(const CostFunction& cost, const Eigen::MatrixXd& start,
-                                      const InputBounds& bounds,
-                                      const SolverOptions& options) const override;
+  explicit LbfgsSolver(InputBounding bounding) : bounding_(bounding) {}
+
+  const SolverResult& minimise(const OcpProblem& problem, const Eigen::VectorXd& start,
+                               const SolverOptions& options) override;
+
+ private:
+  // The point where cost and penalty together are least, which may lie beyond the bounds.
+  struct Trial {
+    Eigen::VectorXd z;
+    double value = std::numeric_limits<double>::infinity();
+  };
+
+  void run(const OcpProblem& problem, const SolverOptions& options, MeteredCost& cost,
+           Trial& trial);
+  void keep(const Eigen::VectorXd& z, double value);
+
+  InputBounding bounding_;
+  SolverResult result_;
 };
 
 }  // namespace qsmpc

@@ -5,6 +5,27 @@
 #include "controller/planning/lbfgs_solver.hpp"
 
 namespace qsmpc {
+namespace {
+
+void require(bool holds, const char* message) {
+  if (!holds) throw std::invalid_argument(std::string("solver: ") + message);
+}
+
+std::string known_names(const std::vector<SolverEntry>& table) {
+  std::string known;
+  for (const SolverEntry& entry : table) known += (known.empty() ? "" : ", ") + entry.name;
+  return known;
+}
+
+std::unique_ptr<OcpSolver> make_lbfgs(const std::string& bounding) {
+  if (bounding == "sigmoid") return std::make_unique<LbfgsSolver>(InputBounding::kSigmoid);
+  if (bounding == "tanh") return std::make_unique<LbfgsSolver>(InputBounding::kTanh);
+  if (bounding == "penalty") return std::make_unique<LbfgsSolver>(InputBounding::kPenalty);
+  throw std::invalid_argument("no bounding '" + bounding +
+                              "' of inputs; known are: " + known_names(input_boundings()));
+}
+
+}  // namespace
 
 const char* solver_status_name(SolverStatus status) {
   switch (status) {
@@ -14,6 +35,10 @@ const char* solver_status_name(SolverStatus status) {
       return "iteration_limit";
     case SolverStatus::kStalled:
       return "stalled";
+    case SolverStatus::kDeadline:
+      return "deadline";
+    case SolverStatus::kInfeasible:
+      return "infeasible";
     case SolverStatus::kNumericalTrouble:
       return "numerical_trouble";
   }
@@ -22,16 +47,39 @@ const char* solver_status_name(SolverStatus status) {
 
 const std::vector<SolverEntry>& solvers() {
   static const std::vector<SolverEntry> table = {
-      {"lbfgs", "NLopt's limited-memory BFGS; inputs bounded by a sigmoid (Eq. 5-3)"},
+      {"lbfgs", "quasi-Newton; bounds of the inputs kept as its bounding says"},
   };
   return table;
 }
 
-std::unique_ptr<const OcpSolver> make_solver(std::string_view name) {
-  if (name == "lbfgs") return std::make_unique<LbfgsSolver>();
-  std::string known;
-  for (const SolverEntry& entry : solvers()) known += (known.empty() ? "" : ", ") + entry.name;
-  throw std::invalid_argument("no solver '" + std::string(name) + "'; known are: " + known);
+const std::vector<SolverEntry>& input_boundings() {
+  static const std::vector<SolverEntry> table = {
+      {"sigmoid", "inputs through a sigmoid (Eq. 5-3), NLopt's limited-memory BFGS"},
+      {"tanh", "inputs through a hyperbolic tangent, NLopt's limited-memory BFGS"},
+      {"penalty", "excess over the bounds priced, the result clamped, NLopt's limited-memory BFGS"},
+  };
+  return table;
+}
+
+std::unique_ptr<OcpSolver> make_solver(std::string_view name, const SolverSettings& settings) {
+  if (name == "lbfgs") return make_lbfgs(settings.bounding);
+  throw std::invalid_argument("no solver '" + std::string(name) +
+                              "'; known are: " + known_names(solvers()));
+}
+
+void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
+                   const SolverOptions& options, ConstraintsTaken taken) {
+  require(start.size() >= 1, "there is nothing to decide");
+  require(problem.lower.size() == start.size() && problem.upper.size() == start.size(),
+          "bounds and start must be of one size");
+  // A comparison with NaN is false, so these are refused as well.
+  require((problem.lower.array() <= problem.upper.array()).all(), "the bounds are crossed");
+  require(options.max_evaluations >= 1, "at least one evaluation of the cost is needed");
+  if (!problem.constraints) return;
+  require(taken == ConstraintsTaken::kInequalities, "this solver takes no constraints");
+  const ConstraintSet& set = *problem.constraints;
+  require(set.count >= 0 && (set.group.empty() || std::ssize(set.group) == set.count),
+          "each constraint must be in a group, or none");
 }
 
 }  // namespace qsmpc

@@ -1,15 +1,22 @@
-// Solvers of the optimal control problem: minimise a smooth function over a box of inputs.
+// Solvers of the optimal control problem: minimise a piecewise smooth function of a flat vector z
+// over a box, and for those that can, under inequality constraints.
+//
+//   const std::unique_ptr<OcpSolver> solver = make_solver("lbfgs", {.bounding = "bounded"});
+//   const SolverResult& result = solver->minimise(problem, start, {.max_evaluations = 50});
+//
+// A solver owns its scratch and, where it is of the quasi-Newton kind, remembers the curvature of
+// the last problem for the next: `forget` and `shift` say what has become of it.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
-
-#include "controller/prediction/policy.hpp"
 
 namespace qsmpc {
 
@@ -17,36 +24,77 @@ enum class SolverStatus {
   kConverged,         ///< a tolerance was met
   kIterationLimit,    ///< best point within the allowed evaluations
   kStalled,           ///< the line search found no further descent; best point so far
-  kNumericalTrouble,  ///< the cost or its gradient was not finite; best finite point so far
+  kDeadline,          ///< the time was up; best point so far
+  kInfeasible,        ///< the best point violates a constraint by more than the tolerance
+  kNumericalTrouble,  ///< something was not finite; best finite point so far
 };
 
-/// "converged", "iteration_limit", "stalled" or "numerical_trouble".
+/// "converged", "iteration_limit", "stalled", "deadline", "infeasible" or "numerical_trouble".
 [[nodiscard]] const char* solver_status_name(SolverStatus status);
 
-/// Value at `inputs` (input_dim x horizon); writes the gradient, same shape.
-using CostFunction =
-    std::function<double(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient)>;
+/// Value at `z` (n); overwrites the gradient, which comes with n entries.
+using CostFunction = std::function<double(const Eigen::VectorXd& z, Eigen::VectorXd& gradient)>;
+
+/// Inequality constraints c_j(z) ≤ 0, possibly far more than a solver could take at once (Eq. 4-8:
+/// each particle at each stage against each face). A solver asks for all values, and for the
+/// gradients of the few that matter.
+struct ConstraintSet {
+  Eigen::Index count = 0;
+  /// All of them; `values` comes with `count` entries.
+  std::function<void(const Eigen::VectorXd& z, Eigen::VectorXd& values)> values;
+  /// Those named: `values` comes with which.size() entries, `gradients` as n x which.size().
+  std::function<void(const Eigen::VectorXd& z, const std::vector<int>& which,
+                     Eigen::VectorXd& values, Eigen::MatrixXd& gradients)>
+      some;
+  /// `count` numbers ≥ 0, or empty: constraints of one group are alike (one face at one stage), so
+  /// that of those that are violated the worst is looked at first. Empty: each is its own group.
+  std::vector<int> group;
+};
+
+struct OcpProblem {
+  CostFunction cost;
+  Eigen::VectorXd lower;  ///< n, entries may be -infinity
+  Eigen::VectorXd upper;  ///< n, ≥ lower, entries may be infinity
+  std::optional<ConstraintSet> constraints;
+};
 
 struct SolverOptions {
   int max_evaluations = 100;         ///< of cost and gradient, ≥ 1
   double relative_tolerance = 1e-6;  ///< stop when the cost falls by less, relatively
+  /// No evaluation begins later.
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+  double constraint_tolerance = 1e-6;  ///< a constraint up to here counts as kept
 };
 
 struct SolverResult {
-  Eigen::MatrixXd inputs;  ///< best found, within the bounds
-  double value = 0.0;      ///< cost there; not finite if no finite value was seen
+  Eigen::VectorXd z;   ///< best found, within the bounds
+  double value = 0.0;  ///< cost there; not finite if no finite value was seen
   int evaluations = 0;
   SolverStatus status = SolverStatus::kConverged;
+  double violation = 0.0;  ///< largest max(c_j(z), 0); zero without constraints
+};
+
+/// How a decision vector is made up of stages: inputs_per_stage · horizon entries stage by stage,
+/// and possibly others behind them, which belong to no stage.
+struct StageLayout {
+  Eigen::Index inputs_per_stage = 1;
+  Eigen::Index horizon = 1;
 };
 
 class OcpSolver {
  public:
   virtual ~OcpSolver() = default;
-  /// Minimises `cost` from `start` (within `bounds`). Never throws for numerical reasons.
-  [[nodiscard]] virtual SolverResult minimise(const CostFunction& cost,
-                                              const Eigen::MatrixXd& start,
-                                              const InputBounds& bounds,
-                                              const SolverOptions& options) const = 0;
+  /// Minimises from `start` (n), which is moved to the bounds if it lies beyond. The result is
+  /// valid until the next call. Throws std::invalid_argument on sizes that do not fit, on bounds
+  /// that are crossed or not numbers, and on constraints given to a solver that takes none; what
+  /// the problem's functions throw passes through; never throws for numerical reasons.
+  virtual const SolverResult& minimise(const OcpProblem& problem, const Eigen::VectorXd& start,
+                                       const SolverOptions& options) = 0;
+  /// The next call is a cold start.
+  virtual void forget() {}
+  /// The decision vector moves on by one stage: the inputs of the first drop out, those behind
+  /// move up, and a last stage comes in. What is known of the curvature moves along.
+  virtual void shift(const StageLayout& /*layout*/) {}
 };
 
 struct SolverEntry {
@@ -57,7 +105,21 @@ struct SolverEntry {
 /// The table of solvers.
 [[nodiscard]] const std::vector<SolverEntry>& solvers();
 
+/// The table of ways in which "lbfgs" keeps the bounds.
+[[nodiscard]] const std::vector<SolverEntry>& input_boundings();
+
+struct SolverSettings {
+  std::string bounding = "sigmoid";  ///< of "lbfgs", a name of `input_boundings`
+};
+
 /// Throws std::invalid_argument on an unknown name.
-[[nodiscard]] std::unique_ptr<const OcpSolver> make_solver(std::string_view name);
+[[nodiscard]] std::unique_ptr<OcpSolver> make_solver(std::string_view name,
+                                                     const SolverSettings& settings = {});
+
+enum class ConstraintsTaken { kNone, kInequalities };
+
+/// What every solver checks first; throws std::invalid_argument as `OcpSolver::minimise` says.
+void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
+                   const SolverOptions& options, ConstraintsTaken taken);
 
 }  // namespace qsmpc

@@ -246,14 +246,29 @@ double Planner::cost_without_noise(const Gaussian& belief, const GaussianQuantis
 
 void Planner::optimise(const Gaussian& belief, Plan& plan) const {
   Stopwatch stopwatch;
+  const Eigen::Index inputs = dynamics_.input_dim();
+  const Eigen::Index horizon = settings_.horizon;
+  if (plan_) {
+    solver_->shift({.inputs_per_stage = inputs, .horizon = horizon});
+  } else {
+    solver_->forget();
+  }
+  Eigen::MatrixXd slopes(inputs, horizon);
+  OcpProblem problem{.cost = {},
+                     .lower = settings_.bounds.lower.replicate(horizon, 1),
+                     .upper = settings_.bounds.upper.replicate(horizon, 1),
+                     .constraints = {}};
   for (int round = 0; round < kAssignmentRounds; ++round) {
     HorizonCost cost(terms(predicted_noise_, plan.belief), plan.prediction, plan.policy);
-    const SolverResult result = solver_->minimise(
-        [&](const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
-          return cost.evaluate(inputs, gradient);
-        },
-        plan.policy.inputs, settings_.bounds,
-        {.max_evaluations = settings_.max_evaluations - plan.evaluations});
+    problem.cost = [&](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+      const double value =
+          cost.evaluate(Eigen::Map<const Eigen::MatrixXd>(z.data(), inputs, horizon), slopes);
+      gradient = slopes.reshaped();
+      return value;
+    };
+    const SolverResult& result =
+        solver_->minimise(problem, plan.policy.inputs.reshaped(),
+                          {.max_evaluations = settings_.max_evaluations - plan.evaluations});
     stopwatch.add_to(plan.timing.optimise);
     plan.evaluations += result.evaluations;
     plan.status = result.status;
@@ -264,7 +279,7 @@ void Planner::optimise(const Gaussian& belief, Plan& plan) const {
     // The candidate is priced with assignments and gains of its own, and kept only if it is better.
     Plan candidate;
     candidate.belief = plan.belief;
-    candidate.policy = make_policy(belief.mean, result.inputs);
+    candidate.policy = make_policy(belief.mean, result.z.reshaped(inputs, horizon));
     candidate.prediction = predict(dynamics_, *propagator_, plan.belief.measure, candidate.policy);
     candidate.cost = cost_of(candidate);
     stopwatch.add_to(plan.timing.propagate);

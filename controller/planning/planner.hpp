@@ -108,7 +108,7 @@ class Planner {
   Eigen::MatrixXd predicted_noise_;  ///< what of the noise the prediction carries
   std::unique_ptr<const Propagator> propagator_;
   std::unique_ptr<const Propagator> noise_free_;
-  std::unique_ptr<const OcpSolver> solver_;
+  std::unique_ptr<OcpSolver> solver_;
   std::optional<GaussianQuantisation> last_belief_;  ///< about zero, for `last_covariance_`
   Eigen::MatrixXd last_covariance_;
   std::optional<Plan> plan_;

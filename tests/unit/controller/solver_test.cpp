@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
@@ -7,136 +9,197 @@
 
 #include "controller/planning/ocp_solver.hpp"
 #include "tests/unit/controller/random_measures.hpp"
+#include "tests/unit/controller/solver_problems.hpp"
 
 namespace qsmpc::testing {
 namespace {
 
-InputBounds unit_box() {
-  return {.lower = Eigen::Vector2d(-0.1, -1.0), .upper = Eigen::Vector2d(0.3, 2.0)};
-}
+using Eigen::VectorXd;
 
-/// ½ Σ_k (u_k − target_k)ᵀ diag(1, 4) (u_k − target_k): separable, so that the minimum over a box
-/// is the target's projection.
-CostFunction bowl(const Eigen::MatrixXd& target) {
-  return [target](const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
-    gradient = Eigen::Vector2d(1.0, 4.0).asDiagonal() * (inputs - target);
-    return 0.5 * gradient.cwiseProduct(inputs - target).sum();
-  };
-}
-
-class EverySolver : public ::testing::TestWithParam<std::string> {
+class EverySolver : public ::testing::TestWithParam<SolverChoice> {
  protected:
-  std::unique_ptr<const OcpSolver> solver_ = make_solver(GetParam());
+  [[nodiscard]] bool maps_onto_the_open_box() const {
+    return GetParam().bounding == "sigmoid" || GetParam().bounding == "tanh";
+  }
+  [[nodiscard]] bool may_leave_the_box() const { return GetParam().bounding == "penalty"; }
+
+  std::unique_ptr<OcpSolver> solver_ =
+      make_solver(GetParam().solver, {.bounding = GetParam().bounding});
 };
 
 TEST_P(EverySolver, finds_the_minimum_inside_the_box) {
-  Eigen::MatrixXd target(2, 3);
-  target << 0.1, 0.0, 0.2,  //
-      1.5, -0.5, 0.3;
-  const SolverResult result =
-      solver_->minimise(bowl(target), Eigen::MatrixXd::Zero(2, 3), unit_box(),
-                        {.max_evaluations = 500, .relative_tolerance = 1e-14});
-  // The value falls quadratically about the minimum, so the inputs are as good as √1e-14, relative
-  // to the starting cost of the order of one, times the sigmoid's condition.
-  EXPECT_LE((result.inputs - target).cwiseAbs().maxCoeff(), 1e-5);
+  const VectorXd target{{0.1, 1.5, 0.0, -0.5, 0.2, 0.3}};
+  const SolverResult& result = solver_->minimise(
+      boxed_bowl(target), VectorXd::Zero(6), {.max_evaluations = 500, .relative_tolerance = 1e-14});
+  // The value falls quadratically about the minimum, so z is as good as √1e-14, relative to the
+  // starting cost of the order of one, times the sigmoid's condition.
+  EXPECT_LE((result.z - target).cwiseAbs().maxCoeff(), 1e-5);
   EXPECT_NE(result.status, SolverStatus::kNumericalTrouble);
   EXPECT_LE(result.evaluations, 500);
+  EXPECT_EQ(result.violation, 0.0);
 }
 
 TEST_P(EverySolver, goes_to_the_bound_where_the_minimum_lies_beyond) {
-  Eigen::MatrixXd target(2, 2);
-  target << 5.0, 0.1,  //
-      0.5, -7.0;
-  const SolverResult result =
-      solver_->minimise(bowl(target), Eigen::MatrixXd::Zero(2, 2), unit_box(),
-                        {.max_evaluations = 1000, .relative_tolerance = 1e-14});
-  Eigen::MatrixXd expected(2, 2);
-  expected << 0.3, 0.1,  //
-      0.5, -1.0;
-  // A sigmoid nears its bound in the limit only: what is left costs 1e-4 of the slope there.
-  EXPECT_LE((result.inputs - expected).cwiseAbs().maxCoeff(), 1e-3);
-  EXPECT_LE(result.inputs.row(0).maxCoeff(), 0.3);
-  EXPECT_GE(result.inputs.row(1).minCoeff(), -1.0);
+  const VectorXd target{{5.0, 0.5, 0.1, -7.0}};
+  const OcpProblem problem = boxed_bowl(target);
+  const SolverResult& result = solver_->minimise(
+      problem, VectorXd::Zero(4), {.max_evaluations = 1000, .relative_tolerance = 1e-14});
+  const VectorXd expected{{0.3, 0.5, 0.1, -1.0}};
+  // A sigmoid nears its bound in the limit only: what is left costs 1e-4 of the slope there. The
+  // others reach the bound itself, and what is free is as good as √1e-14 again.
+  EXPECT_LE((result.z - expected).cwiseAbs().maxCoeff(), maps_onto_the_open_box() ? 1e-3 : 1e-5);
+  EXPECT_TRUE(within_bounds(problem, result.z));
 }
 
-TEST_P(EverySolver, inputs_never_leave_the_bounds_not_even_by_rounding) {
+TEST_P(EverySolver, results_never_leave_the_bounds_not_even_by_rounding) {
   Generator generator(111);
   for (int repetition = 0; repetition < 20; ++repetition) {
-    const InputBounds bounds = unit_box();
-    const CostFunction steep = [&](const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
-      for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
-        EXPECT_TRUE((inputs.col(k).array() >= bounds.lower.array()).all());
-        EXPECT_TRUE((inputs.col(k).array() <= bounds.upper.array()).all());
-      }
+    OcpProblem problem = boxed_bowl(VectorXd::Zero(6));
+    problem.cost = [&](const VectorXd& z, VectorXd& gradient) {
+      EXPECT_TRUE(may_leave_the_box() || within_bounds(problem, z)) << z.transpose();
       gradient.setConstant(-1e6);
-      return -1e6 * inputs.sum();
+      return -1e6 * z.sum();
     };
-    const Eigen::MatrixXd start = random_matrix(generator, 2, 3, 0.1);
-    const SolverResult result = solver_->minimise(steep, start, bounds, {.max_evaluations = 200});
-    EXPECT_LE(result.inputs.row(0).maxCoeff(), 0.3);
-    EXPECT_LE(result.inputs.row(1).maxCoeff(), 2.0);
+    const VectorXd start = random_matrix(generator, 6, 1, 0.1);
+    const SolverResult& result = solver_->minimise(problem, start, {.max_evaluations = 200});
+    EXPECT_TRUE(within_bounds(problem, result.z)) << result.z.transpose();
   }
 }
 
-TEST_P(EverySolver, returns_the_value_of_the_best_inputs_and_respects_the_limit) {
-  const Eigen::MatrixXd target = Eigen::MatrixXd::Constant(2, 4, 0.2);
+TEST_P(EverySolver, returns_the_value_of_the_best_point_and_respects_the_limit) {
+  OcpProblem problem = boxed_bowl(VectorXd::Constant(8, 0.2));
+  const CostFunction bowl = problem.cost;
   for (const int limit : {1, 2, 5}) {
     int calls = 0;
-    double least = 1e300;
-    const CostFunction counted = [&](const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
+    double least = std::numeric_limits<double>::infinity();
+    problem.cost = [&](const VectorXd& z, VectorXd& gradient) {
       ++calls;
-      const double value = bowl(target)(inputs, gradient);
-      least = std::min(least, value);
+      const double value = bowl(z, gradient);
+      if (within_bounds(problem, z)) least = std::min(least, value);
       return value;
     };
-    const SolverResult result = solver_->minimise(counted, Eigen::MatrixXd::Zero(2, 4), unit_box(),
-                                                  {.max_evaluations = limit});
+    const SolverResult& result =
+        solver_->minimise(problem, VectorXd::Zero(8), {.max_evaluations = limit});
     EXPECT_EQ(result.evaluations, calls);
     EXPECT_LE(calls, limit);
     EXPECT_EQ(result.value, least);
-    Eigen::MatrixXd gradient(2, 4);
-    EXPECT_EQ(bowl(target)(result.inputs, gradient), result.value);
+    VectorXd gradient(8);
+    EXPECT_EQ(bowl(result.z, gradient), result.value);
   }
 }
 
-TEST_P(EverySolver, a_cost_that_is_not_finite_is_a_status_and_keeps_the_best_point) {
-  const CostFunction undefined = [](const Eigen::MatrixXd&, Eigen::MatrixXd& gradient) {
+TEST_P(EverySolver, leaves_a_start_at_the_bounds) {
+  OcpProblem problem = boxed_bowl(VectorXd{{0.1, 0.5, 0.2, -0.4}});
+  const VectorXd start{{0.3, 2.0, -0.1, -1.0}};
+  const SolverResult& result =
+      solver_->minimise(problem, start, {.max_evaluations = 500, .relative_tolerance = 1e-14});
+  EXPECT_LE((result.z - VectorXd{{0.1, 0.5, 0.2, -0.4}}).cwiseAbs().maxCoeff(), 1e-5);
+}
+
+TEST_P(EverySolver, bounds_may_be_infinite_on_either_side_and_an_entry_may_be_fixed) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  OcpProblem problem = boxed_bowl(VectorXd{{3.0, -5.0, 7.0, 0.7, 2.0, 0.1}});
+  problem.lower = VectorXd{{-kInfinity, 1.0, 1.0, -kInfinity, 0.4, -1.0}};
+  problem.upper = VectorXd{{kInfinity, kInfinity, kInfinity, 0.5, 0.4, 1.0}};
+  const VectorXd start{{-1.0, 2.0, 1.0, 0.5, 0.4, 0.0}};
+  const SolverResult& result =
+      solver_->minimise(problem, start, {.max_evaluations = 1000, .relative_tolerance = 1e-14});
+  const VectorXd expected{{3.0, 1.0, 7.0, 0.5, 0.4, 0.1}};
+  // As above, a change of variables nears its bound in the limit only.
+  EXPECT_LE((result.z - expected).cwiseAbs().maxCoeff(), maps_onto_the_open_box() ? 1e-3 : 1e-5);
+  EXPECT_TRUE(within_bounds(problem, result.z));
+}
+
+TEST_P(EverySolver, a_cost_that_is_not_finite_is_a_status_and_keeps_the_start) {
+  OcpProblem problem = boxed_bowl(VectorXd::Zero(6));
+  problem.cost = [](const VectorXd&, VectorXd& gradient) {
     gradient.setZero();
     return std::nan("");
   };
-  const Eigen::MatrixXd start = Eigen::MatrixXd::Constant(2, 3, 0.1);
-  SolverResult result = solver_->minimise(undefined, start, unit_box(), {});
+  const VectorXd start = VectorXd::Constant(6, 0.1);
+  const SolverResult& result = solver_->minimise(problem, start, {});
   EXPECT_EQ(result.status, SolverStatus::kNumericalTrouble);
   EXPECT_FALSE(std::isfinite(result.value));
-  EXPECT_EQ(result.inputs, start);
+  EXPECT_EQ(result.z, start);
+  EXPECT_EQ(result.evaluations, 1);
+}
 
+TEST_P(EverySolver, trouble_on_the_way_keeps_the_best_point) {
+  OcpProblem problem = boxed_bowl(VectorXd{{0.25, 0.25, 0.25, 0.25, 0.25, 0.25}});
+  const CostFunction bowl = problem.cost;
+  const VectorXd start{{-0.1, 2.0, -0.1, 1.7, -0.1, 1.9}};
+  for (const bool in_gradient : {false, true}) {
+    int calls = 0;
+    double least = std::numeric_limits<double>::infinity();
+    problem.cost = [&](const VectorXd& z, VectorXd& gradient) {
+      const double value = bowl(z, gradient);
+      if (++calls < 3) {
+        if (within_bounds(problem, z)) least = std::min(least, value);
+        return value;
+      }
+      if (in_gradient) gradient[1] = std::numeric_limits<double>::infinity();
+      return in_gradient ? value : -std::numeric_limits<double>::infinity();
+    };
+    const SolverResult& result = solver_->minimise(problem, start, {});
+    EXPECT_EQ(result.status, SolverStatus::kNumericalTrouble);
+    EXPECT_EQ(result.value, least);
+    EXPECT_EQ(calls, 3);
+    solver_->forget();
+  }
+}
+
+TEST_P(EverySolver, a_deadline_that_is_over_returns_the_start) {
+  const OcpProblem problem = boxed_bowl(VectorXd::Zero(4));
+  const VectorXd start = VectorXd::Constant(4, 0.1);
+  const SolverResult& result =
+      solver_->minimise(problem, start, {.deadline = std::chrono::steady_clock::now()});
+  EXPECT_EQ(result.status, SolverStatus::kDeadline);
+  EXPECT_EQ(result.evaluations, 0);
+  EXPECT_EQ(result.z, start);
+  EXPECT_FALSE(std::isfinite(result.value));
+}
+
+TEST_P(EverySolver, no_evaluation_begins_after_the_deadline) {
+  OcpProblem problem = boxed_bowl(VectorXd::Constant(4, 0.2));
+  const CostFunction bowl = problem.cost;
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::milliseconds(50);
   int calls = 0;
-  const CostFunction breaks_late = [&](const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
-    const double value = bowl(Eigen::MatrixXd::Constant(2, 3, 0.25))(inputs, gradient);
-    if (++calls == 3) gradient(0, 0) = std::nan("");
-    return value;
+  problem.cost = [&](const VectorXd& z, VectorXd& gradient) {
+    EXPECT_LT(calls, 2);
+    // The second evaluation lasts until the time is up.
+    while (calls == 1 && std::chrono::steady_clock::now() < deadline) {
+    }
+    ++calls;
+    return bowl(z, gradient);
   };
-  result = solver_->minimise(breaks_late, start, unit_box(), {});
-  EXPECT_EQ(result.status, SolverStatus::kNumericalTrouble);
+  const SolverResult& result =
+      solver_->minimise(problem, VectorXd::Constant(4, -0.1), {.deadline = deadline});
+  EXPECT_EQ(result.status, SolverStatus::kDeadline);
   EXPECT_TRUE(std::isfinite(result.value));
-  EXPECT_EQ(calls, 3);
 }
 
 TEST_P(EverySolver, exceptions_of_the_cost_pass_through) {
-  const CostFunction throws = [](const Eigen::MatrixXd&, Eigen::MatrixXd&) -> double {
+  OcpProblem problem = boxed_bowl(VectorXd::Zero(6));
+  problem.cost = [](const VectorXd&, VectorXd&) -> double {
     throw std::runtime_error("from the cost");
   };
-  EXPECT_THROW((void)solver_->minimise(throws, Eigen::MatrixXd::Zero(2, 3), unit_box(), {}),
-               std::runtime_error);
+  EXPECT_THROW(solver_->minimise(problem, VectorXd::Zero(6), {}), std::runtime_error);
 }
 
-std::vector<std::string> solver_names() {
-  std::vector<std::string> names;
-  for (const SolverEntry& entry : solvers()) names.push_back(entry.name);
-  return names;
+TEST_P(EverySolver, problems_that_make_no_sense_are_refused) {
+  const OcpProblem good = boxed_bowl(VectorXd::Zero(4));
+  EXPECT_THROW(solver_->minimise(good, VectorXd::Zero(5), {}), std::invalid_argument);
+  EXPECT_THROW(solver_->minimise(good, VectorXd::Zero(4), {.max_evaluations = 0}),
+               std::invalid_argument);
+  OcpProblem crossed = good;
+  crossed.lower[1] = crossed.upper[1] + 1.0;
+  EXPECT_THROW(solver_->minimise(crossed, VectorXd::Zero(4), {}), std::invalid_argument);
+  crossed.lower[1] = std::nan("");
+  EXPECT_THROW(solver_->minimise(crossed, VectorXd::Zero(4), {}), std::invalid_argument);
 }
 
-INSTANTIATE_TEST_SUITE_P(solvers, EverySolver, ::testing::ValuesIn(solver_names()));
+INSTANTIATE_TEST_SUITE_P(solvers, EverySolver, ::testing::ValuesIn(solver_choices()),
+                         [](const auto& test) { return test.param.label(); });
 
 TEST(MakeSolver, unknown_names_are_refused_with_the_known_ones) {
   try {
@@ -146,12 +209,21 @@ TEST(MakeSolver, unknown_names_are_refused_with_the_known_ones) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("oracle"));
     EXPECT_THAT(error.what(), ::testing::HasSubstr(solvers()[0].name));
   }
+  try {
+    (void)make_solver("lbfgs", {.bounding = "wall"});
+    FAIL() << "an unknown bounding was made";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("wall"));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(input_boundings()[0].name));
+  }
 }
 
 TEST(SolverStatus, every_status_has_a_name) {
   EXPECT_STREQ(solver_status_name(SolverStatus::kConverged), "converged");
   EXPECT_STREQ(solver_status_name(SolverStatus::kIterationLimit), "iteration_limit");
   EXPECT_STREQ(solver_status_name(SolverStatus::kStalled), "stalled");
+  EXPECT_STREQ(solver_status_name(SolverStatus::kDeadline), "deadline");
+  EXPECT_STREQ(solver_status_name(SolverStatus::kInfeasible), "infeasible");
   EXPECT_STREQ(solver_status_name(SolverStatus::kNumericalTrouble), "numerical_trouble");
 }
 
