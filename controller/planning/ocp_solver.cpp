@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "controller/planning/lbfgs_solver.hpp"
+#include "controller/planning/projected_bfgs_solver.hpp"
 
 namespace qsmpc {
 namespace {
@@ -18,6 +19,7 @@ std::string known_names(const std::vector<SolverEntry>& table) {
 }
 
 std::unique_ptr<OcpSolver> make_lbfgs(const std::string& bounding) {
+  if (bounding == "bounded") return std::make_unique<ProjectedBfgsSolver>();
   if (bounding == "sigmoid") return std::make_unique<LbfgsSolver>(InputBounding::kSigmoid);
   if (bounding == "tanh") return std::make_unique<LbfgsSolver>(InputBounding::kTanh);
   if (bounding == "penalty") return std::make_unique<LbfgsSolver>(InputBounding::kPenalty);
@@ -54,6 +56,7 @@ const std::vector<SolverEntry>& solvers() {
 
 const std::vector<SolverEntry>& input_boundings() {
   static const std::vector<SolverEntry> table = {
+      {"bounded", "inputs held at their bounds: dense BFGS whose steps keep the box (own)"},
       {"sigmoid", "inputs through a sigmoid (Eq. 5-3), NLopt's limited-memory BFGS"},
       {"tanh", "inputs through a hyperbolic tangent, NLopt's limited-memory BFGS"},
       {"penalty", "excess over the bounds priced, the result clamped, NLopt's limited-memory BFGS"},

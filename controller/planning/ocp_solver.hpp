@@ -109,7 +109,7 @@ struct SolverEntry {
 [[nodiscard]] const std::vector<SolverEntry>& input_boundings();
 
 struct SolverSettings {
-  std::string bounding = "sigmoid";  ///< of "lbfgs", a name of `input_boundings`
+  std::string bounding = "bounded";  ///< of "lbfgs", a name of `input_boundings`
 };
 
 /// Throws std::invalid_argument on an unknown name.
