@@ -13,8 +13,10 @@
 
 #include <Eigen/Core>
 
+#include "controller/parallel.hpp"
 #include "controller/planning/penalty.hpp"
 #include "controller/planning/safe_set.hpp"
+#include "controller/planning/stage_kernels.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -39,7 +41,7 @@ struct CostParts {
   [[nodiscard]] double total() const { return state + input + terminal + box + obstacle; }
 };
 
-/// What the cost depends on besides the inputs; refers to objects that must outlive it.
+/// What the cost depends on besides the prediction; refers to objects that must outlive it.
 struct HorizonCostTerms {
   const Dynamics& dynamics;
   const SafeSet& safe_set;
@@ -51,47 +53,103 @@ struct HorizonCostTerms {
 
 class HorizonCost {
  public:
-  /// Holds the assignments of `prediction` and the gains, bounds and start of `policy`.
-  HorizonCost(HorizonCostTerms terms, const Prediction& prediction, const Policy& policy);
+  /// `run` is what loops over many particles go through; results do not depend on it.
+  explicit HorizonCost(const HorizonCostTerms& terms, Executor run = run_in_turn);
+  HorizonCost(const HorizonCostTerms& terms, const Prediction& prediction, const Policy& policy);
+
+  /// From now on, holds the assignments of `prediction`, which must stay alive and unchanged, and
+  /// the gains, bounds and start of `policy`. The covariances are those of the terms, which may
+  /// have changed. Allocates only what the last prediction did not need.
+  void hold(const Prediction& prediction, const Policy& policy);
 
   /// Expected cost under the nominal inputs `inputs` (input_dim x horizon) and its gradient with
   /// respect to them (overwritten; same shape, sized by the caller). Where an input saturates, the
   /// derivative of the clamp is zero.
   double evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::MatrixXd& gradient);
 
+  /// The same for a decision vector z: the inputs stage by stage, and behind them either nothing
+  /// or a matrix ΔK (input_dim x state_dim, column by column) that is added to the gains of all
+  /// stages. gradient: as z, sized by the caller.
+  double evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
+
+  /// The cost alone, of which `parts` tells more.
+  double price(const Eigen::VectorXd& z);
+
   /// The parts of the value last computed.
   [[nodiscard]] const CostParts& parts() const { return parts_; }
+
+  /// Particles of stage k = 0 … horizon under the decision last evaluated, state_dim x n.
+  [[nodiscard]] const Points& particles(Eigen::Index k) const { return stages_[k].points; }
+
+  /// The gradient, with respect to the decision last evaluated, of coordinate `axis` of one
+  /// particle of stage k ≥ 1; as in `evaluate`.
+  void particle_gradient(Eigen::Index k, Eigen::Index particle, Eigen::Index axis,
+                         Eigen::VectorXd& gradient);
 
  private:
   // Scratch of one stage; stage 0 … horizon.
   struct Stage {
     Points points;   // c
-    Points adjoint;  // of c
-    Points inputs;   // u at the points
+    Points adjoint;  // of c; after a forward pass that of the penalties
+    PackedPoints packed_adjoint;
+    Points inputs;          // u at the points
+    Points input_gradient;  // of the input cost
     Points input_adjoint;
-    Points stepped;          // f(c, u)
-    Points stepped_adjoint;  // of f
-    Points weighted;         // Q (f − r), or R u: scratch
-    Points weighted_inputs;
+    Points stepped;  // f(c, u)
+    PackedPoints packed_stepped;
+    Points state_gradient;  // of the state or terminal cost, at f
+    Points stepped_adjoint;
+    Points pulled;             // of c, through f alone
+    Eigen::VectorXd constant;  // v − K x̄
+  };
+  // What one chunk of particles adds to sums.
+  struct Partial {
+    CostParts cost;
+    Eigen::VectorXd inputs;  // Σ a
+    Eigen::MatrixXd outer;   // Σ a xᵀ
   };
 
-  void forward(const Eigen::Ref<const Eigen::MatrixXd>& inputs);
-  void backward(Eigen::MatrixXd& gradient);
-  void backward_policy(Eigen::Index k, Eigen::MatrixXd& gradient);
+  void resize_stages();
+  void set_decision(const Eigen::VectorXd& z);
+  void forward(const Eigen::VectorXd& z);
+  void forward_sources(Eigen::Index k, int chunk);
+  void forward_clusters(Eigen::Index k, int chunk);
+  void backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient);
+  void backward_sources(Eigen::Index k, bool with_cost, int chunk);
+  void backward_nominal(Eigen::Index k, const double* sum, const double* outer,
+                        Eigen::VectorXd& gradient);
+  void lone_particle_gradient(Eigen::Index k, Eigen::Index particle, Eigen::Index axis,
+                              Eigen::VectorXd& gradient);
+  [[nodiscard]] StagePolicy stage_policy(Eigen::Index k) const;
+  template <class Task>
+  void for_chunks(Eigen::Index particles, const Task& task);
 
   HorizonCostTerms terms_;
-  const Prediction& prediction_;
-  Policy policy_;
+  Executor run_;
+  QuadraticForm state_form_;
+  QuadraticForm terminal_form_;
+  QuadraticForm input_form_;
+  PenaltyTable penalties_;
+  const Prediction* prediction_ = nullptr;
+  Policy policy_;                       // with the decision last evaluated
+  std::vector<Eigen::MatrixXd> gains_;  // as held, without ΔK
+  bool with_gain_ = false;              // whether the decision has a ΔK
+  bool closed_loop_ = false;            // whether any gain is not zero
+  bool lone_ = false;                   // whether no particle ever meets another
   CostParts parts_;
   double constant_state_cost_ = 0.0;  // noise and quantiser, which no input changes
   double constant_terminal_cost_ = 0.0;
-  Eigen::VectorXd zero_input_;
   std::vector<Stage> stages_;
-  std::vector<StateBatch> nominal_;  // x̄, state_dim x 1 each
-  StateBatch nominal_adjoint_;
-  StateBatch nominal_step_adjoint_;
-  StateBatch nominal_input_;
-  StateBatch nominal_input_adjoint_;
+  std::vector<Partial> partials_;
+  Eigen::VectorXd flat_;  // scratch of the matrix form of `evaluate`
+  Eigen::VectorXd flat_gradient_;
+  Eigen::VectorXd nominal_adjoint_;
+  Eigen::VectorXd nominal_step_adjoint_;
+  Eigen::VectorXd nominal_input_adjoint_;
+  Eigen::VectorXd input_sum_;
+  Eigen::MatrixXd outer_sum_;
+  Eigen::VectorXd lone_adjoint_;
+  Eigen::VectorXd lone_next_;
 };
 
 }  // namespace qsmpc

@@ -106,8 +106,8 @@ class Planner {
   const Dynamics& dynamics_;
   PlannerSettings settings_;
   Eigen::MatrixXd predicted_noise_;  ///< what of the noise the prediction carries
-  std::unique_ptr<const Propagator> propagator_;
-  std::unique_ptr<const Propagator> noise_free_;
+  std::unique_ptr<Propagator> propagator_;
+  std::unique_ptr<Propagator> noise_free_;
   std::unique_ptr<OcpSolver> solver_;
   std::optional<GaussianQuantisation> last_belief_;  ///< about zero, for `last_covariance_`
   Eigen::MatrixXd last_covariance_;

@@ -1,26 +1,41 @@
 #include "controller/prediction/prediction.hpp"
 
-#include <utility>
-
 namespace qsmpc {
 
-Prediction predict(const Dynamics& dynamics, const Propagator& propagator,
-                   const DiscreteMeasure& start, const Policy& policy) {
-  Prediction prediction;
-  prediction.stages.push_back(start);
-  for (Eigen::Index k = 0; k < policy.horizon(); ++k) {
-    const DiscreteMeasure& stage = prediction.stages.back();
-    Points inputs(policy.inputs.rows(), stage.size());
-    Points stepped(stage.dim(), stage.size());
-    policy_inputs(policy, k, stage.locations, inputs);
-    dynamics.step(stage.locations, inputs, stepped);
-    StageMap map = propagator.stage_map(stepped, stage.weights);
-    DiscreteMeasure next{.locations = Points(stage.dim(), map.clusters()), .weights = map.weights};
-    apply_stage_map(map, stepped, next.locations);
-    prediction.stepped.push_back(std::move(stepped));
-    prediction.maps.push_back(std::move(map));
-    prediction.stages.push_back(std::move(next));
+void predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
+             const Policy& policy, const Executor& run, PredictionScratch& scratch,
+             Prediction& out) {
+  const Eigen::Index horizon = policy.horizon();
+  out.stages.resize(horizon + 1);
+  out.stepped.resize(horizon);
+  out.maps.resize(horizon);
+  out.stages[0] = start;
+  for (Eigen::Index k = 0; k < horizon; ++k) {
+    const DiscreteMeasure& stage = out.stages[k];
+    Points& stepped = out.stepped[k];
+    scratch.inputs.resize(policy.inputs.rows(), stage.size());
+    stepped.resize(stage.dim(), stage.size());
+    policy_inputs(policy, k, stage.locations, scratch.inputs);
+    dynamics.step(stage.locations, scratch.inputs, stepped);
+    StageMap& map = out.maps[k];
+    propagator.update(stepped, stage.weights, run, map);
+    DiscreteMeasure& next = out.stages[k + 1];
+    next.weights = map.weights;
+    next.locations.resize(stage.dim(), map.clusters());
+    if (!map.identity) {
+      resize_packed(static_cast<int>(stage.dim()), stage.size(), scratch.packed);
+      pack(stepped, 0, stage.size(), scratch.packed);
+    }
+    apply_shares(map, stepped, scratch.packed, 0, map.clusters(), next.locations);
+    apply_spread(map, next.locations);
   }
+}
+
+Prediction predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
+                   const Policy& policy) {
+  PredictionScratch scratch;
+  Prediction prediction;
+  predict(dynamics, propagator, start, policy, run_in_turn, scratch, prediction);
   return prediction;
 }
 

@@ -19,8 +19,20 @@ struct Prediction {
   std::vector<StageMap> maps;           ///< horizon; from stepped[k] to stages[k + 1]
 };
 
-/// Rolls `start` forward under `policy`, with assignments that suit it.
-[[nodiscard]] Prediction predict(const Dynamics& dynamics, const Propagator& propagator,
+/// What a prediction works on, so that the next one allocates nothing.
+struct PredictionScratch {
+  Points inputs;
+  PackedPoints packed;
+};
+
+/// Rolls `start` forward under `policy`, with assignments that suit it, into `out`, whose storage
+/// is reused.
+void predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
+             const Policy& policy, const Executor& run, PredictionScratch& scratch,
+             Prediction& out);
+
+/// The same as a new value.
+[[nodiscard]] Prediction predict(const Dynamics& dynamics, Propagator& propagator,
                                  const DiscreteMeasure& start, const Policy& policy);
 
 /// A prediction with all that it was made from, as certificates need it; refers to objects that

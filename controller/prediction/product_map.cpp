@@ -18,7 +18,7 @@ StageMap map_to_means(const Clusters& clusters, const Eigen::VectorXd& masses) {
   StageMap map;
   map.weights.resize(kept);
   map.offset.resize(clusters.noise_moment.rows(), kept);
-  map.row_begin.push_back(0);
+  map.shares.begin.push_back(0);
   Eigen::Index at = 0;
   for (Eigen::Index n = 0; n < masses.size(); ++n) {
     if (masses[n] <= 0.0) continue;
@@ -26,12 +26,13 @@ StageMap map_to_means(const Clusters& clusters, const Eigen::VectorXd& masses) {
     map.offset.col(at) = clusters.noise_moment.col(n) / masses[n];
     for (Eigen::Index i = 0; i < clusters.share.rows(); ++i) {
       if (clusters.share(i, n) == 0.0) continue;
-      map.column.push_back(static_cast<int>(i));
-      map.coefficient.push_back(clusters.share(i, n) / masses[n]);
+      map.shares.column.push_back(static_cast<int>(i));
+      map.shares.value.push_back(clusters.share(i, n) / masses[n]);
     }
-    map.row_begin.push_back(static_cast<int>(map.column.size()));
+    map.shares.begin.push_back(static_cast<int>(map.shares.column.size()));
     ++at;
   }
+  transpose(map.shares, static_cast<int>(clusters.share.rows()), map.shares_transposed);
   return map;
 }
 
@@ -83,12 +84,34 @@ StageMap cluster_map(const SoftCompression& compression, const Eigen::VectorXd& 
   return map;
 }
 
+void cluster_map(const MixtureCells& cells, Eigen::Index sources, StageMap& out) {
+  const int count = cells.cells();
+  const Eigen::Index dim = static_cast<Eigen::Index>(cells.noise_mean.size()) / count;
+  out.identity = false;
+  out.shares.begin = cells.begin;
+  out.shares.column = cells.source;
+  out.shares.value.resize(cells.mass.size());
+  for (int n = 0; n < count; ++n) {
+    const double inverse = 1.0 / cells.weight[n];
+    for (int k = cells.begin[n]; k < cells.begin[n + 1]; ++k) {
+      out.shares.value[k] = cells.mass[k] * inverse;
+    }
+  }
+  transpose(out.shares, static_cast<int>(sources), out.shares_transposed);
+  out.offset = Eigen::Map<const Points>(cells.noise_mean.data(), dim, count);
+  out.weights = Eigen::Map<const Eigen::VectorXd>(cells.weight.data(), count);
+  out.spread.resize(0, 0);
+  out.compression_w2 = cells.w2;
+}
+
 StageMap lost_map(const DiscreteMeasure& stepped) {
   StageMap map;
-  map.row_begin = {0, static_cast<int>(stepped.size())};
-  map.column.resize(stepped.size());
-  std::iota(map.column.begin(), map.column.end(), 0);
-  map.coefficient.assign(stepped.weights.begin(), stepped.weights.end());
+  const int size = static_cast<int>(stepped.size());
+  map.shares.begin = {0, size};
+  map.shares.column.resize(size);
+  std::iota(map.shares.column.begin(), map.shares.column.end(), 0);
+  map.shares.value.assign(stepped.weights.begin(), stepped.weights.end());
+  transpose(map.shares, size, map.shares_transposed);
   map.offset = Points::Zero(stepped.dim(), 1);
   map.weights = Eigen::VectorXd::Constant(1, stepped.weights.sum());
   map.compression_w2 = std::numeric_limits<double>::infinity();

@@ -3,8 +3,9 @@
 
 #include "controller/measure/compression.hpp"
 #include "controller/measure/measures.hpp"
+#include "controller/measure/mixture_split.hpp"
 #include "controller/measure/soft_compression.hpp"
-#include "controller/prediction/propagator.hpp"
+#include "controller/prediction/stage_map.hpp"
 
 namespace qsmpc {
 
@@ -21,6 +22,9 @@ namespace qsmpc {
 /// The same with the shares that products have in clusters held instead of assignments.
 [[nodiscard]] StageMap cluster_map(const SoftCompression& compression,
                                    const Eigen::VectorXd& weights, const DiscreteMeasure& noise);
+
+/// The map from `sources` stepped points to the means of the cells; reuses the storage of `out`.
+void cluster_map(const MixtureCells& cells, Eigen::Index sources, StageMap& out);
 
 /// The map of stepped points that are not finite: all into one cluster, at infinite cost.
 [[nodiscard]] StageMap lost_map(const DiscreteMeasure& stepped);

@@ -1,10 +1,10 @@
 #include "controller/prediction/propagator.hpp"
 
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
 #include "controller/measure/compression.hpp"
+#include "controller/measure/mixture_split.hpp"
 #include "controller/measure/soft_compression.hpp"
 #include "controller/prediction/moment_matching.hpp"
 #include "controller/prediction/product_map.hpp"
@@ -12,6 +12,7 @@
 namespace qsmpc {
 namespace {
 
+constexpr const char* kMixture = "mixture";
 constexpr const char* kCompressed = "compressed";
 constexpr const char* kMomentMatched = "moment_matched";
 constexpr const char* kSoft = "soft";
@@ -20,11 +21,11 @@ constexpr const char* kNoiseFree = "noise_free";
 /// Products with the noise quantiser, brought to a number of clusters.
 class ProductPropagator : public Propagator {
  public:
-  [[nodiscard]] StageMap stage_map(const Points& stepped,
-                                   const Eigen::VectorXd& weights) const final {
+  void update(const Points& stepped, const Eigen::VectorXd& weights, const Executor& /*run*/,
+              StageMap& out) final {
     const DiscreteMeasure measure{.locations = stepped, .weights = weights};
-    if (!stepped.allFinite()) return lost_map(measure);
-    return compressed_map(measure, product_measure(measure, noise_.measure));
+    out = stepped.allFinite() ? compressed_map(measure, product_measure(measure, noise_.measure))
+                              : lost_map(measure);
   }
 
   [[nodiscard]] double noise_w2() const final { return noise_.w2; }
@@ -109,6 +110,30 @@ class SoftPropagator final : public ProductPropagator {
   }
 };
 
+/// The noise stays Gaussian: the mixture of the stepped points' noise is cut into cells.
+class MixturePropagator final : public Propagator {
+ public:
+  explicit MixturePropagator(const PropagatorSettings& settings)
+      : splitter_(settings.noise.covariance, settings.compressed_points, settings.noise_points) {}
+
+  void update(const Points& stepped, const Eigen::VectorXd& weights, const Executor& run,
+              StageMap& out) override {
+    if (!stepped.allFinite()) {
+      out = lost_map({.locations = stepped, .weights = weights});
+      return;
+    }
+    splitter_.split(stepped, weights, run, cells_);
+    cluster_map(cells_, stepped.cols(), out);
+  }
+
+  /// The noise is not quantised; what its cells lose is in the cost of the map.
+  [[nodiscard]] double noise_w2() const override { return 0.0; }
+
+ private:
+  MixtureSplitter splitter_;
+  MixtureCells cells_;
+};
+
 /// Every point stays as it is. The noise is represented by its mean, so its whole standard
 /// deviation counts as error.
 class NoiseFreePropagator final : public Propagator {
@@ -116,16 +141,11 @@ class NoiseFreePropagator final : public Propagator {
   explicit NoiseFreePropagator(const PropagatorSettings& settings)
       : noise_w2_(std::sqrt(settings.noise.covariance.trace())) {}
 
-  [[nodiscard]] StageMap stage_map(const Points& stepped,
-                                   const Eigen::VectorXd& weights) const override {
-    StageMap map;
-    map.row_begin.resize(weights.size() + 1);
-    std::iota(map.row_begin.begin(), map.row_begin.end(), 0);
-    map.column.assign(map.row_begin.begin(), map.row_begin.end() - 1);
-    map.coefficient.assign(weights.size(), 1.0);
-    map.offset = Points::Zero(stepped.rows(), stepped.cols());
-    map.weights = weights;
-    return map;
+  void update(const Points& /*stepped*/, const Eigen::VectorXd& weights, const Executor& /*run*/,
+              StageMap& out) override {
+    out.identity = true;
+    out.weights = weights;
+    out.compression_w2 = 0.0;
   }
 
   [[nodiscard]] double noise_w2() const override { return noise_w2_; }
@@ -136,49 +156,15 @@ class NoiseFreePropagator final : public Propagator {
 
 }  // namespace
 
-void apply_stage_map(const StageMap& map, const Points& stepped, Points& out) {
-  for (Eigen::Index axis = 0; axis < stepped.rows(); ++axis) {
-    for (Eigen::Index n = 0; n < map.clusters(); ++n) {
-      double sum = map.offset(axis, n);
-      for (int k = map.row_begin[n]; k < map.row_begin[n + 1]; ++k) {
-        sum += map.coefficient[k] * stepped(axis, map.column[k]);
-      }
-      out(axis, n) = sum;
-    }
-  }
-  if (map.spread.size() == 0) return;
-  const Eigen::VectorXd mean = out * map.weights / map.weights.sum();
-  Eigen::VectorXd offset(mean.size());
-  for (Eigen::Index n = 0; n < map.clusters(); ++n) {
-    offset = out.col(n) - mean;
-    out.col(n) = mean;
-    out.col(n).noalias() += map.spread * offset;
-  }
-}
-
-void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& stepped_adjoint) {
-  stepped_adjoint.setZero();
-  const bool spread = map.spread.size() != 0;
-  // With S symmetric: the adjoint of cluster n before the spread is S g_n + ρ̃_n (I − S) Σ g.
-  Eigen::VectorXd mean_adjoint;
-  if (spread) {
-    const Eigen::VectorXd total = adjoint.rowwise().sum();
-    mean_adjoint = (total - map.spread * total) / map.weights.sum();
-  }
-  for (Eigen::Index axis = 0; axis < adjoint.rows(); ++axis) {
-    for (Eigen::Index n = 0; n < map.clusters(); ++n) {
-      const double entry =
-          spread ? map.spread.col(axis).dot(adjoint.col(n)) + map.weights[n] * mean_adjoint[axis]
-                 : adjoint(axis, n);
-      for (int k = map.row_begin[n]; k < map.row_begin[n + 1]; ++k) {
-        stepped_adjoint(axis, map.column[k]) += map.coefficient[k] * entry;
-      }
-    }
-  }
+StageMap Propagator::stage_map(const Points& stepped, const Eigen::VectorXd& weights) {
+  StageMap map;
+  update(stepped, weights, run_in_turn, map);
+  return map;
 }
 
 const std::vector<PropagatorEntry>& propagators() {
   static const std::vector<PropagatorEntry> table = {
+      {kMixture, "the noise kept Gaussian, cut into cells with the points after every step; fast"},
       {kCompressed, "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)"},
       {kMomentMatched,
        "the same with Lloyd's quantiser and refined compression, spread to the covariance due"},
@@ -188,12 +174,13 @@ const std::vector<PropagatorEntry>& propagators() {
   return table;
 }
 
-std::unique_ptr<const Propagator> make_propagator(std::string_view name,
-                                                  const PropagatorSettings& settings) {
+std::unique_ptr<Propagator> make_propagator(std::string_view name,
+                                            const PropagatorSettings& settings) {
   check_gaussian(settings.noise);
   if (!settings.noise.mean.isZero(0.0)) {
     throw std::invalid_argument("propagator: the noise must have zero mean");
   }
+  if (name == kMixture) return std::make_unique<MixturePropagator>(settings);
   if (name == kCompressed) return std::make_unique<CompressedPropagator>(settings);
   if (name == kMomentMatched) return std::make_unique<MomentMatchedPropagator>(settings);
   if (name == kSoft) return std::make_unique<SoftPropagator>(settings);

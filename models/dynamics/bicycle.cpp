@@ -4,6 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "models/dynamics/bicycle_batch.hpp"
 #include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
@@ -19,6 +20,21 @@ constexpr const char* kSummary =
 constexpr double kLeastAcceleration = -5.0;                        // m/s²
 constexpr double kLargestAcceleration = 2.0;                       // m/s²
 constexpr double kLargestSteeringAngle = 0.25 * std::numbers::pi;  // rad
+
+/// Batches go through loops made by hand.
+class BicycleDynamics final : public TemplatedDynamics<Bicycle> {
+ public:
+  using TemplatedDynamics::TemplatedDynamics;
+
+  void step(const BatchView& states, const BatchView& inputs, BatchOut next) const override {
+    step_bicycle(model(), states, inputs, next);
+  }
+
+  void pullback(const BatchView& states, const BatchView& inputs, const BatchView& next_adjoint,
+                BatchOut state_adjoint, BatchOut input_adjoint) const override {
+    pullback_bicycle(model(), states, inputs, next_adjoint, state_adjoint, input_adjoint);
+  }
+};
 
 }  // namespace
 
@@ -52,7 +68,7 @@ double Bicycle::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const {
 
 std::unique_ptr<const Dynamics> make_bicycle(const ParameterMap& parameters, double time_step) {
   check_time_step(kName, time_step);
-  return std::make_unique<TemplatedDynamics<Bicycle>>(
+  return std::make_unique<BicycleDynamics>(
       Bicycle{.mass = positive_parameter(kName, parameters, "mass"),
               .yaw_inertia = positive_parameter(kName, parameters, "yaw_inertia"),
               .front_axle_distance = positive_parameter(kName, parameters, "front_axle_distance"),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "models/dynamics/dubins_batch.hpp"
 #include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
@@ -13,19 +14,13 @@ constexpr double kDefaultSpeed = 1.5;         // m/s, Table B-1
 constexpr double kDefaultYawRateBound = 2.0;  // rad/s, Table B-1
 constexpr const char* kSummary = "Dubins car: x, y, heading; steered by its yaw rate (Eq. 5-1)";
 
-/// The batch functions by hand: rows are contiguous, so each line is one vector operation.
+/// Batches go through loops made by hand.
 class DubinsDynamics final : public TemplatedDynamics<Dubins> {
  public:
   using TemplatedDynamics::TemplatedDynamics;
 
   void step(const BatchView& states, const BatchView& inputs, BatchOut next) const override {
-    const double reach = model().speed * model().time_step;
-    next.row(Dubins::kX) =
-        states.row(Dubins::kX).array() + reach * states.row(Dubins::kHeading).array().cos();
-    next.row(Dubins::kY) =
-        states.row(Dubins::kY).array() + reach * states.row(Dubins::kHeading).array().sin();
-    next.row(Dubins::kHeading) =
-        states.row(Dubins::kHeading) + model().time_step * inputs.row(Dubins::kYawRate);
+    step_dubins(model(), states, inputs, next);
   }
 
   [[nodiscard]] std::optional<UnicycleStructure> unicycle() const override {
@@ -39,15 +34,7 @@ class DubinsDynamics final : public TemplatedDynamics<Dubins> {
 
   void pullback(const BatchView& states, const BatchView& /*inputs*/, const BatchView& next_adjoint,
                 BatchOut state_adjoint, BatchOut input_adjoint) const override {
-    const double reach = model().speed * model().time_step;
-    const auto heading = states.row(Dubins::kHeading).array();
-    state_adjoint.row(Dubins::kX) = next_adjoint.row(Dubins::kX);
-    state_adjoint.row(Dubins::kY) = next_adjoint.row(Dubins::kY);
-    state_adjoint.row(Dubins::kHeading) =
-        next_adjoint.row(Dubins::kHeading).array() +
-        reach * (next_adjoint.row(Dubins::kY).array() * heading.cos() -
-                 next_adjoint.row(Dubins::kX).array() * heading.sin());
-    input_adjoint.row(Dubins::kYawRate) = model().time_step * next_adjoint.row(Dubins::kHeading);
+    pullback_dubins(model(), states, next_adjoint, state_adjoint, input_adjoint);
   }
 };
 

@@ -132,7 +132,8 @@ SafeSet random_safe_set(Generator& generator, const Family& family, const Eigen:
 /// The propagator and its points; few where each would take long.
 void random_propagation(Generator& generator, PlannerSettings& settings) {
   const double which = uniform(generator, 0.0, 1.0);
-  settings.propagator = which < 0.5    ? "compressed"
+  settings.propagator = which < 0.35   ? "mixture"
+                        : which < 0.55 ? "compressed"
                         : which < 0.75 ? "noise_free"
                         : which < 0.9  ? "soft"
                                        : "moment_matched";

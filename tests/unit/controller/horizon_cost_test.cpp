@@ -99,7 +99,7 @@ class GradientCase {
   PlannerSettings settings_;
   GaussianQuantisation belief_;
   Policy policy_;
-  std::unique_ptr<const Propagator> propagator_;
+  std::unique_ptr<Propagator> propagator_;
   Prediction prediction_;
 };
 

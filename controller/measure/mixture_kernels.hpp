@@ -1,0 +1,81 @@
+// The inner loops of MixtureSplitter, for the processor's widest vectors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace qsmpc {
+
+/// The most dimensions that the loops are made for.
+inline constexpr int kMixtureDimLimit = 8;
+/// Arrays that the loops work on have room for a multiple of this many entries.
+inline constexpr std::size_t kMixturePadding = 8;
+
+/// For every source, what its coordinate x = y + σ z, z standard normal, has up to an edge:
+/// probability, ∫ x and ∫ x², in three arrays that are `stride` apart.
+using MixtureEdge = const double*;
+
+/// The edges of one cell along one axis.
+struct MixtureInterval {
+  MixtureEdge lower = nullptr;
+  MixtureEdge upper = nullptr;
+};
+
+/// Sums over the parts in a cell: mass, and by axis ∫ x and ∫ x², all times the sources' weights.
+struct MixtureMoments {
+  double mass = 0.0;
+  std::array<double, kMixtureDimLimit> first{};
+  std::array<double, kMixtureDimLimit> second{};
+};
+
+/// A split of a cell at x = `at` along one of its axes.
+struct MixtureCut {
+  int dim = 0;
+  /// That axis first, then the others.
+  std::array<MixtureInterval, kMixtureDimLimit> intervals{};
+  const double* weight = nullptr;    ///< of the sources
+  const double* position = nullptr;  ///< y, along the axis
+  std::size_t stride = 0;
+  double at = 0.0;
+  double deviation = 0.0;    ///< σ along the axis, ≥ 0
+  double least_share = 0.0;  ///< of a source that a part may carry
+  double* edge = nullptr;    ///< receives the new edge: 3 x stride
+};
+
+/// What a split leaves below `at`; axes in the order of the cut.
+struct MixtureCutResult {
+  MixtureMoments lower;
+  std::size_t lower_parts = 0;  ///< sources that have a part below, and above
+  std::size_t upper_parts = 0;
+};
+
+/// Makes the edge for the sources begin … end − 1 (begin a multiple of kMixturePadding, entries up
+/// to the next multiple of it readable and writable, with weight and position 0) and adds up what
+/// is below it. Where one of a source's two parts would carry less than least_share, the larger
+/// part takes both.
+MixtureCutResult cut_mixture(const MixtureCut& cut, std::size_t begin, std::size_t end);
+
+/// A finished cell.
+struct MixtureCell {
+  int dim = 0;
+  std::array<MixtureInterval, kMixtureDimLimit> intervals{};  ///< by axis
+  std::array<const double*, kMixtureDimLimit> position{};     ///< y, by axis
+  const double* weight = nullptr;
+  const std::int64_t* source = nullptr;  ///< names of the sources
+  std::size_t stride = 0;
+};
+
+struct MixtureParts {
+  std::size_t count = 0;
+  double mass = 0.0;
+  std::array<double, kMixtureDimLimit> first{};  ///< Σ mass · E[x], by axis
+  std::array<double, kMixtureDimLimit> noise{};  ///< Σ mass · E[x − y], by axis
+};
+
+/// Writes mass and name of every part of the cell among `size` sources to `mass` and `source`,
+/// which have room for `size` rounded up to kMixturePadding, plus kMixturePadding.
+MixtureParts list_mixture_parts(const MixtureCell& cell, std::size_t size, double* mass,
+                                std::int64_t* source);
+
+}  // namespace qsmpc

@@ -1,0 +1,419 @@
+#include "controller/measure/mixture_split.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "controller/measure/mixture_kernels.hpp"
+
+namespace qsmpc {
+namespace {
+
+// Cells that spread at least this fraction of the most spread one are split in the same round, so
+// that a round has work for several threads. A split leaves each half less than half the spread of
+// a bell along its axis.
+constexpr double kRoundShare = 0.5;
+// Spreads below this fraction of the whole mixture's are rounding.
+constexpr double kNoSpread = 1e-14;
+// A side with less than this fraction of its cell's mass is rounding.
+constexpr double kNoMass = 1e-12;
+// What rounding may take away from the cost, relative to the whole mixture's second moment.
+constexpr double kCostRounding = 1e-15;
+// A cell whose sources are fewer than this share of its table gets a table of its own.
+constexpr double kSparse = 0.5;
+constexpr std::size_t kLeastTable = 64;
+// Sources that one task works on; a multiple of kMixturePadding.
+constexpr std::size_t kChunk = 2048;
+constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
+
+std::size_t padded(std::size_t size) {
+  return (size + kMixturePadding - 1) / kMixturePadding * kMixturePadding;
+}
+
+/// Spreads that differ by rounding alone, as those of mirror images do, compare as equal.
+std::uint32_t rounded(double spread) {
+  constexpr int kDropped = 6;  // of the 23 bits of a float
+  return std::bit_cast<std::uint32_t>(static_cast<float>(spread)) >> kDropped;
+}
+
+/// Memory that is given out piece by piece and taken back all at once.
+class Arena {
+ public:
+  double* take(std::size_t count) {
+    while (at_ < slabs_.size() && used_ + count > slabs_[at_].size) {
+      ++at_;
+      used_ = 0;
+    }
+    if (at_ == slabs_.size()) {
+      const std::size_t size = std::max(kSlab, count);
+      slabs_.push_back({.size = size, .data = std::make_unique<double[]>(size)});
+      used_ = 0;
+    }
+    double* const begin = slabs_[at_].data.get() + used_;
+    used_ += count;
+    return begin;
+  }
+  void reset() {
+    at_ = 0;
+    used_ = 0;
+  }
+
+ private:
+  struct Slab {
+    std::size_t size;
+    std::unique_ptr<double[]> data;
+  };
+  std::vector<Slab> slabs_;
+  std::size_t at_ = 0;
+  std::size_t used_ = 0;
+};
+
+/// Sources that cells are made of: names, weights and positions (d x stride).
+struct Table {
+  std::size_t size = 0;
+  std::size_t stride = 0;
+  std::int64_t* name = nullptr;
+  double* weight = nullptr;
+  double* position = nullptr;
+};
+
+struct Cell {
+  std::size_t table = 0;
+  std::array<MixtureInterval, kMixtureDimLimit> intervals{};
+  MixtureMoments moments;
+  int axis = 0;
+  double at = 0.0;        // the mean along the axis
+  double spread = 0.0;    // Σ mass (x − mean)² along the axis; 0: not to be split
+  std::uint32_t key = 0;  // rounded(spread)
+};
+
+/// A split that is under way.
+struct Split {
+  int cell = 0;
+  MixtureCut cut{};
+  std::size_t first_task = 0;
+  std::size_t tasks = 0;
+};
+
+}  // namespace
+
+struct MixtureSplitter::Work {
+  Work(const Eigen::MatrixXd& covariance, int cells, int parts)
+      : dim(static_cast<int>(covariance.rows())), limit(cells), least_share(1.0 / parts) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
+    axes = eigen.eigenvectors();
+    deviations = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    centre.resize(dim);
+    cell_list.reserve(limit);
+  }
+
+  void start(const Points& sources, const Eigen::VectorXd& weights);
+  void choose_axis(Cell& cell) const;
+  bool begin_round();
+  void prepare(int index);
+  void finish(const Split& split);
+  void give_own_table(Cell& cell, std::size_t parts);
+  void list(MixtureCells& out);
+
+  int dim;
+  int limit;
+  double least_share;
+  Eigen::MatrixXd axes;        // of the noise, columns
+  Eigen::VectorXd deviations;  // along them
+  Eigen::VectorXd centre;      // mean of the sources
+  double second_moment = 0.0;  // of the mixture about the centre
+  double kept_moment = 0.0;    // of the cells' means
+
+  Arena arena;
+  std::vector<Table> tables;
+  std::vector<Cell> cell_list;
+  std::vector<int> round;
+  std::vector<Split> splits;
+  std::vector<std::pair<int, std::size_t>> tasks;  // split and first source
+  std::vector<MixtureCutResult> results;
+  std::vector<double> part_mass;
+  std::vector<std::int64_t> part_source;
+};
+
+/// One cell that holds everything.
+void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& weights) {
+  arena.reset();
+  tables.clear();
+  cell_list.clear();
+  const std::size_t size = weights.size();
+  const std::size_t stride = padded(size);
+  Table table{.size = size, .stride = stride};
+  table.name = reinterpret_cast<std::int64_t*>(arena.take(stride));
+  table.weight = arena.take(stride);
+  table.position = arena.take(dim * stride);
+  std::iota(table.name, table.name + stride, std::int64_t{0});
+  std::copy(weights.begin(), weights.end(), table.weight);
+  std::fill(table.weight + size, table.weight + stride, 0.0);
+  for (int a = 0; a < dim; ++a) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < size; ++i) sum += weights[i] * sources(a, i);
+    centre[a] = sum;
+  }
+  Cell cell;
+  cell.moments.mass = weights.sum();
+  second_moment = 0.0;
+  double* const nothing = arena.take(3 * stride);
+  std::fill(nothing, nothing + 3 * stride, 0.0);
+  for (int a = 0; a < dim; ++a) {
+    double* const position = table.position + a * stride;
+    std::fill(position, position + stride, 0.0);
+    for (int b = 0; b < dim; ++b) {
+      const double entry = axes(b, a);
+      if (entry == 0.0) continue;
+      const double* const row = sources.data() + b * sources.cols();
+      for (std::size_t i = 0; i < size; ++i) position[i] += entry * (row[i] - centre[b]);
+    }
+    double* const all = arena.take(3 * stride);
+    const double variance = deviations[a] * deviations[a];
+    for (std::size_t i = 0; i < stride; ++i) {
+      const double y = position[i];
+      all[i] = 1.0;
+      all[stride + i] = y;
+      all[2 * stride + i] = y * y + variance;
+      cell.moments.first[a] += table.weight[i] * y;
+      cell.moments.second[a] += table.weight[i] * (y * y + variance);
+    }
+    cell.intervals[a] = {.lower = nothing, .upper = all};
+    second_moment += cell.moments.second[a];
+  }
+  tables.push_back(table);
+  choose_axis(cell);
+  cell_list.push_back(cell);
+}
+
+void MixtureSplitter::Work::choose_axis(Cell& cell) const {
+  cell.spread = 0.0;
+  cell.key = 0;
+  for (int a = 0; a < dim; ++a) {
+    const double mean = cell.moments.first[a] / cell.moments.mass;
+    const double spread = cell.moments.second[a] - mean * cell.moments.first[a];
+    if (!(spread > kNoSpread * second_moment)) continue;
+    const std::uint32_t key = rounded(spread);
+    if (key > cell.key) {
+      cell.key = key;
+      cell.axis = a;
+      cell.at = mean;
+      cell.spread = spread;
+    }
+  }
+}
+
+/// Chooses the cells that are split next; false if there is none.
+bool MixtureSplitter::Work::begin_round() {
+  splits.clear();
+  tasks.clear();
+  round.clear();
+  const int left = limit - static_cast<int>(cell_list.size());
+  std::uint32_t most = 0;
+  for (const Cell& cell : cell_list) most = std::max(most, cell.key);
+  if (left <= 0 || most == 0) return false;
+  const std::uint32_t least = rounded(
+      kRoundShare *
+      std::max_element(cell_list.begin(), cell_list.end(), [](const Cell& a, const Cell& b) {
+        return a.key < b.key;
+      })->spread);
+  for (int n = 0; n < static_cast<int>(cell_list.size()); ++n) {
+    if (cell_list[n].key > 0 && cell_list[n].key >= least) round.push_back(n);
+  }
+  std::sort(round.begin(), round.end(), [this](int a, int b) {
+    return cell_list[a].key != cell_list[b].key ? cell_list[a].key > cell_list[b].key : a < b;
+  });
+  if (static_cast<int>(round.size()) > left) round.resize(left);
+  for (const int index : round) prepare(index);
+  results.resize(std::max(results.size(), tasks.size()));
+  return true;
+}
+
+void MixtureSplitter::Work::prepare(int index) {
+  const Cell& cell = cell_list[index];
+  const Table& table = tables[cell.table];
+  Split split{.cell = index, .first_task = tasks.size()};
+  split.cut = {.dim = dim,
+               .weight = table.weight,
+               .position = table.position + cell.axis * table.stride,
+               .stride = table.stride,
+               .at = cell.at,
+               .deviation = deviations[cell.axis],
+               .least_share = least_share,
+               .edge = arena.take(3 * table.stride)};
+  split.cut.intervals[0] = cell.intervals[cell.axis];
+  for (int a = 0, b = 1; a < dim; ++a) {
+    if (a != cell.axis) split.cut.intervals[b++] = cell.intervals[a];
+  }
+  for (std::size_t begin = 0; begin < table.size; begin += kChunk) {
+    tasks.emplace_back(static_cast<int>(splits.size()), begin);
+  }
+  split.tasks = tasks.size() - split.first_task;
+  splits.push_back(split);
+}
+
+/// Puts the two halves in the place of the cell that was split, and at the end.
+void MixtureSplitter::Work::finish(const Split& split) {
+  MixtureCutResult sum = results[split.first_task];
+  for (std::size_t k = 1; k < split.tasks; ++k) {
+    const MixtureCutResult& result = results[split.first_task + k];
+    sum.lower.mass += result.lower.mass;
+    for (int a = 0; a < dim; ++a) {
+      sum.lower.first[a] += result.lower.first[a];
+      sum.lower.second[a] += result.lower.second[a];
+    }
+    sum.lower_parts += result.lower_parts;
+    sum.upper_parts += result.upper_parts;
+  }
+  Cell& cell = cell_list[split.cell];
+  const double whole = cell.moments.mass;
+  if (!(sum.lower.mass > kNoMass * whole && whole - sum.lower.mass > kNoMass * whole)) {
+    cell.spread = 0.0;
+    cell.key = 0;
+    return;
+  }
+  Cell upper = cell;
+  cell.moments.mass = sum.lower.mass;
+  upper.moments.mass = whole - sum.lower.mass;
+  for (int a = 0, b = 1; a < dim; ++a) {
+    const int from = a == cell.axis ? 0 : b++;
+    cell.moments.first[a] = sum.lower.first[from];
+    cell.moments.second[a] = sum.lower.second[from];
+    upper.moments.first[a] -= sum.lower.first[from];
+    upper.moments.second[a] -= sum.lower.second[from];
+  }
+  cell.intervals[cell.axis].upper = split.cut.edge;
+  upper.intervals[upper.axis].lower = split.cut.edge;
+  give_own_table(cell, sum.lower_parts);
+  give_own_table(upper, sum.upper_parts);
+  choose_axis(cell);
+  choose_axis(upper);
+  cell_list.push_back(upper);
+}
+
+/// Where few of the table's sources have a part in the cell, the cell goes on with these alone.
+void MixtureSplitter::Work::give_own_table(Cell& cell, std::size_t parts) {
+  const Table old = tables[cell.table];
+  if (old.size < kLeastTable ||
+      static_cast<double>(parts) > kSparse * static_cast<double>(old.size)) {
+    return;
+  }
+  const std::size_t stride = padded(parts);
+  Table table{.stride = stride};
+  table.name = reinterpret_cast<std::int64_t*>(arena.take(stride));
+  table.weight = arena.take(stride);
+  table.position = arena.take(dim * stride);
+  std::array<double*, 2 * kMixtureDimLimit> edges{};
+  for (int a = 0; a < 2 * dim; ++a) edges[a] = arena.take(3 * stride);
+  for (std::size_t i = 0; i < old.size; ++i) {
+    bool some = true;
+    for (int a = 0; a < dim; ++a) some &= cell.intervals[a].upper[i] > cell.intervals[a].lower[i];
+    if (!some) continue;
+    const std::size_t to = table.size++;
+    table.name[to] = old.name[i];
+    table.weight[to] = old.weight[i];
+    for (int a = 0; a < dim; ++a) {
+      table.position[a * stride + to] = old.position[a * old.stride + i];
+      for (int c = 0; c < 3; ++c) {
+        edges[2 * a][c * stride + to] = cell.intervals[a].lower[c * old.stride + i];
+        edges[2 * a + 1][c * stride + to] = cell.intervals[a].upper[c * old.stride + i];
+      }
+    }
+  }
+  for (std::size_t to = table.size; to < stride; ++to) {
+    table.weight[to] = 0.0;
+    table.name[to] = 0;
+    for (int a = 0; a < dim; ++a) {
+      table.position[a * stride + to] = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        edges[2 * a][c * stride + to] = 0.0;
+        edges[2 * a + 1][c * stride + to] = 0.0;
+      }
+    }
+  }
+  for (int a = 0; a < dim; ++a) {
+    cell.intervals[a] = {.lower = edges[2 * a], .upper = edges[2 * a + 1]};
+  }
+  cell.table = tables.size();
+  tables.push_back(table);
+}
+
+/// Lists the parts of all cells.
+void MixtureSplitter::Work::list(MixtureCells& out) {
+  const std::size_t count = cell_list.size();
+  kept_moment = 0.0;
+  out.begin.assign(1, 0);
+  out.source.clear();
+  out.mass.clear();
+  out.weight.resize(count);
+  out.noise_mean.resize(dim * count);
+  for (std::size_t n = 0; n < count; ++n) {
+    const Cell& cell = cell_list[n];
+    const Table& table = tables[cell.table];
+    MixtureCell finished{.dim = dim,
+                         .intervals = cell.intervals,
+                         .weight = table.weight,
+                         .source = table.name,
+                         .stride = table.stride};
+    for (int a = 0; a < dim; ++a) finished.position[a] = table.position + a * table.stride;
+    const std::size_t room = table.stride + kMixturePadding;
+    part_mass.resize(std::max(part_mass.size(), room));
+    part_source.resize(std::max(part_source.size(), room));
+    const MixtureParts parts =
+        list_mixture_parts(finished, table.size, part_mass.data(), part_source.data());
+    out.mass.insert(out.mass.end(), part_mass.begin(), part_mass.begin() + parts.count);
+    out.source.insert(out.source.end(), part_source.begin(), part_source.begin() + parts.count);
+    out.begin.push_back(static_cast<int>(out.mass.size()));
+    out.weight[n] = parts.mass;
+    for (int a = 0; a < dim; ++a) kept_moment += parts.first[a] * parts.first[a] / parts.mass;
+    for (int b = 0; b < dim; ++b) {
+      double mean = 0.0;
+      for (int a = 0; a < dim; ++a) mean += axes(b, a) * parts.noise[a];
+      out.noise_mean[b * count + n] = mean / parts.mass;
+    }
+  }
+}
+
+MixtureSplitter::MixtureSplitter(const Eigen::MatrixXd& covariance, int cells, int parts) {
+  check_gaussian({.mean = Eigen::VectorXd::Zero(covariance.rows()), .covariance = covariance});
+  if (covariance.rows() > kMixtureDimLimit) {
+    throw std::invalid_argument("mixture: at most " + std::to_string(kMixtureDimLimit) +
+                                " dimensions");
+  }
+  if (cells < 1 || parts < 1) {
+    throw std::invalid_argument("mixture: at least one cell and one part are needed");
+  }
+  work_ = std::make_unique<Work>(covariance, cells, parts);
+}
+
+MixtureSplitter::~MixtureSplitter() = default;
+
+void MixtureSplitter::split(const Points& sources, const Eigen::VectorXd& weights,
+                            const Executor& run, MixtureCells& out) {
+  Work& work = *work_;
+  work.start(sources, weights);
+  while (work.begin_round()) {
+    const auto task = [&work](int k) {
+      const auto [split, begin] = work.tasks[k];
+      const MixtureCut& cut = work.splits[split].cut;
+      const std::size_t size = work.tables[work.cell_list[work.splits[split].cell].table].size;
+      work.results[k] = cut_mixture(cut, begin, std::min(size, begin + kChunk));
+    };
+    run(static_cast<int>(work.tasks.size()), task);
+    for (const Split& split : work.splits) work.finish(split);
+  }
+  work.list(out);
+  // The cost is what the cells lack of the mixture's second moment.
+  out.w2 = std::sqrt(std::max(0.0, work.second_moment - work.kept_moment) +
+                     kCostRounding * work.second_moment);
+}
+
+}  // namespace qsmpc

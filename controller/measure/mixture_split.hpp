@@ -1,0 +1,58 @@
+// A Gaussian mixture cut into cells, of which each becomes one point: how a prediction takes up
+// Gaussian noise and keeps its number of points, without a quantiser of the noise.
+//
+// The mixture is Σ ρ_i N(f_i, Σ): the sources f_i plus noise w ~ N(0, Σ). In the axes of Σ the
+// noise has independent coordinates, so that the probability of a box, and the first and second
+// moments over it, are products of one-dimensional closed forms. Cells are boxes in these axes,
+// made by splitting, again and again, those that spread most, at their means. The part of a source
+// in a cell is a region of its noise; all that is in a cell goes to the cell's mean. As the parts
+// of a source partition its noise, this is a coupling of the mixture with the result, and its cost
+// is the variance within the cells, exactly (docs/theory/quantisation.md).
+//
+// A source is cut into a bounded number of parts: where one would carry less than the share
+// 1/parts, the source's whole rest goes to the other side of the split. It bounds the work by
+// sources x parts, as a noise quantiser of `parts` points would, and keeps the result a partition.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/parallel.hpp"
+
+namespace qsmpc {
+
+/// Which share of which source is in which cell. Storage is reused from call to call.
+struct MixtureCells {
+  std::vector<int> begin;      ///< cells + 1; the parts of cell n are [begin[n], begin[n + 1])
+  std::vector<int> source;     ///< of each part, increasing within a cell
+  std::vector<double> mass;    ///< of each part: ρ_i P(w in the part)
+  std::vector<double> weight;  ///< cells; the sum of the cell's parts, > 0
+  /// d x cells, row by row: the mean of the noise over the cell's parts, by mass.
+  std::vector<double> noise_mean;
+  double w2 = 0.0;  ///< of the coupling; W2 of the mixture to the cells' means is at most this
+
+  [[nodiscard]] int cells() const { return static_cast<int>(weight.size()); }
+};
+
+class MixtureSplitter {
+ public:
+  /// covariance: Σ, d x d, positive semidefinite, d ≤ 8. cells, parts: ≥ 1. Throws
+  /// std::invalid_argument otherwise.
+  MixtureSplitter(const Eigen::MatrixXd& covariance, int cells, int parts);
+  ~MixtureSplitter();
+
+  /// Cuts the mixture about `sources` (d x n, finite) with `weights` (n, non-negative, summing to
+  /// one) into at most as many cells as wished; fewer only where nothing is left to split. Makes
+  /// no allocation once it has worked on a mixture of this size.
+  void split(const Points& sources, const Eigen::VectorXd& weights, const Executor& run,
+             MixtureCells& out);
+
+ private:
+  struct Work;
+  std::unique_ptr<Work> work_;
+};
+
+}  // namespace qsmpc

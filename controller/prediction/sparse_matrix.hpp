@@ -1,0 +1,40 @@
+// Sparse matrices that act on batches of points, for the processor's widest vectors.
+#pragma once
+
+#include <vector>
+
+#include "controller/measure/measures.hpp"
+
+namespace qsmpc {
+
+/// Row n has the entries begin[n] … begin[n + 1] − 1. Storage is reused where one is written again.
+struct SparseMatrix {
+  std::vector<int> begin;  ///< rows + 1
+  std::vector<int> column;
+  std::vector<double> value;
+
+  [[nodiscard]] int rows() const { return static_cast<int>(begin.size()) - 1; }
+};
+
+/// out = aᵀ, for `a` with `columns` columns; the entries of a row stay in the order of a's rows.
+void transpose(const SparseMatrix& a, int columns, SparseMatrix& out);
+
+/// Points one after the other, each with its coordinates side by side and zeros up to `stride`.
+struct PackedPoints {
+  int stride = 0;  ///< a multiple of 4, at least the dimension
+  std::vector<double> data;
+
+  [[nodiscard]] const double* point(int i) const { return data.data() + i * stride; }
+};
+
+/// Makes room for `count` points of dimension `dim`.
+void resize_packed(int dim, Eigen::Index count, PackedPoints& packed);
+
+/// Packs the points begin … end − 1.
+void pack(const Points& points, Eigen::Index begin, Eigen::Index end, PackedPoints& packed);
+
+/// out.col(n) = Σ_i a(n, i) points_i for the rows begin … end − 1 of a. The sum is taken in four
+/// interleaved parts. out: dim x rows.
+void multiply(const SparseMatrix& a, const PackedPoints& points, int begin, int end, Points& out);
+
+}  // namespace qsmpc
