@@ -1,0 +1,71 @@
+// A plan costs hardly more than the best policy: of the exact cost where that is known, of the cost
+// on simulated paths elsewhere.
+#include "tests/support/planning_quality.hpp"
+
+#include <cctype>
+#include <cstdlib>
+#include <string>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+namespace qsmpc::testing {
+namespace {
+
+/// Where scripts/test is called with --slow, the best policy is sought longer.
+bool slow() { return std::getenv("QSMPC_SLOW_TESTS") != nullptr; }
+
+class OpenLoopPlan : public ::testing::TestWithParam<std::tuple<int, double>> {};
+
+TEST_P(OpenLoopPlan, costs_hardly_more_than_the_exact_optimum) {
+  const auto [horizon, allowed] = GetParam();
+  const Shortfall shortfall =
+      exact_shortfall(free_settings(horizon, /*closed_loop=*/false), first_belief(0.0, 0.0, 0.0));
+  RecordProperty("more", std::to_string(shortfall.absolute()));
+  RecordProperty("best", std::to_string(shortfall.best));
+  EXPECT_LE(shortfall.absolute(), allowed) << "of " << shortfall.best;
+  // Of an optimum, nothing can cost less.
+  EXPECT_GE(shortfall.absolute(), -1e-10 * shortfall.best);
+}
+
+INSTANTIATE_TEST_SUITE_P(horizons, OpenLoopPlan,
+                         ::testing::Values(std::tuple(8, 0.1), std::tuple(18, 0.5)));
+
+class ClosedLoopPlan : public ::testing::TestWithParam<std::tuple<int, std::size_t>> {};
+
+TEST_P(ClosedLoopPlan, costs_hardly_more_than_the_best_policy_that_was_found) {
+  constexpr double kAllowed = 0.002;
+  const auto [horizon, index] = GetParam();
+  const Place place = places_among_blocks()[index];
+  SamplingSettings sampling;
+  sampling.search.draws.paths = slow() ? 4000 : 1000;
+  sampling.search.random_starts = slow() ? 20 : 0;
+  const std::unique_ptr<const Dynamics> car = default_car();
+  const Shortfall shortfall =
+      sampled_shortfall(*car, blocks_settings(horizon), place.belief, sampling);
+  RecordProperty("more_percent", std::to_string(100.0 * shortfall.relative()));
+  RecordProperty("best", std::to_string(shortfall.best));
+  EXPECT_LE(shortfall.relative(), kAllowed)
+      << "planned " << shortfall.planned << ", best " << shortfall.best << "\nplanned inputs "
+      << shortfall.plan.policy.inputs << "\nbest inputs    " << shortfall.best_inputs;
+  // The search starts from the plan, too: it ends at most a sampling error above it.
+  EXPECT_GE(shortfall.relative(), -kAllowed) << "the search is not one";
+}
+
+std::string name_of(const ::testing::TestParamInfo<std::tuple<int, std::size_t>>& info) {
+  const auto [horizon, index] = info.param;
+  std::string name = std::to_string(horizon) + "_stages_" + places_among_blocks()[index].name;
+  for (char& letter : name) {
+    if (std::isalnum(static_cast<unsigned char>(letter)) == 0) letter = '_';
+  }
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    horizons, ClosedLoopPlan,
+    ::testing::Combine(::testing::Values(8, 12),
+                       ::testing::Range<std::size_t>(0, places_among_blocks().size())),
+    name_of);
+
+}  // namespace
+}  // namespace qsmpc::testing

@@ -1,0 +1,81 @@
+// What a policy really costs, and the best policy that patience can find: the planning problem of
+// docs/theory/planning.md with its expectations taken over simulated paths instead of particles.
+//
+//   SampledProblem problem(*car, settings, belief, {.paths = 20000, .seed = 1});
+//   double price = problem.price(plan.policy.inputs);
+//
+// The draws are frozen, so that two policies meet the same noise, and the price is a piecewise
+// smooth function of the nominal inputs whose gradient, that of the gains included, is known. It
+// shares the system, the regulator's gains and the policy's form with the planner, and nothing of
+// quantisation, compression, cost, penalty or solver.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/planner.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::testing {
+
+struct Draws {
+  int paths = 2000;
+  unsigned seed = 1;
+};
+
+class SampledProblem {
+ public:
+  /// `dynamics` must outlive the problem. Throws std::invalid_argument for the thesis's penalty,
+  /// which is not written out here.
+  SampledProblem(const Dynamics& dynamics, const PlannerSettings& settings, const Gaussian& belief,
+                 Draws draws);
+
+  /// The mean cost of the paths under the policy with these nominal inputs (input_dim x horizon)
+  /// and the gains that belong to them.
+  [[nodiscard]] double price(const Eigen::MatrixXd& inputs);
+  /// The same and its gradient (overwritten).
+  double price(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient);
+
+  /// A local minimum within the input bounds from `start`, to the last digits that kinks permit.
+  [[nodiscard]] Eigen::MatrixXd descend(const Eigen::MatrixXd& start);
+
+ private:
+  [[nodiscard]] std::vector<Eigen::MatrixXd> gains(const Eigen::MatrixXd& states,
+                                                   const Eigen::MatrixXd& inputs) const;
+  void forward(const Policy& policy);
+  void backward(const Policy& policy, Eigen::MatrixXd& gradient);
+  void add_gain_gradient(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) const;
+  void add_state_adjoint(Eigen::Index stage, const Eigen::MatrixXd& weight, StateBatch& adjoint);
+  double penalty(const StateBatch& states, StateBatch& slope) const;
+
+  const Dynamics& dynamics_;
+  PlannerSettings settings_;
+  Eigen::VectorXd start_;
+  std::vector<StateBatch> states_;  // horizon + 1; stage 0 is the belief's draws
+  std::vector<StateBatch> inputs_;  // horizon
+  std::vector<StateBatch> noise_;   // horizon
+  std::vector<StateBatch> penalty_slopes_;
+  std::vector<Eigen::MatrixXd> gain_gradients_;
+  double value_ = 0.0;
+};
+
+struct SearchSettings {
+  Draws draws;
+  int coarse_paths = 250;  ///< while valleys are looked for
+  int random_starts = 4;
+  unsigned seed = 1;     ///< of the random starts
+  std::size_t kept = 3;  ///< valleys that are searched on all paths
+};
+
+/// The ends of long descents. Those on few paths, from inputs that are constant in each half of the
+/// horizon and from random ones, find the valleys; those on all paths, whose ends are returned,
+/// start from `also` and from the best of the former. Which of them is best other draws must say:
+/// the price of two valleys may differ by less than the paths can tell.
+[[nodiscard]] std::vector<Eigen::MatrixXd> deepest_inputs(const Dynamics& dynamics,
+                                                          const PlannerSettings& settings,
+                                                          const Gaussian& belief,
+                                                          const SearchSettings& search,
+                                                          const std::vector<Eigen::MatrixXd>& also);
+
+}  // namespace qsmpc::testing
