@@ -4,6 +4,7 @@
 
 #include "controller/planning/lbfgs_solver.hpp"
 #include "controller/planning/projected_bfgs_solver.hpp"
+#include "controller/planning/slsqp_solver.hpp"
 
 namespace qsmpc {
 namespace {
@@ -50,6 +51,7 @@ const char* solver_status_name(SolverStatus status) {
 const std::vector<SolverEntry>& solvers() {
   static const std::vector<SolverEntry> table = {
       {"lbfgs", "quasi-Newton; bounds of the inputs kept as its bounding says"},
+      {"slsqp", "NLopt's sequential quadratic programming; takes inequality constraints"},
   };
   return table;
 }
@@ -66,6 +68,7 @@ const std::vector<SolverEntry>& input_boundings() {
 
 std::unique_ptr<OcpSolver> make_solver(std::string_view name, const SolverSettings& settings) {
   if (name == "lbfgs") return make_lbfgs(settings.bounding);
+  if (name == "slsqp") return std::make_unique<SlsqpSolver>();
   throw std::invalid_argument("no solver '" + std::string(name) +
                               "'; known are: " + known_names(solvers()));
 }

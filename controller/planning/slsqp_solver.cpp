@@ -1,0 +1,201 @@
+#include "controller/planning/slsqp_solver.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <unordered_set>
+
+namespace qsmpc {
+namespace {
+
+// Constraints that enter the working set at once, and that it holds before some are dropped, both
+// per decision: at a vertex as many are active as there are decisions.
+constexpr std::size_t kEnterPerDecision = 1;
+constexpr std::size_t kHeldPerDecision = 3;
+// Runs that end without anything new to work on, because NLopt stopped short of feasibility: they
+// are begun again as long as each lowers the violation by this factor.
+constexpr double kProgress = 0.5;
+
+/// Kept constraints come before violated ones, then what costs less, or violates less.
+bool better(double value, double violation, double than_value, double than_violation,
+            double tolerance) {
+  const bool kept = violation <= tolerance;
+  const bool than_kept = than_violation <= tolerance;
+  if (kept != than_kept) return kept;
+  return kept ? value < than_value : violation < than_violation;
+}
+
+double largest_violation(const Eigen::VectorXd& values) {
+  return values.size() == 0 ? 0.0 : std::max(values.maxCoeff(), 0.0);
+}
+
+}  // namespace
+
+// Cost and working set at `z`; false if the run has to end.
+bool SlsqpSolver::assess(const OcpProblem& problem, const Eigen::VectorXd& z, MeteredCost& cost) {
+  Point& point = answer_.point;
+  if (trouble_) return false;
+  if (!answer_.priced || point.z != z) {
+    answer_.priced = answer_.complete = false;
+    if (!cost.evaluate(z, point.value, point.gradient)) return false;
+    point.z = z;
+    answer_.priced = true;
+  }
+  if (answer_.complete) return true;
+  if (!working_.empty()) {
+    problem.constraints->some(z, working_, answer_.constraints, answer_.constraint_gradients);
+    trouble_ = !answer_.constraints.allFinite() || !answer_.constraint_gradients.allFinite();
+    if (trouble_) return false;
+  }
+  point.violation = largest_violation(answer_.constraints);
+  answer_.complete = true;
+  if (better(point.value, point.violation, reached_.value, reached_.violation, tolerance_)) {
+    reached_ = point;
+  }
+  return true;
+}
+
+// From `reached_`, on the working set, to a new `reached_`.
+NloptEnd SlsqpSolver::run(const OcpProblem& problem, const SolverOptions& options,
+                          MeteredCost& cost) {
+  const auto size = static_cast<Eigen::Index>(working_.size());
+  const Eigen::VectorXd start = reached_.z;
+  answer_.constraints.resize(size);
+  answer_.constraint_gradients.resize(start.size(), size);
+  answer_.point = reached_;
+  answer_.priced = true;
+  answer_.complete = false;
+  reached_.value = std::numeric_limits<double>::infinity();
+  reached_.violation = std::numeric_limits<double>::infinity();
+  NloptRun nlopt{.method = NloptMethod::kSlsqp,
+                 .relative_tolerance = options.relative_tolerance,
+                 .lower = problem.lower,
+                 .upper = problem.upper,
+                 .constraint_count = size,
+                 .constraint_tolerance = tolerance_};
+  nlopt.cost = [&](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) -> std::optional<double> {
+    if (!assess(problem, z, cost)) return std::nullopt;
+    gradient = answer_.point.gradient;
+    return answer_.point.value;
+  };
+  nlopt.constraints = [&](const Eigen::VectorXd& z, Eigen::VectorXd& values,
+                          Eigen::MatrixXd& gradients) {
+    if (!assess(problem, z, cost)) return false;
+    values = answer_.constraints;
+    gradients = answer_.constraint_gradients;
+    return true;
+  };
+  return run_nlopt(nlopt, start);
+}
+
+// All constraints at `point`, whose violation is set; false if one is not finite.
+bool SlsqpSolver::check_all(const OcpProblem& problem, Point& point) {
+  point.violation = 0.0;
+  if (all_.size() > 0) {
+    problem.constraints->values(point.z, all_);
+    if (!all_.allFinite()) {
+      trouble_ = true;
+      return false;
+    }
+    point.violation = largest_violation(all_);
+  }
+  if (better(point.value, point.violation, best_.value, best_.violation, tolerance_)) {
+    best_ = point;
+  }
+  return true;
+}
+
+// Takes in the worst constraint of each group that exceeds the threshold, the worst groups first.
+std::size_t SlsqpSolver::enlarge(const OcpProblem& problem, double threshold) {
+  const std::vector<int>& group = problem.constraints->group;
+  const auto group_of = [&](int j) { return group.empty() ? j : group[j]; };
+  const std::unordered_set<int> present(working_.begin(), working_.end());
+  candidates_.clear();
+  for (int j = 0; j < static_cast<int>(all_.size()); ++j) {
+    if (all_[j] > threshold && !present.contains(j)) candidates_.push_back(j);
+  }
+  const auto worse = [&](int a, int b) { return all_[a] != all_[b] ? all_[a] > all_[b] : a < b; };
+  std::sort(candidates_.begin(), candidates_.end(), worse);
+  const std::size_t most = kEnterPerDecision * static_cast<std::size_t>(problem.lower.size());
+  std::unordered_set<int> seen;
+  std::size_t entered = 0;
+  for (const int j : candidates_) {
+    if (entered == most) break;
+    if (!seen.insert(group_of(j)).second) continue;
+    working_.push_back(j);
+    ++entered;
+  }
+  return entered;
+}
+
+// Where the working set has grown large, the constraints with most room are dropped. Those come
+// back that are violated then.
+void SlsqpSolver::drop_inactive() {
+  const std::size_t most = kHeldPerDecision * static_cast<std::size_t>(best_.z.size());
+  if (working_.size() <= most) return;
+  std::sort(working_.begin(), working_.end(), [&](int a, int b) { return all_[a] > all_[b]; });
+  while (working_.size() > most && all_[working_.back()] < -tolerance_) working_.pop_back();
+}
+
+// The start, and the constraints nearest to it, however far: a constraint that does not matter only
+// makes NLopt's own steps a little slower.
+bool SlsqpSolver::begin(const OcpProblem& problem, MeteredCost& cost) {
+  if (!assess(problem, best_.z, cost) || !check_all(problem, reached_)) return false;
+  if (all_.size() > 0) enlarge(problem, -std::numeric_limits<double>::infinity());
+  return true;
+}
+
+SolverStatus SlsqpSolver::stopped_as(const MeteredCost& cost) const {
+  return trouble_ ? SolverStatus::kNumericalTrouble
+                  : cost.stopped().value_or(SolverStatus::kStalled);
+}
+
+SolverStatus SlsqpSolver::rounds(const OcpProblem& problem, const SolverOptions& options,
+                                 MeteredCost& cost) {
+  double last_violation = std::numeric_limits<double>::infinity();
+  while (true) {
+    const NloptEnd end = run(problem, options, cost);
+    const double within_set = reached_.violation;
+    if (!std::isfinite(reached_.value)) break;  // stopped before the first answer
+    if (!check_all(problem, reached_)) break;
+    if (end == NloptEnd::kStopped) break;
+    const std::size_t entered = all_.size() > 0 ? enlarge(problem, tolerance_) : 0;
+    const bool nearer = within_set > tolerance_ && within_set < kProgress * last_violation;
+    if (entered == 0 && !nearer) {
+      return end == NloptEnd::kConverged ? SolverStatus::kConverged : SolverStatus::kStalled;
+    }
+    last_violation = entered > 0 ? std::numeric_limits<double>::infinity() : within_set;
+    drop_inactive();
+  }
+  return stopped_as(cost);
+}
+
+const SolverResult& SlsqpSolver::minimise(const OcpProblem& problem, const Eigen::VectorXd& start,
+                                          const SolverOptions& options) {
+  check_problem(problem, start, options, ConstraintsTaken::kInequalities);
+  const double infinity = std::numeric_limits<double>::infinity();
+  tolerance_ = options.constraint_tolerance;
+  trouble_ = false;
+  working_.clear();
+  all_.resize(problem.constraints ? problem.constraints->count : 0);
+  answer_ = {};
+  answer_.point.gradient.resize(start.size());
+  best_ = {.z = start.cwiseMax(problem.lower).cwiseMin(problem.upper),
+           .value = infinity,
+           .violation = infinity,
+           .gradient = {}};
+  reached_ = best_;
+  MeteredCost cost(problem, options);
+  result_.status = begin(problem, cost) ? rounds(problem, options, cost) : stopped_as(cost);
+  // What was cut short says so; else constraints that are not kept come before the rest.
+  const bool cut = result_.status == SolverStatus::kNumericalTrouble ||
+                   result_.status == SolverStatus::kDeadline;
+  if (!cut && best_.violation > tolerance_) result_.status = SolverStatus::kInfeasible;
+  result_.z = best_.z;
+  result_.value = best_.value;
+  result_.violation = all_.size() > 0 ? best_.violation : 0.0;
+  result_.evaluations = cost.evaluations();
+  return result_;
+}
+
+}  // namespace qsmpc
