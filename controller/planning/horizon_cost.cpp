@@ -43,6 +43,7 @@ HorizonCost::HorizonCost(const HorizonCostTerms& terms, const Prediction& predic
 }
 
 void HorizonCost::hold(const Prediction& prediction, const Policy& policy) {
+  rolled_ = false;
   prediction_ = &prediction;
   policy_.inputs = policy.inputs;
   policy_.states = policy.states;
@@ -123,14 +124,18 @@ double HorizonCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
 }
 
 double HorizonCost::evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
-  forward(z);
+  if (!penalties_at_hand_ || !is_rolled(z)) forward(z);
   backward(policy_.horizon(), /*with_cost=*/true, gradient);
   return parts_.total();
 }
 
 double HorizonCost::price(const Eigen::VectorXd& z) {
-  forward(z);
+  roll(z);
   return parts_.total();
+}
+
+void HorizonCost::roll(const Eigen::VectorXd& z) {
+  if (!is_rolled(z)) forward(z);
 }
 
 /// Reads z: inputs and, where there is one, the change of the gains.
@@ -153,6 +158,9 @@ StagePolicy HorizonCost::stage_policy(Eigen::Index k) const {
 }
 
 void HorizonCost::forward(const Eigen::VectorXd& z) {
+  decision_ = z;
+  rolled_ = true;
+  penalties_at_hand_ = true;
   set_decision(z);
   const Eigen::Index dim = policy_.states.rows();
   const Eigen::Index inputs = policy_.inputs.rows();
@@ -232,6 +240,7 @@ void HorizonCost::forward_clusters(Eigen::Index k, int chunk) {
 
 /// From the adjoints of stage `from` and, with the cost, of all stages before it.
 void HorizonCost::backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient) {
+  penalties_at_hand_ = false;
   gradient.setZero();
   nominal_adjoint_.setZero();
   stages_[0].adjoint.setZero();

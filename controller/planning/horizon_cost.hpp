@@ -75,6 +75,9 @@ class HorizonCost {
   /// The cost alone, of which `parts` tells more.
   double price(const Eigen::VectorXd& z);
 
+  /// Moves the particles to where `z` puts them, unless they are there.
+  void roll(const Eigen::VectorXd& z);
+
   /// The parts of the value last computed.
   [[nodiscard]] const CostParts& parts() const { return parts_; }
 
@@ -109,6 +112,9 @@ class HorizonCost {
     Eigen::MatrixXd outer;   // Σ a xᵀ
   };
 
+  [[nodiscard]] bool is_rolled(const Eigen::VectorXd& z) const {
+    return rolled_ && decision_.size() == z.size() && decision_ == z;
+  }
   void resize_stages();
   void set_decision(const Eigen::VectorXd& z);
   void forward(const Eigen::VectorXd& z);
@@ -136,6 +142,9 @@ class HorizonCost {
   bool with_gain_ = false;              // whether the decision has a ΔK
   bool closed_loop_ = false;            // whether any gain is not zero
   bool lone_ = false;                   // whether no particle ever meets another
+  Eigen::VectorXd decision_;            // that the stages belong to …
+  bool rolled_ = false;                 // … if any
+  bool penalties_at_hand_ = false;      // whether the adjoints are still those of the penalties
   CostParts parts_;
   double constant_state_cost_ = 0.0;  // noise and quantiser, which no input changes
   double constant_terminal_cost_ = 0.0;

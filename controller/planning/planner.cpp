@@ -1,25 +1,19 @@
 #include "controller/planning/planner.hpp"
 
-#include <array>
-#include <chrono>
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 namespace qsmpc {
 namespace {
 
-// Rounds of "predict with new assignments, then optimise at frozen ones" in one plan.
+// Rounds of "optimise at frozen assignments, then predict with new ones" in one plan.
 constexpr int kAssignmentRounds = 3;
-// Relative change of the cost between rounds below which the assignments count as settled.
-constexpr double kSettled = 1e-4;
-// A guess must promise this fraction less cost to replace the shifted previous plan: switching
-// sides of an obstacle for less makes the vehicle waver.
-constexpr double kSwitchGain = 0.02;
-// Relative; what rounding leaves in a symmetric matrix that was computed.
-constexpr double kSymmetryTolerance = 1e-12;
+// What a round must promise of the cost, relatively, to be worth a prediction.
+constexpr double kSettled = 1e-5;
+// How far a particle may be beyond a bound (m, or the state's unit) and still count as within.
+constexpr double kConstraintTolerance = 1e-6;
 
 class Stopwatch {
  public:
@@ -39,90 +33,241 @@ void require(bool holds, const std::string& message) {
   if (!holds) throw std::invalid_argument("planner: " + message);
 }
 
-void require_square(const Eigen::MatrixXd& matrix, Eigen::Index size, const std::string& name) {
-  require(
-      matrix.rows() == size && matrix.cols() == size && matrix.allFinite(),
-      name + " must be a finite matrix of " + std::to_string(size) + " x " + std::to_string(size));
+PlannerSettings checked(PlannerSettings settings, const Dynamics& dynamics) {
+  check_planner_settings(settings, dynamics.state_dim(), dynamics.input_dim());
+  return settings;
 }
 
-/// The gradient of xᵀWx is written as 2Wx.
-void require_symmetric(const Eigen::MatrixXd& matrix, const std::string& name) {
-  require(matrix.isApprox(matrix.transpose(), kSymmetryTolerance), name + " must be symmetric");
-}
-
-void check_settings(const PlannerSettings& settings, int state_dim, int input_dim) {
-  require(settings.horizon >= 1, "the horizon must be at least 1");
-  require(settings.max_evaluations >= 1, "at least one evaluation of the cost is needed");
-  require(settings.state_points >= 1, "at least one point is needed for the belief");
-  require_square(settings.noise_covariance, state_dim, "the noise covariance");
-  require_square(settings.cost.state, state_dim, "the state cost");
-  require_square(settings.cost.terminal, state_dim, "the terminal cost");
-  require_square(settings.cost.input, input_dim, "the input cost");
-  require_symmetric(settings.cost.state, "the state cost");
-  require_symmetric(settings.cost.terminal, "the terminal cost");
-  require_symmetric(settings.cost.input, "the input cost");
-  require(settings.cost.target.size() == state_dim && settings.cost.target.allFinite(),
-          "the target must be a finite state");
-  require(settings.penalty.length > 0.0, "the penalty's length must be positive");
-  require(settings.penalty.box >= 0.0 && settings.penalty.obstacle >= 0.0,
-          "penalty weights must not be negative");
-  require(settings.safe_set.dim() == state_dim, "the safe set must be of the state's dimension");
-  require(settings.bounds.lower.size() == input_dim && settings.bounds.upper.size() == input_dim &&
-              settings.bounds.lower.allFinite() && settings.bounds.upper.allFinite() &&
-              (settings.bounds.lower.array() < settings.bounds.upper.array()).all(),
-          "the input bounds must be finite, lower < upper");
-  if (settings.feedback_gain) {
-    require(settings.feedback_gain->rows() == input_dim &&
-                settings.feedback_gain->cols() == state_dim && settings.feedback_gain->allFinite(),
-            "the feedback gain must be a finite matrix of inputs x states");
-  }
-  check_safe_set(settings.safe_set);
-}
-
-/// The inputs of the previous plan, one stage later; the last is held.
-Eigen::MatrixXd shifted(const Eigen::MatrixXd& inputs) {
-  Eigen::MatrixXd result = inputs;
-  result.leftCols(inputs.cols() - 1) = inputs.rightCols(inputs.cols() - 1);
-  return result;
+PropagatorSettings propagation(const PlannerSettings& settings) {
+  return {.noise = {.mean = Eigen::VectorXd::Zero(settings.noise_covariance.rows()),
+                    .covariance = settings.noise_covariance},
+          .noise_points = settings.noise_points,
+          .compressed_points = settings.compressed_points};
 }
 
 }  // namespace
 
 Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
-    : dynamics_(dynamics), settings_(std::move(settings)) {
-  const int dim = dynamics.state_dim();
-  check_settings(settings_, dim, dynamics.input_dim());
-  const PropagatorSettings propagation{
-      .noise = {.mean = Eigen::VectorXd::Zero(dim), .covariance = settings_.noise_covariance},
-      .noise_points = settings_.noise_points,
-      .compressed_points = settings_.compressed_points};
-  propagator_ = make_propagator(settings_.propagator, propagation);
-  noise_free_ = make_propagator("noise_free", propagation);
-  solver_ = make_solver(settings_.solver);
-  predicted_noise_ = settings_.propagator == "noise_free" ? Eigen::MatrixXd::Zero(dim, dim)
-                                                          : settings_.noise_covariance;
+    : dynamics_(dynamics),
+      settings_(checked(std::move(settings), dynamics)),
+      constrained_(settings_.solver == "slsqp"),
+      penalty_(settings_.penalty),
+      predicted_noise_(settings_.propagator == "noise_free"
+                           ? Eigen::MatrixXd::Zero(dynamics.state_dim(), dynamics.state_dim())
+                           : settings_.noise_covariance),
+      no_noise_(Eigen::MatrixXd::Zero(dynamics.state_dim(), dynamics.state_dim())),
+      within_(no_noise_),
+      propagator_(make_propagator(settings_.propagator, propagation(settings_))),
+      solver_(make_solver(settings_.solver, {.bounding = settings_.input_bounding})),
+      policies_(dynamics_, settings_),
+      cost_({.dynamics = dynamics_,
+             .safe_set = settings_.safe_set,
+             .cost = settings_.cost,
+             .penalty = constrained_ ? (penalty_.box = 0.0, penalty_) : penalty_,
+             .noise_covariance = predicted_noise_,
+             .within_covariance = within_},
+            settings_.run),
+      guess_(settings_, {.dynamics = dynamics_,
+                         .safe_set = settings_.safe_set,
+                         .cost = settings_.cost,
+                         .penalty = settings_.penalty,
+                         .noise_covariance = no_noise_,
+                         .within_covariance = within_}),
+      constraints_(cost_, settings_.safe_set),
+      gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
+  const bool with_gain = settings_.closed_loop && settings_.optimise_gain;
+  const Eigen::Index inputs = dynamics.input_dim() * settings_.horizon;
+  const Eigen::Index entries = with_gain ? gain_change_.size() : 0;
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  problem_.lower.setConstant(inputs + entries, -kInfinity);
+  problem_.upper.setConstant(inputs + entries, kInfinity);
+  problem_.lower.head(inputs) = settings_.bounds.lower.replicate(settings_.horizon, 1);
+  problem_.upper.head(inputs) = settings_.bounds.upper.replicate(settings_.horizon, 1);
+  problem_.cost = [this](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+    return cost_.evaluate(z, gradient);
+  };
+  if (constrained_) problem_.constraints.emplace();
+  z_.resize(inputs + entries);
 }
 
 const Plan& Planner::plan(const Gaussian& belief) {
-  Stopwatch stopwatch;
-  Plan plan;
-  plan.belief = quantise_belief(belief);
-  stopwatch.add_to(plan.timing.quantise);
-  const Eigen::MatrixXd guess = first_guess(belief, plan.belief);
-  plan.policy = make_policy(belief.mean, guess);
-  plan.prediction = predict(dynamics_, *propagator_, plan.belief.measure, plan.policy);
-  plan.cost = cost_of(plan);
-  stopwatch.add_to(plan.timing.propagate);
-  optimise(belief, plan);
-  if (!std::isfinite(plan.cost.total()) && plan_) {
-    // Nothing usable came out: go on with what was planned before.
-    plan.policy = make_policy(belief.mean, shifted(plan_->policy.inputs));
-    plan.prediction = predict(dynamics_, *propagator_, plan.belief.measure, plan.policy);
-    plan.cost = cost_of(plan);
-    plan.fallback = true;
+  Round round;
+  round.deadline = Clock::time_point::max();
+  if (std::isfinite(settings_.deadline)) {
+    round.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                        std::chrono::duration<double>(settings_.deadline));
   }
-  plan_ = std::move(plan);
-  return *plan_;
+  std::array<Plan*, 2> spare{};
+  for (std::size_t n = 0, to = 0; n < plans_.size() && to < spare.size(); ++n) {
+    if (&plans_[n] != last_) spare[to++] = &plans_[n];
+  }
+  current_ = spare[0];
+  candidate_ = spare[1];
+  const bool warm = begin(belief, round);
+  optimise(belief, round);
+  bool fallback = false;
+  if (!std::isfinite(current_->cost.total()) && last_ != nullptr) {
+    fall_back(belief);
+    fallback = true;
+  }
+  current_->belief = belief_;
+  current_->status = round.status;
+  current_->evaluations = round.evaluations;
+  current_->warm = warm;
+  current_->fallback = fallback;
+  current_->timing = round.timing;
+  failed_ = fallback || round.status == SolverStatus::kNumericalTrouble;
+  last_ = current_;
+  return *last_;
+}
+
+/// Quantises the belief, chooses where to start, and holds assignments that may do for the start:
+/// those of the last plan, if that is where the start is from, or else new ones. Returns whether
+/// it is.
+bool Planner::begin(const Gaussian& belief, Round& round) {
+  Stopwatch stopwatch;
+  quantise_belief(belief, belief_);
+  within_ = belief_.within_covariance;
+  stopwatch.add_to(round.timing.quantise);
+  const Plan* const previous = failed_ ? nullptr : last_;
+  if (previous != nullptr) {
+    gain_change_ = previous->gain_change;
+  } else {
+    gain_change_.setZero();
+  }
+  const bool warm = guess_.choose(belief.mean, belief_.measure,
+                                  previous != nullptr ? &previous->policy.inputs : nullptr,
+                                  gain_change_, policies_);
+  if (warm) {
+    solver_->shift({.inputs_per_stage = dynamics_.input_dim(), .horizon = settings_.horizon});
+  } else {
+    solver_->forget();
+  }
+  policies_.make(belief.mean, guess_.inputs(), gain_change_, current_->policy);
+  current_->gain_change = gain_change_;
+  if (warm && maps_fit(*last_)) {
+    last_->prediction.stages[0] = belief_.measure;
+    hold(last_->prediction, current_->policy);
+  } else {
+    predict_and_price(*current_);
+    round.priced = true;
+  }
+  stopwatch.add_to(round.timing.propagate);
+  return warm;
+}
+
+/// Whether the plan's assignments can be held for the belief at hand.
+bool Planner::maps_fit(const Plan& plan) const {
+  const Prediction& prediction = plan.prediction;
+  return prediction.stages[0].weights.size() == belief_.measure.weights.size() &&
+         prediction.stages[0].weights == belief_.measure.weights &&
+         std::all_of(prediction.maps.begin(), prediction.maps.end(),
+                     [](const StageMap& map) { return std::isfinite(map.compression_w2); });
+}
+
+/// Leaves in `current_` the best plan, priced with assignments and gains of its own.
+void Planner::optimise(const Gaussian& belief, Round& round) {
+  Stopwatch stopwatch;
+  for (int n = 0; n < kAssignmentRounds + (round.priced ? 0 : 1); ++n) {
+    const bool promising = run_solver(current_->policy, round);
+    stopwatch.add_to(round.timing.optimise);
+    if (!promising) break;
+    candidate_->gain_change = current_->gain_change;
+    if (z_.size() > current_->policy.inputs.size()) {
+      candidate_->gain_change +=
+          z_.tail(gain_change_.size()).reshaped(gain_change_.rows(), gain_change_.cols());
+    }
+    policies_.make(belief.mean,
+                   z_.head(current_->policy.inputs.size())
+                       .reshaped(current_->policy.inputs.rows(), settings_.horizon),
+                   candidate_->gain_change, candidate_->policy);
+    predict_and_price(*candidate_);
+    stopwatch.add_to(round.timing.propagate);
+    const bool accepted = !round.priced || better(*candidate_, *current_);
+    if (accepted) {
+      std::swap(current_, candidate_);
+      round.priced = true;
+    }
+    if (!accepted || round.evaluations >= settings_.max_evaluations) break;
+    if (Clock::now() >= round.deadline) {
+      round.status = SolverStatus::kDeadline;
+      break;
+    }
+  }
+  if (!round.priced) predict_and_price(*current_);
+  stopwatch.add_to(round.timing.propagate);
+}
+
+/// Optimises at the assignments that are held, from `policy`; the result is in `z_`. Returns
+/// whether it is worth a prediction: finite, better by more than nothing, and in time.
+bool Planner::run_solver(const Policy& policy, Round& round) {
+  flatten(policy);
+  SolverOptions options{.max_evaluations = settings_.max_evaluations - round.evaluations,
+                        .constraint_tolerance = kConstraintTolerance};
+  if (round.deadline != Clock::time_point::max()) {
+    // Time for the prediction that belongs to the result.
+    options.deadline =
+        round.deadline - std::chrono::duration_cast<Clock::duration>(prediction_time_);
+  }
+  const SolverResult& result = solver_->minimise(problem_, z_, options);
+  round.evaluations += result.evaluations;
+  round.status = result.status;
+  if (!std::isfinite(result.value)) {
+    if (round.priced) current_->cost.state = result.value;
+    return false;
+  }
+  z_ = result.z;
+  if (!round.priced) return true;
+  if (result.status == SolverStatus::kDeadline && Clock::now() >= options.deadline) return false;
+  const double gain = current_->cost.total() - result.value;
+  return gain > kSettled * std::abs(current_->cost.total()) ||
+         current_->violation > std::max(kConstraintTolerance, result.violation);
+}
+
+/// Feasible before infeasible, then the cheaper; of two that are infeasible the nearer.
+bool Planner::better(const Plan& plan, const Plan& other) const {
+  const bool feasible = plan.violation <= kConstraintTolerance;
+  const bool other_feasible = other.violation <= kConstraintTolerance;
+  if (feasible != other_feasible) return feasible;
+  if (!feasible && plan.violation != other.violation) return plan.violation < other.violation;
+  return plan.cost.total() < other.cost.total() || !std::isfinite(other.cost.total());
+}
+
+/// Nothing usable came out: goes on with what was planned before.
+void Planner::fall_back(const Gaussian& belief) {
+  Eigen::MatrixXd inputs;
+  shift_inputs(last_->policy.inputs, inputs);
+  current_->gain_change = last_->gain_change;
+  policies_.make(belief.mean, inputs, current_->gain_change, current_->policy);
+  predict_and_price(*current_);
+}
+
+void Planner::hold(const Prediction& prediction, const Policy& policy) {
+  cost_.hold(prediction, policy);
+  if (constrained_) constraints_.describe(prediction, *problem_.constraints);
+}
+
+void Planner::flatten(const Policy& policy) {
+  z_.setZero();
+  z_.head(policy.inputs.size()) = policy.inputs.reshaped();
+}
+
+/// Predicts under plan.policy with assignments of its own, holds them, and prices them.
+void Planner::predict_and_price(Plan& plan) {
+  const auto start = Clock::now();
+  predict(dynamics_, *propagator_, belief_.measure, plan.policy, settings_.run, scratch_,
+          plan.prediction);
+  hold(plan.prediction, plan.policy);
+  flatten(plan.policy);
+  cost_.price(z_);
+  plan.cost = cost_.parts();
+  plan.violation = 0.0;
+  if (constrained_) {
+    constraint_values_.resize(problem_.constraints->count);
+    problem_.constraints->values(z_, constraint_values_);
+    plan.violation = std::max(0.0, constraint_values_.maxCoeff());
+  }
+  prediction_time_ = Clock::now() - start;
 }
 
 const Plan& Planner::prescribe(const Gaussian& belief,
@@ -136,169 +281,37 @@ const Plan& Planner::prescribe(const Gaussian& belief,
           "the inputs must be within their bounds");
   Stopwatch stopwatch;
   prescribed_ = {};
-  prescribed_.belief = quantise_belief(belief);
+  quantise_belief(belief, belief_);
+  within_ = belief_.within_covariance;
+  prescribed_.belief = belief_;
   stopwatch.add_to(prescribed_.timing.quantise);
-  prescribed_.policy = make_policy(belief.mean, inputs);
-  prescribed_.prediction =
-      predict(dynamics_, *propagator_, prescribed_.belief.measure, prescribed_.policy);
-  prescribed_.cost = cost_of(prescribed_);
+  prescribed_.gain_change.setZero(gain_change_.rows(), gain_change_.cols());
+  policies_.make(belief.mean, inputs, prescribed_.gain_change, prescribed_.policy);
+  predict_and_price(prescribed_);
   stopwatch.add_to(prescribed_.timing.propagate);
   return prescribed_;
 }
 
 void Planner::prepare(const Eigen::MatrixXd& covariance) {
-  (void)quantise_belief(
-      {.mean = Eigen::VectorXd::Zero(dynamics_.state_dim()), .covariance = covariance});
+  GaussianQuantisation unused;
+  quantise_belief({.mean = Eigen::VectorXd::Zero(dynamics_.state_dim()), .covariance = covariance},
+                  unused);
 }
 
-HorizonCostTerms Planner::terms(const Eigen::MatrixXd& noise_covariance,
-                                const GaussianQuantisation& belief) const {
-  return {.dynamics = dynamics_,
-          .safe_set = settings_.safe_set,
-          .cost = settings_.cost,
-          .penalty = settings_.penalty,
-          .noise_covariance = noise_covariance,
-          .within_covariance = belief.within_covariance};
-}
-
-GaussianQuantisation Planner::quantise_belief(const Gaussian& belief) {
-  require(belief.mean.size() == dynamics_.state_dim(),
-          "the belief must be of the state's dimension");
-  require_square(belief.covariance, dynamics_.state_dim(), "the belief's covariance");
+void Planner::quantise_belief(const Gaussian& belief, GaussianQuantisation& out) {
+  const Eigen::Index dim = dynamics_.state_dim();
+  require(belief.mean.size() == dim, "the belief must be of the state's dimension");
+  require(belief.covariance.rows() == dim && belief.covariance.cols() == dim &&
+              belief.covariance.allFinite(),
+          "the belief's covariance must be a finite matrix of states x states");
   require(belief.mean.allFinite(), "the belief's mean must be finite");
-  if (!last_belief_ || last_covariance_ != belief.covariance) {
-    const Gaussian centred{.mean = Eigen::VectorXd::Zero(belief.mean.size()),
-                           .covariance = belief.covariance};
-    last_belief_ = quantise(centred, settings_.state_points, settings_.quantiser);
-    last_covariance_ = belief.covariance;
+  if (!known_belief_ || known_covariance_ != belief.covariance) {
+    const Gaussian centred{.mean = Eigen::VectorXd::Zero(dim), .covariance = belief.covariance};
+    known_belief_ = quantise(centred, settings_.state_points, settings_.quantiser);
+    known_covariance_ = belief.covariance;
   }
-  GaussianQuantisation result = *last_belief_;
-  result.measure.locations.colwise() += belief.mean;
-  return result;
-}
-
-Policy Planner::make_policy(const Eigen::VectorXd& start, const Eigen::MatrixXd& inputs) const {
-  Policy policy{.inputs = inputs,
-                .states = nominal_states(dynamics_, start, inputs),
-                .gains = {},
-                .bounds = settings_.bounds};
-  if (!settings_.closed_loop) {
-    policy.gains.assign(settings_.horizon,
-                        Eigen::MatrixXd::Zero(inputs.rows(), policy.states.rows()));
-  } else if (settings_.feedback_gain) {
-    policy.gains.assign(settings_.horizon, *settings_.feedback_gain);
-  } else {
-    // The curvature of the cost: ½ x'Qx, u'Ru and x'Px have the Hessians Q, 2R and 2P.
-    policy.gains = lqr_gains(dynamics_, policy.states, inputs,
-                             {.state = settings_.cost.state,
-                              .input = 2.0 * settings_.cost.input,
-                              .terminal = 2.0 * settings_.cost.terminal});
-  }
-  return policy;
-}
-
-// The cost has a valley for each way round each obstacle. The shifted previous plan is the first
-// choice; constant inputs, priced on the belief's points alone, show whether another valley is
-// clearly deeper.
-Eigen::MatrixXd Planner::first_guess(const Gaussian& belief,
-                                     const GaussianQuantisation& quantised) const {
-  const InputBounds& bounds = settings_.bounds;
-  const Eigen::VectorXd middle = 0.5 * (bounds.lower + bounds.upper);
-  std::vector<Eigen::VectorXd> constants = {middle};
-  for (const double share : {-0.9, -0.45, 0.45, 0.9}) {
-    for (Eigen::Index input = 0; input < middle.size(); ++input) {
-      constants.push_back(middle);
-      constants.back()[input] += 0.5 * share * (bounds.upper[input] - bounds.lower[input]);
-    }
-  }
-  Eigen::MatrixXd best = middle.replicate(1, settings_.horizon);
-  double least = std::numeric_limits<double>::infinity();
-  if (plan_) {
-    const Eigen::MatrixXd warm = shifted(plan_->policy.inputs);
-    const double warm_cost = cost_without_noise(belief, quantised, warm);
-    if (std::isfinite(warm_cost)) {
-      best = warm;
-      least = warm_cost - kSwitchGain * std::abs(warm_cost);
-    }
-  }
-  for (const Eigen::VectorXd& constant : constants) {
-    const Eigen::MatrixXd guess = constant.replicate(1, settings_.horizon);
-    const double cost = cost_without_noise(belief, quantised, guess);
-    if (cost < least) {
-      least = cost;
-      best = guess;
-    }
-  }
-  return best;
-}
-
-double Planner::cost_without_noise(const Gaussian& belief, const GaussianQuantisation& quantised,
-                                   const Eigen::MatrixXd& inputs) const {
-  const Policy policy = make_policy(belief.mean, inputs);
-  const Prediction prediction = predict(dynamics_, *noise_free_, quantised.measure, policy);
-  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(belief.mean.size(), belief.mean.size());
-  HorizonCost cost(terms(none, quantised), prediction, policy);
-  Eigen::MatrixXd gradient(inputs.rows(), inputs.cols());
-  const double value = cost.evaluate(inputs, gradient);
-  // A guess whose cost is not a number must lose every comparison.
-  return std::isnan(value) ? std::numeric_limits<double>::infinity() : value;
-}
-
-void Planner::optimise(const Gaussian& belief, Plan& plan) const {
-  Stopwatch stopwatch;
-  const Eigen::Index inputs = dynamics_.input_dim();
-  const Eigen::Index horizon = settings_.horizon;
-  if (plan_) {
-    solver_->shift({.inputs_per_stage = inputs, .horizon = horizon});
-  } else {
-    solver_->forget();
-  }
-  Eigen::MatrixXd slopes(inputs, horizon);
-  OcpProblem problem{.cost = {},
-                     .lower = settings_.bounds.lower.replicate(horizon, 1),
-                     .upper = settings_.bounds.upper.replicate(horizon, 1),
-                     .constraints = {}};
-  for (int round = 0; round < kAssignmentRounds; ++round) {
-    HorizonCost cost(terms(predicted_noise_, plan.belief), plan.prediction, plan.policy);
-    problem.cost = [&](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
-      const double value =
-          cost.evaluate(Eigen::Map<const Eigen::MatrixXd>(z.data(), inputs, horizon), slopes);
-      gradient = slopes.reshaped();
-      return value;
-    };
-    const SolverResult& result =
-        solver_->minimise(problem, plan.policy.inputs.reshaped(),
-                          {.max_evaluations = settings_.max_evaluations - plan.evaluations});
-    stopwatch.add_to(plan.timing.optimise);
-    plan.evaluations += result.evaluations;
-    plan.status = result.status;
-    if (!std::isfinite(result.value)) {
-      plan.cost.state = result.value;
-      return;
-    }
-    // The candidate is priced with assignments and gains of its own, and kept only if it is better.
-    Plan candidate;
-    candidate.belief = plan.belief;
-    candidate.policy = make_policy(belief.mean, result.z.reshaped(inputs, horizon));
-    candidate.prediction = predict(dynamics_, *propagator_, plan.belief.measure, candidate.policy);
-    candidate.cost = cost_of(candidate);
-    stopwatch.add_to(plan.timing.propagate);
-    const double gain = plan.cost.total() - candidate.cost.total();
-    const double scale = std::abs(plan.cost.total());
-    if (gain > 0.0 || !std::isfinite(plan.cost.total())) {
-      plan.policy = std::move(candidate.policy);
-      plan.prediction = std::move(candidate.prediction);
-      plan.cost = candidate.cost;
-    }
-    if (gain < kSettled * scale || plan.evaluations >= settings_.max_evaluations) return;
-  }
-}
-
-CostParts Planner::cost_of(const Plan& plan) const {
-  HorizonCost cost(terms(predicted_noise_, plan.belief), plan.prediction, plan.policy);
-  Eigen::MatrixXd gradient(plan.policy.inputs.rows(), plan.policy.inputs.cols());
-  cost.evaluate(plan.policy.inputs, gradient);
-  return cost.parts();
+  out = *known_belief_;
+  out.measure.locations.colwise() += belief.mean;
 }
 
 PredictedMotion motion_of(const Planner& planner, const Gaussian& belief, const Plan& plan) {

@@ -4,60 +4,54 @@
 //   const Plan& plan = planner.plan(belief);
 //   Eigen::VectorXd u = policy_input(plan.policy, 0, measured_state);
 //
-// A planner remembers its last plan, from which the next one is started; apart from that, and from
-// the timings, a plan depends on nothing but settings and beliefs.
+// A planner remembers its last plan, from which the next one is started; apart from that, from the
+// timings, and from a deadline if it has one, a plan depends on nothing but settings and beliefs.
+// Once it has planned for beliefs of a kind, planning allocates nothing (but for what solvers of
+// other people's and the slower propagators do).
 #pragma once
 
+#include <array>
+#include <chrono>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/planning/first_guess.hpp"
 #include "controller/planning/horizon_cost.hpp"
 #include "controller/planning/ocp_solver.hpp"
-#include "controller/planning/penalty.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/planning/particle_constraints.hpp"
+#include "controller/planning/planner_settings.hpp"
+#include "controller/planning/policy_maker.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
 
-struct PlannerSettings {
-  int horizon = 8;
-  bool closed_loop = true;
-  std::optional<Eigen::MatrixXd> feedback_gain;  ///< input_dim x state_dim; else from LQR
-  std::string solver = "lbfgs";
-  std::string propagator = "compressed";
-  QuantiserKind quantiser = QuantiserKind::kProduct;  ///< of the belief
-  int state_points = 100;
-  int noise_points = 100;
-  int compressed_points = 100;
-  int max_evaluations = 100;         ///< of the cost, in one plan
-  Eigen::MatrixXd noise_covariance;  ///< state_dim x state_dim
-  QuadraticCost cost;
-  Penalty penalty;
-  SafeSet safe_set;
-  InputBounds bounds;
-};
-
 /// Wall-clock times in milliseconds.
 struct PlanTiming {
   double quantise = 0.0;
-  double propagate = 0.0;  ///< predictions with new assignments, linearisations
+  double propagate = 0.0;  ///< first guesses, linearisations, predictions with new assignments
   double optimise = 0.0;   ///< inside the solver
 };
 
 struct Plan {
   Policy policy;
+  Eigen::MatrixXd gain_change;  ///< input_dim x state_dim, in all gains; zero unless optimised
   GaussianQuantisation belief;  ///< of stage 0
   Prediction prediction;        ///< under `policy`, with its own assignments
   CostParts cost;               ///< of `prediction`
+  /// Of the solver's last run; kDeadline where the time was up, this being the best so far.
   SolverStatus status = SolverStatus::kConverged;
-  int evaluations = 0;    ///< of cost and gradient
-  bool fallback = false;  ///< the solver failed; this is the shifted previous plan
+  double violation = 0.0;  ///< how far a particle is beyond the bounds at most, where the solver
+                           ///< takes them as constraints; 0 elsewhere
+  int evaluations = 0;     ///< of cost and gradient
+  bool warm = false;       ///< the previous plan was the first guess
+  bool fallback = false;   ///< nothing finite came out; this is the shifted previous plan
   PlanTiming timing;
 };
 
@@ -66,9 +60,15 @@ class Planner {
   /// `dynamics` must outlive the planner. Throws std::invalid_argument on settings that make no
   /// sense: sizes, non-finite entries, unknown names, a horizon below 1.
   Planner(const Dynamics& dynamics, PlannerSettings settings);
+  Planner(const Planner&) = delete;
+  Planner& operator=(const Planner&) = delete;
+  Planner(Planner&&) = delete;
+  Planner& operator=(Planner&&) = delete;
+  ~Planner() = default;
 
-  /// Plans for `belief` (state_dim; checked, throws std::invalid_argument). Numerical trouble is a
-  /// status of the plan, never an exception. The plan stays valid until the next call.
+  /// Plans for `belief` (state_dim; checked, throws std::invalid_argument). Numerical trouble and
+  /// a deadline that has passed are statuses of the plan, never exceptions; after a failure the
+  /// next plan is a cold start. The plan stays valid until the next call.
   const Plan& plan(const Gaussian& belief);
 
   /// The plan whose nominal inputs are `inputs` (input_dim x horizon): predicted and priced for
@@ -83,35 +83,62 @@ class Planner {
   void prepare(const Eigen::MatrixXd& covariance);
 
   /// Forgets the last plan: the next one is a cold start.
-  void reset() { plan_.reset(); }
+  void reset() { last_ = nullptr; }
 
   [[nodiscard]] const PlannerSettings& settings() const { return settings_; }
   [[nodiscard]] const Propagator& propagator() const { return *propagator_; }
   [[nodiscard]] const Dynamics& dynamics() const { return dynamics_; }
 
  private:
-  [[nodiscard]] GaussianQuantisation quantise_belief(const Gaussian& belief);
-  [[nodiscard]] Policy make_policy(const Eigen::VectorXd& start,
-                                   const Eigen::MatrixXd& inputs) const;
-  [[nodiscard]] Eigen::MatrixXd first_guess(const Gaussian& belief,
-                                            const GaussianQuantisation& quantised) const;
-  [[nodiscard]] double cost_without_noise(const Gaussian& belief,
-                                          const GaussianQuantisation& quantised,
-                                          const Eigen::MatrixXd& inputs) const;
-  [[nodiscard]] HorizonCostTerms terms(const Eigen::MatrixXd& noise_covariance,
-                                       const GaussianQuantisation& belief) const;
-  void optimise(const Gaussian& belief, Plan& plan) const;
-  [[nodiscard]] CostParts cost_of(const Plan& plan) const;
+  using Clock = std::chrono::steady_clock;
+  /// One plan in the making.
+  struct Round {
+    Clock::time_point deadline;
+    bool priced = false;  // whether `current_` is a plan with a prediction of its own
+    SolverStatus status = SolverStatus::kConverged;
+    int evaluations = 0;
+    PlanTiming timing;
+  };
+
+  void quantise_belief(const Gaussian& belief, GaussianQuantisation& out);
+  [[nodiscard]] bool begin(const Gaussian& belief, Round& round);
+  void optimise(const Gaussian& belief, Round& round);
+  [[nodiscard]] bool run_solver(const Policy& policy, Round& round);
+  void fall_back(const Gaussian& belief);
+  [[nodiscard]] bool maps_fit(const Plan& plan) const;
+  void predict_and_price(Plan& plan);
+  void hold(const Prediction& prediction, const Policy& policy);
+  void flatten(const Policy& policy);
+  [[nodiscard]] bool better(const Plan& plan, const Plan& other) const;
 
   const Dynamics& dynamics_;
   PlannerSettings settings_;
-  Eigen::MatrixXd predicted_noise_;  ///< what of the noise the prediction carries
+  bool constrained_;                 // whether the solver takes constraints
+  Penalty penalty_;                  // what of the penalties is left to the cost
+  Eigen::MatrixXd predicted_noise_;  // what of the noise the prediction carries
+  Eigen::MatrixXd no_noise_;
+  Eigen::MatrixXd within_;  // covariance that the belief's quantiser loses
   std::unique_ptr<Propagator> propagator_;
-  std::unique_ptr<Propagator> noise_free_;
   std::unique_ptr<OcpSolver> solver_;
-  std::optional<GaussianQuantisation> last_belief_;  ///< about zero, for `last_covariance_`
-  Eigen::MatrixXd last_covariance_;
-  std::optional<Plan> plan_;
+  PolicyMaker policies_;
+  HorizonCost cost_;
+  FirstGuess guess_;
+  ParticleConstraints constraints_;
+  OcpProblem problem_;
+  PredictionScratch scratch_;
+  Eigen::VectorXd z_;
+  Eigen::VectorXd constraint_values_;
+  Eigen::MatrixXd gain_change_;
+  std::chrono::duration<double> prediction_time_{0.0};  // of the last one
+
+  std::optional<GaussianQuantisation> known_belief_;  // about zero, for `known_covariance_`
+  Eigen::MatrixXd known_covariance_;
+  GaussianQuantisation belief_;
+  std::array<Plan, 3> plans_;
+  Plan* last_ = nullptr;       // the plan last made, null for a cold start
+  Plan* current_ = nullptr;    // best so far of the plan in the making
+  Plan* candidate_ = nullptr;  // what may replace it
+  bool failed_ = false;        // the last plan had to fall back
   Plan prescribed_;
 };
 

@@ -1,7 +1,5 @@
 #include "controller/prediction/policy.hpp"
 
-#include <Eigen/Cholesky>
-
 namespace qsmpc {
 
 Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
@@ -25,39 +23,62 @@ void policy_inputs(const Policy& policy, Eigen::Index stage, const Points& state
   }
 }
 
+void nominal_states(const Dynamics& dynamics, const Eigen::Ref<const Eigen::VectorXd>& start,
+                    const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::MatrixXd& out) {
+  out.resize(start.size(), inputs.cols() + 1);
+  out.col(0) = start;
+  for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
+    using View = Eigen::Map<const StateBatch>;
+    dynamics.step(View(out.col(k).data(), out.rows(), 1),
+                  View(inputs.col(k).data(), inputs.rows(), 1),
+                  Eigen::Map<StateBatch>(out.col(k + 1).data(), out.rows(), 1));
+  }
+}
+
 Eigen::MatrixXd nominal_states(const Dynamics& dynamics,
                                const Eigen::Ref<const Eigen::VectorXd>& start,
                                const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
-  Eigen::MatrixXd states(start.size(), inputs.cols() + 1);
-  states.col(0) = start;
-  StateBatch state = start;
-  StateBatch next(start.size(), 1);
-  for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
-    const StateBatch input = inputs.col(k);
-    dynamics.step(state, input, next);
-    states.col(k + 1) = next.col(0);
-    state.swap(next);
-  }
+  Eigen::MatrixXd states;
+  nominal_states(dynamics, start, inputs, states);
   return states;
+}
+
+void lqr_gains(const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
+               const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights,
+               LqrScratch& scratch, std::vector<Eigen::MatrixXd>& gains) {
+  LqrScratch& s = scratch;
+  s.a.resize(states.rows(), states.rows());
+  s.b.resize(states.rows(), inputs.rows());
+  gains.resize(inputs.cols());
+  s.value = weights.terminal;
+  for (Eigen::Index k = inputs.cols() - 1; k >= 0; --k) {
+    dynamics.jacobians(states.col(k), inputs.col(k), s.a, s.b);
+    Eigen::MatrixXd& gain = gains[k];
+    s.cross.noalias() = s.b.transpose() * s.value;
+    s.curvature = weights.input;
+    s.curvature.noalias() += s.cross * s.b;
+    s.ldlt.compute(s.curvature);
+    gain.noalias() = s.cross * s.a;
+    s.ldlt.solveInPlace(gain);
+    gain *= -1.0;
+    // Joseph's form keeps the value symmetric and positive semidefinite under rounding.
+    s.closed = s.a;
+    s.closed.noalias() += s.b * gain;
+    s.product.noalias() = s.value * s.closed;
+    s.value = weights.state;
+    s.value.noalias() += s.closed.transpose() * s.product;
+    s.cross.noalias() = weights.input * gain;
+    s.value.noalias() += gain.transpose() * s.cross;
+  }
 }
 
 std::vector<Eigen::MatrixXd> lqr_gains(const Dynamics& dynamics,
                                        const Eigen::Ref<const Eigen::MatrixXd>& states,
                                        const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                        const LqrWeights& weights) {
-  std::vector<Eigen::MatrixXd> gains(inputs.cols());
-  Eigen::MatrixXd a(states.rows(), states.rows());
-  Eigen::MatrixXd b(states.rows(), inputs.rows());
-  Eigen::MatrixXd value = weights.terminal;
-  for (Eigen::Index k = inputs.cols() - 1; k >= 0; --k) {
-    dynamics.jacobians(states.col(k), inputs.col(k), a, b);
-    const Eigen::MatrixXd curvature = weights.input + b.transpose() * value * b;
-    gains[k] = -curvature.ldlt().solve(b.transpose() * value * a);
-    const Eigen::MatrixXd closed = a + b * gains[k];
-    // Joseph's form keeps the value symmetric and positive semidefinite under rounding.
-    value = weights.state + closed.transpose() * value * closed +
-            gains[k].transpose() * weights.input * gains[k];
-  }
+  LqrScratch scratch;
+  std::vector<Eigen::MatrixXd> gains;
+  lqr_gains(dynamics, states, inputs, weights, scratch, gains);
   return gains;
 }
 

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 
 #include "controller/measure/measures.hpp"
@@ -39,6 +40,10 @@ void policy_inputs(const Policy& policy, Eigen::Index stage, const Points& state
                                              const Eigen::Ref<const Eigen::VectorXd>& start,
                                              const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
+/// The same, written to `out`, whose storage is reused.
+void nominal_states(const Dynamics& dynamics, const Eigen::Ref<const Eigen::VectorXd>& start,
+                    const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::MatrixXd& out);
+
 /// Weights of ½ xᵀQx + ½ uᵀRu, summed over the stages, + ½ xᵀPx at the end.
 struct LqrWeights {
   Eigen::MatrixXd state;     ///< Q, positive semidefinite
@@ -51,5 +56,22 @@ struct LqrWeights {
 [[nodiscard]] std::vector<Eigen::MatrixXd> lqr_gains(
     const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
     const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights);
+
+/// What the recursion works on, so that the next one allocates nothing.
+struct LqrScratch {
+  Eigen::MatrixXd a;
+  Eigen::MatrixXd b;
+  Eigen::MatrixXd value;
+  Eigen::MatrixXd cross;
+  Eigen::MatrixXd curvature;
+  Eigen::MatrixXd closed;
+  Eigen::MatrixXd product;
+  Eigen::LDLT<Eigen::MatrixXd> ldlt;
+};
+
+/// The same, written to `gains`, whose storage is reused.
+void lqr_gains(const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
+               const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights,
+               LqrScratch& scratch, std::vector<Eigen::MatrixXd>& gains);
 
 }  // namespace qsmpc

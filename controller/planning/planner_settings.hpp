@@ -1,0 +1,49 @@
+// What a planner is made from.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/parallel.hpp"
+#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/penalty.hpp"
+#include "controller/planning/safe_set.hpp"
+#include "controller/prediction/policy.hpp"
+
+namespace qsmpc {
+
+struct PlannerSettings {
+  int horizon = 8;
+  bool closed_loop = true;
+  std::optional<Eigen::MatrixXd> feedback_gain;  ///< input_dim x state_dim; else from LQR
+  /// Closed loop: whether a matrix that is added to the gains of all stages is optimised along with
+  /// the inputs.
+  bool optimise_gain = false;
+  std::string solver = "lbfgs";
+  std::string input_bounding = "bounded";  ///< how "lbfgs" keeps the bounds: `input_boundings()`
+  std::string propagator = "mixture";
+  QuantiserKind quantiser = QuantiserKind::kProduct;  ///< of the belief
+  int state_points = 100;
+  int noise_points = 100;
+  int compressed_points = 100;
+  int max_evaluations = 100;  ///< of the cost, in one plan
+  /// Of one plan, s, > 0. A plan takes at least one prediction, however long that is.
+  double deadline = std::numeric_limits<double>::infinity();
+  Eigen::MatrixXd noise_covariance;  ///< state_dim x state_dim
+  QuadraticCost cost;
+  /// With "slsqp", which keeps every particle within the bounds as a constraint, `box` is not used.
+  Penalty penalty;
+  SafeSet safe_set;
+  InputBounds bounds;
+  Executor run = run_in_turn;  ///< what loops over many particles go through
+};
+
+/// Throws std::invalid_argument on settings that make no sense for a system of these dimensions:
+/// sizes, non-finite entries, a horizon below 1. Names are checked by those who know them.
+void check_planner_settings(const PlannerSettings& settings, int state_dim, int input_dim);
+
+}  // namespace qsmpc

@@ -1,0 +1,31 @@
+// Policies about given nominal inputs, with the gains that the settings ask for.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/planning/planner_settings.hpp"
+#include "controller/prediction/policy.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+class PolicyMaker {
+ public:
+  /// Refers to both.
+  PolicyMaker(const Dynamics& dynamics, const PlannerSettings& settings);
+
+  /// The policy about the noise-free trajectory from `start` (state_dim) under `inputs` (input_dim
+  /// x horizon), with `gain_change` (input_dim x state_dim) added to the gains of all stages;
+  /// written to `out`, whose storage is reused.
+  void make(const Eigen::Ref<const Eigen::VectorXd>& start,
+            const Eigen::Ref<const Eigen::MatrixXd>& inputs, const Eigen::MatrixXd& gain_change,
+            Policy& out);
+
+ private:
+  const Dynamics& dynamics_;
+  const PlannerSettings& settings_;
+  LqrWeights weights_;
+  LqrScratch scratch_;
+};
+
+}  // namespace qsmpc
