@@ -25,6 +25,7 @@ struct Context {
   Eigen::VectorXd values{};
   Eigen::MatrixXd gradients{};
   bool stopped = false;
+  bool lost = false;  // NLopt asked for a point that is not finite
   std::exception_ptr thrown{};
 };
 
@@ -33,12 +34,20 @@ void stop(Context& context) {
   nlopt_force_stop(context.handle);
 }
 
+// SLSQP's subproblem may give NaN where gradients of constraints are all but dependent.
+bool take(Context& context, const double* x, unsigned n) {
+  context.x = Eigen::Map<const Eigen::VectorXd>(x, n);
+  context.lost = !context.x.allFinite();
+  return !context.lost;
+}
+
 double cost(unsigned n, const double* x, double* gradient, void* data) {
   Context& context = *static_cast<Context*>(data);
   if (!context.stopped) {
     try {
-      context.x = Eigen::Map<const Eigen::VectorXd>(x, n);
-      const std::optional<double> value = context.run.cost(context.x, context.gradient);
+      const bool finite = take(context, x, n);
+      const std::optional<double> value =
+          finite ? context.run.cost(context.x, context.gradient) : std::nullopt;
       if (value) {
         if (gradient != nullptr) std::copy_n(context.gradient.data(), n, gradient);
         return *value;
@@ -57,8 +66,8 @@ void constraints(unsigned m, double* values, unsigned n, const double* x, double
   bool answered = false;
   if (!context.stopped) {
     try {
-      context.x = Eigen::Map<const Eigen::VectorXd>(x, n);
-      answered = context.run.constraints(context.x, context.values, context.gradients);
+      answered = take(context, x, n) &&
+                 context.run.constraints(context.x, context.values, context.gradients);
     } catch (...) {
       context.thrown = std::current_exception();
     }
@@ -101,6 +110,7 @@ NloptEnd run_nlopt(const NloptRun& run, const Eigen::VectorXd& start) {
   double value = 0.0;
   const nlopt_result result = nlopt_optimize(owner.get(), x.data(), &value);
   if (context.thrown) std::rethrow_exception(context.thrown);
+  if (context.lost) return NloptEnd::kStalled;
   if (context.stopped) return NloptEnd::kStopped;
   return result > 0 ? NloptEnd::kConverged : NloptEnd::kStalled;
 }

@@ -12,6 +12,11 @@ namespace {
 // per decision: at a vertex as many are active as there are decisions.
 constexpr std::size_t kEnterPerDecision = 1;
 constexpr std::size_t kHeldPerDecision = 3;
+// NLopt begins with a Hessian of one. Decisions are scaled by the ranges of their bounds, and the
+// cost so that its first step is of this fraction of them.
+constexpr double kFirstMove = 0.2;
+// Times that a stalled run is begun again with half of its working set.
+constexpr int kMostThinnings = 6;
 // Runs that end without anything new to work on, because NLopt stopped short of feasibility: they
 // are begun again as long as each lowers the violation by this factor.
 constexpr double kProgress = 0.5;
@@ -59,30 +64,35 @@ bool SlsqpSolver::assess(const OcpProblem& problem, const Eigen::VectorXd& z, Me
 NloptEnd SlsqpSolver::run(const OcpProblem& problem, const SolverOptions& options,
                           MeteredCost& cost) {
   const auto size = static_cast<Eigen::Index>(working_.size());
-  const Eigen::VectorXd start = reached_.z;
+  const Eigen::VectorXd start = reached_.z.cwiseQuotient(scale_);
   answer_.constraints.resize(size);
   answer_.constraint_gradients.resize(start.size(), size);
   answer_.point = reached_;
   answer_.priced = true;
   answer_.complete = false;
+  const double steepest = reached_.gradient.cwiseProduct(scale_).cwiseAbs().maxCoeff();
+  const double factor = steepest > 0.0 ? kFirstMove / steepest : 1.0;
   reached_.value = std::numeric_limits<double>::infinity();
   reached_.violation = std::numeric_limits<double>::infinity();
   NloptRun nlopt{.method = NloptMethod::kSlsqp,
                  .relative_tolerance = options.relative_tolerance,
-                 .lower = problem.lower,
-                 .upper = problem.upper,
+                 .lower = problem.lower.cwiseQuotient(scale_),
+                 .upper = problem.upper.cwiseQuotient(scale_),
                  .constraint_count = size,
                  .constraint_tolerance = tolerance_};
-  nlopt.cost = [&](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) -> std::optional<double> {
-    if (!assess(problem, z, cost)) return std::nullopt;
-    gradient = answer_.point.gradient;
-    return answer_.point.value;
+  const auto decisions = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
+    return x.cwiseProduct(scale_).cwiseMax(problem.lower).cwiseMin(problem.upper);
   };
-  nlopt.constraints = [&](const Eigen::VectorXd& z, Eigen::VectorXd& values,
+  nlopt.cost = [&](const Eigen::VectorXd& x, Eigen::VectorXd& gradient) -> std::optional<double> {
+    if (!assess(problem, decisions(x), cost)) return std::nullopt;
+    gradient = factor * answer_.point.gradient.cwiseProduct(scale_);
+    return factor * answer_.point.value;
+  };
+  nlopt.constraints = [&](const Eigen::VectorXd& x, Eigen::VectorXd& values,
                           Eigen::MatrixXd& gradients) {
-    if (!assess(problem, z, cost)) return false;
+    if (!assess(problem, decisions(x), cost)) return false;
     values = answer_.constraints;
-    gradients = answer_.constraint_gradients;
+    gradients = scale_.asDiagonal() * answer_.constraint_gradients;
     return true;
   };
   return run_nlopt(nlopt, start);
@@ -150,9 +160,17 @@ SolverStatus SlsqpSolver::stopped_as(const MeteredCost& cost) const {
                   : cost.stopped().value_or(SolverStatus::kStalled);
 }
 
+// Keeps the worse half. NLopt stalls where gradients in the set are all but dependent, and often
+// does not with fewer.
+void SlsqpSolver::thin() {
+  std::sort(working_.begin(), working_.end(), [&](int a, int b) { return all_[a] > all_[b]; });
+  working_.resize(working_.size() / 2);
+}
+
 SolverStatus SlsqpSolver::rounds(const OcpProblem& problem, const SolverOptions& options,
                                  MeteredCost& cost) {
   double last_violation = std::numeric_limits<double>::infinity();
+  int thinnings = 0;
   while (true) {
     const NloptEnd end = run(problem, options, cost);
     const double within_set = reached_.violation;
@@ -161,7 +179,13 @@ SolverStatus SlsqpSolver::rounds(const OcpProblem& problem, const SolverOptions&
     if (end == NloptEnd::kStopped) break;
     const std::size_t entered = all_.size() > 0 ? enlarge(problem, tolerance_) : 0;
     const bool nearer = within_set > tolerance_ && within_set < kProgress * last_violation;
-    if (entered == 0 && !nearer) {
+    const bool stuck = entered == 0 && !nearer;
+    if (stuck && end == NloptEnd::kStalled && !working_.empty() && thinnings < kMostThinnings) {
+      thin();
+      ++thinnings;
+      continue;
+    }
+    if (stuck) {
       return end == NloptEnd::kConverged ? SolverStatus::kConverged : SolverStatus::kStalled;
     }
     last_violation = entered > 0 ? std::numeric_limits<double>::infinity() : within_set;
@@ -180,6 +204,12 @@ const SolverResult& SlsqpSolver::minimise(const OcpProblem& problem, const Eigen
   all_.resize(problem.constraints ? problem.constraints->count : 0);
   answer_ = {};
   answer_.point.gradient.resize(start.size());
+  scale_.resize(start.size());
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    const double range = problem.upper[i] - problem.lower[i];
+    // A power of two, so that scaling rounds nothing and a start is known again as evaluated.
+    scale_[i] = std::isfinite(range) && range > 0.0 ? std::exp2(std::round(std::log2(range))) : 1.0;
+  }
   best_ = {.z = start.cwiseMax(problem.lower).cwiseMin(problem.upper),
            .value = infinity,
            .violation = infinity,

@@ -40,6 +40,7 @@ class SlsqpSolver final : public OcpSolver {
   [[nodiscard]] bool check_all(const OcpProblem& problem, Point& point);
   std::size_t enlarge(const OcpProblem& problem, double threshold);
   void drop_inactive();
+  void thin();
   [[nodiscard]] SolverStatus stopped_as(const MeteredCost& cost) const;
   SolverStatus rounds(const OcpProblem& problem, const SolverOptions& options, MeteredCost& cost);
 
@@ -49,6 +50,7 @@ class SlsqpSolver final : public OcpSolver {
   Answer answer_;
   bool trouble_ = false;  // a constraint was not finite
   double tolerance_ = 0.0;
+  Eigen::VectorXd scale_;  // of the decisions: the bounds' ranges
   std::vector<int> working_;
   std::vector<int> candidates_;
   Eigen::VectorXd all_;  // values of all constraints where they were looked at last

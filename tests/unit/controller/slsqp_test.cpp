@@ -85,6 +85,21 @@ TEST_F(Slsqp, projects_onto_a_polygon_of_thousands_of_sides) {
   EXPECT_LE(asked_.most_at_once, 10U);
 }
 
+TEST_F(Slsqp, gradients_that_are_all_but_dependent_are_survived) {
+  // Neighbouring tangents differ by a thousandth: NLopt's subproblem then gives NaN now and then.
+  OcpProblem problem = distance_to(VectorXd::Zero(2));
+  problem.constraints = circle(5000, asked_);
+  for (int repetition = 0; repetition < 100; ++repetition) {
+    const VectorXd centre{{3.0 * std::cos(0.7 * repetition), 2.0 * std::sin(0.7 * repetition)}};
+    const VectorXd start{{2.0 * std::sin(1.3 * repetition), 2.0 * std::cos(1.9 * repetition)}};
+    problem.cost = distance_to(centre).cost;
+    const SolverResult& result = solver_->minimise(problem, start, precise_);
+    EXPECT_EQ(result.status, SolverStatus::kConverged) << repetition;
+    // The polygon's corners are within its angle of the circle's nearest point.
+    EXPECT_LE((result.z - centre.normalized()).norm(), 2e-3) << repetition;
+  }
+}
+
 TEST_F(Slsqp, grouped_constraints_lead_to_the_same_point) {
   constexpr int kSides = 4000;
   OcpProblem problem = distance_to(VectorXd{{2.0, 2.0}});
@@ -250,6 +265,24 @@ TEST_F(Slsqp, equal_constraints_by_the_dozen_do_no_harm) {
     EXPECT_LE((result.z - VectorXd::Constant(2, std::sqrt(0.5))).cwiseAbs().maxCoeff(), 1e-5);
     EXPECT_LE(result.violation, 1e-6);
   }
+}
+
+TEST_F(Slsqp, decisions_of_unlike_units_take_no_more_evaluations) {
+  // The same problem in other units, of powers of two, so that nothing is rounded otherwise.
+  const VectorXd units{{1024.0, 1.0, 1.0 / 1024.0, 1.0 / 256.0}};
+  const VectorXd centre{{3.0, -4.0, 5.0, -20.0}};
+  const auto evaluations = [&](const VectorXd& unit) {
+    OcpProblem problem = distance_to(centre);
+    problem.lower = problem.lower.cwiseProduct(unit).eval();
+    problem.upper = problem.upper.cwiseProduct(unit).eval();
+    problem.cost = [&, unit](const VectorXd& z, VectorXd& gradient) {
+      const VectorXd difference = z.cwiseQuotient(unit) - centre;
+      gradient = difference.cwiseQuotient(unit);
+      return 0.5 * difference.squaredNorm();
+    };
+    return solver_->minimise(problem, VectorXd::Zero(4), precise_).evaluations;
+  };
+  EXPECT_EQ(evaluations(units), evaluations(VectorXd::Ones(4)));
 }
 
 TEST_F(Slsqp, constraints_that_are_not_finite_are_a_status) {
