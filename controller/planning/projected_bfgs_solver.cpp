@@ -145,10 +145,17 @@ void ProjectedBfgsSolver::learn() {
     const double curvature = change_.cwiseProduct(scale_).squaredNorm() / product;
     hessian_.diagonal() = curvature * scale_.array().square().inverse();
   }
-  known_ = Curvature::kLearnt;
   curved_.noalias() = hessian_ * moved_;
-  const double believed = moved_.dot(curved_);
+  double believed = moved_.dot(curved_);
   if (!(believed > 0.0)) return;
+  if (known_ == Curvature::kInherited && product > 0.0 && product < kLeastCurvature * believed) {
+    // What was inherited is far too stiff, as after a cost a thousand times larger: all of it is
+    // scaled (Oren and Luenberger 1974).
+    hessian_ *= product / believed;
+    curved_ *= product / believed;
+    believed = product;
+  }
+  known_ = Curvature::kLearnt;
   if (product < kLeastCurvature * believed) {
     const double share = (1.0 - kLeastCurvature) * believed / (believed - product);
     change_ = share * change_ + (1.0 - share) * curved_;

@@ -237,6 +237,18 @@ TEST(ProjectedBfgs, survives_curvature_of_another_problem) {
   EXPECT_LE((result.z - VectorXd::Ones(3)).cwiseAbs().maxCoeff(), 1e-5);
 }
 
+TEST(ProjectedBfgs, curvature_far_too_large_is_not_taken_for_the_minimum) {
+  Generator generator(9);
+  const MatrixXd hessian = random_spd(generator, 6) + MatrixXd::Identity(6, 6);
+  const VectorXd centre = VectorXd::Constant(6, 0.7);
+  const auto solver = projected_bfgs();
+  solver->minimise(quadratic(1e8 * hessian, centre), VectorXd::Zero(6), {});
+  // The first step now lowers the cost by 1e-8 of itself, less than the tolerance of 1e-6.
+  const SolverResult& result = solver->minimise(quadratic(hessian, centre), VectorXd::Zero(6), {});
+  EXPECT_EQ(result.status, SolverStatus::kConverged);
+  EXPECT_LE((result.z - centre).cwiseAbs().maxCoeff(), 1e-3);
+}
+
 TEST(ProjectedBfgs, takes_no_constraints) {
   OcpProblem problem = rosenbrock(2);
   problem.constraints = ConstraintSet{};
