@@ -144,22 +144,24 @@ std::vector<Eigen::MatrixXd> SampledProblem::gains(const Eigen::MatrixXd& states
                     .terminal = 2.0 * settings_.cost.terminal});
 }
 
-double SampledProblem::price(const Eigen::MatrixXd& inputs) {
+Policy SampledProblem::policy_of(const Eigen::MatrixXd& inputs) const {
   Policy policy{.inputs = inputs,
                 .states = nominal_states(dynamics_, start_, inputs),
                 .gains = {},
                 .bounds = settings_.bounds};
   policy.gains = gains(policy.states, inputs);
+  return policy;
+}
+
+double SampledProblem::price(const Policy& policy) {
   forward(policy);
   return value_;
 }
 
+double SampledProblem::price(const Eigen::MatrixXd& inputs) { return price(policy_of(inputs)); }
+
 double SampledProblem::price(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
-  Policy policy{.inputs = inputs,
-                .states = nominal_states(dynamics_, start_, inputs),
-                .gains = {},
-                .bounds = settings_.bounds};
-  policy.gains = gains(policy.states, inputs);
+  const Policy policy = policy_of(inputs);
   forward(policy);
   backward(policy, gradient);
   if (settings_.closed_loop && !settings_.feedback_gain) add_gain_gradient(inputs, gradient);

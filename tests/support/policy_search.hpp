@@ -2,7 +2,7 @@
 // docs/theory/planning.md with its expectations taken over simulated paths instead of particles.
 //
 //   SampledProblem problem(*car, settings, belief, {.paths = 20000, .seed = 1});
-//   double price = problem.price(plan.policy.inputs);
+//   double price = problem.price(plan.policy);
 //
 // The draws are frozen, so that two policies meet the same noise, and the price is a piecewise
 // smooth function of the nominal inputs whose gradient, that of the gains included, is known. It
@@ -31,6 +31,8 @@ class SampledProblem {
   SampledProblem(const Dynamics& dynamics, const PlannerSettings& settings, const Gaussian& belief,
                  Draws draws);
 
+  /// The mean cost of the paths under `policy`, with whatever gains.
+  [[nodiscard]] double price(const Policy& policy);
   /// The mean cost of the paths under the policy with these nominal inputs (input_dim x horizon)
   /// and the gains that belong to them.
   [[nodiscard]] double price(const Eigen::MatrixXd& inputs);
@@ -41,6 +43,7 @@ class SampledProblem {
   [[nodiscard]] Eigen::MatrixXd descend(const Eigen::MatrixXd& start);
 
  private:
+  [[nodiscard]] Policy policy_of(const Eigen::MatrixXd& inputs) const;
   [[nodiscard]] std::vector<Eigen::MatrixXd> gains(const Eigen::MatrixXd& states,
                                                    const Eigen::MatrixXd& inputs) const;
   void forward(const Policy& policy);

@@ -1,0 +1,232 @@
+// What the parts of a control period cost, each alone, by the number of points, the horizon and the
+// system, with the complexity that fits best.
+//
+//   ocp_stages [Google Benchmark's options, e.g. --benchmark_filter=dubins/18]
+//
+// Takes about a minute and a half. Names are PART/SYSTEM/HORIZON/POINTS. The problems are those of
+// scripts/bench-ocp: the Dubins car among blocks and the bicycle, closed loop. `POINTS` stand for
+// the belief and are kept after every step. Parts: quantise (the belief, anew), predict (under a
+// given policy, with new assignments), evaluate (cost and gradient at held assignments), compress
+// (100 points a kept one, by the split tree), certify (error budget and certificates), plan (all of
+// a plan that starts from the last one, along the way that is planned, the belief's quantiser at
+// hand). A suffix names the propagator.
+#include <map>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include "controller/certification/certificate.hpp"
+#include "controller/certification/error_budget.hpp"
+#include "controller/measure/compression.hpp"
+#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/planner.hpp"
+#include "controller/prediction/propagator.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/scenario/scenario_file.hpp"
+
+namespace qsmpc::testing {
+namespace {
+
+struct Case {
+  std::string system;
+  int horizon = 8;
+  std::string propagator;
+  int points = 100;
+};
+
+/// The problem of a case, and a plan that was made for it.
+class Problem {
+ public:
+  explicit Problem(const Case& wanted)
+      : Problem(load_scenario(wanted.system == "bicycle" ? "bicycle_obstacles"
+                                                         : QSMPC_SOURCE_DIR
+                                  "/tests/bench/scenarios/dubins_blocks.yaml",
+                              {fmt::format("controller.horizon={}", wanted.horizon)}),
+                wanted) {}
+
+  [[nodiscard]] GaussianQuantisation quantised() const {
+    return quantise(belief_, settings_.state_points);
+  }
+  [[nodiscard]] Prediction predicted() {
+    return predict(*model_, *propagator_, plan_.belief.measure, plan_.policy);
+  }
+  [[nodiscard]] HorizonCost horizon_cost() const {
+    return {{.dynamics = *model_,
+             .safe_set = settings_.safe_set,
+             .cost = settings_.cost,
+             .penalty = settings_.penalty,
+             .noise_covariance = settings_.noise_covariance,
+             .within_covariance = plan_.belief.within_covariance},
+            plan_.prediction,
+            plan_.policy};
+  }
+  [[nodiscard]] std::vector<StageCertificate> certificates() const {
+    const PredictedMotion motion = motion_of(planner_, belief_, plan_);
+    return certify(motion, settings_.safe_set, error_budget(motion));
+  }
+  /// Plans for where the last plan leads to; now and then starts again from the start.
+  [[nodiscard]] const Plan& next_plan(benchmark::State& state) {
+    if (step_++ == kStepsOfAWay) {
+      state.PauseTiming();
+      step_ = 1;
+      planner_.reset();
+      way_ = belief_;
+      follow(planner_.plan(way_));
+      state.ResumeTiming();
+    }
+    const Plan& plan = planner_.plan(way_);
+    follow(plan);
+    return plan;
+  }
+  [[nodiscard]] const Plan& plan() const { return plan_; }
+
+ private:
+  static constexpr int kStepsOfAWay = 30;
+
+  Problem(const Scenario& scenario, const Case& wanted)
+      : model_(model_of(scenario)),
+        settings_(settings_of(scenario, wanted)),
+        propagator_(make_propagator(settings_.propagator,
+                                    {.noise = {.mean = Eigen::VectorXd::Zero(model_->state_dim()),
+                                               .covariance = settings_.noise_covariance},
+                                     .noise_points = settings_.noise_points,
+                                     .compressed_points = settings_.compressed_points})),
+        planner_(*model_, settings_),
+        belief_{.mean = scenario.initial_state.mean, .covariance = settings_.noise_covariance},
+        way_(belief_),
+        plan_(planner_.plan(belief_)) {
+    planner_.prepare(belief_.covariance);
+  }
+
+  static PlannerSettings settings_of(const Scenario& scenario, const Case& wanted) {
+    PlannerSettings settings = planner_settings(scenario);
+    settings.propagator = wanted.propagator;
+    settings.state_points = wanted.points;
+    settings.compressed_points = wanted.points;
+    return settings;
+  }
+  void follow(const Plan& plan) { way_.mean = plan.policy.states.col(1); }
+
+  std::unique_ptr<const Dynamics> model_;
+  PlannerSettings settings_;
+  std::unique_ptr<Propagator> propagator_;
+  Planner planner_;
+  Gaussian belief_;
+  Gaussian way_;  // belief that is planned for next
+  int step_ = 0;
+  Plan plan_;
+};
+
+/// Google Benchmark calls a function several times: what it works on is made once and kept.
+Problem& problem_of(const Case& wanted) {
+  static std::map<std::tuple<std::string, int, std::string, int>, std::unique_ptr<Problem>> known;
+  auto& problem = known[{wanted.system, wanted.horizon, wanted.propagator, wanted.points}];
+  if (!problem) problem = std::make_unique<Problem>(wanted);
+  return *problem;
+}
+
+void quantise_belief(benchmark::State& state, Problem& problem) {
+  for (auto _ : state) benchmark::DoNotOptimize(problem.quantised());
+}
+
+void predict_stages(benchmark::State& state, Problem& problem) {
+  for (auto _ : state) benchmark::DoNotOptimize(problem.predicted());
+}
+
+void evaluate_cost(benchmark::State& state, Problem& problem) {
+  HorizonCost cost = problem.horizon_cost();
+  // Two points in turn: what was computed for the last one is of no use.
+  const Eigen::MatrixXd inputs = problem.plan().policy.inputs;
+  const Eigen::MatrixXd other = 0.99 * inputs;
+  Eigen::MatrixXd gradient(inputs.rows(), inputs.cols());
+  benchmark::DoNotOptimize(cost.evaluate(other, gradient));  // touches its memory
+  bool first = true;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(cost.evaluate(first ? inputs : other, gradient));
+    first = !first;
+  }
+}
+
+void certify_stages(benchmark::State& state, Problem& problem) {
+  for (auto _ : state) benchmark::DoNotOptimize(problem.certificates());
+}
+
+void plan_next(benchmark::State& state, Problem& problem) {
+  for (auto _ : state) benchmark::DoNotOptimize(problem.next_plan(state).cost);
+}
+
+void compress_points(benchmark::State& state) {
+  constexpr int kPointsEach = 100;
+  constexpr int kDim = 3;
+  const auto count = static_cast<int>(state.range(0));
+  const Gaussian law{.mean = Eigen::VectorXd::Zero(kDim),
+                     .covariance = Eigen::Vector3d(1.0, 0.7, 0.1).asDiagonal()};
+  const DiscreteMeasure measure = quantise(law, kPointsEach * count).measure;
+  for (auto _ : state) benchmark::DoNotOptimize(compress(measure, count, 0));
+  state.SetComplexityN(count);
+}
+
+using Part = void (*)(benchmark::State&, Problem&);
+
+void add(const std::string& part, Part run, Case wanted, const std::vector<int>& points) {
+  const std::string suffix = part == "quantise" ? "" : "_" + wanted.propagator;
+  const std::string name = fmt::format("{}{}/{}/{}", part, suffix, wanted.system, wanted.horizon);
+  auto* registered = benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    Case own = wanted;
+    own.points = static_cast<int>(state.range(0));
+    run(state, problem_of(own));
+    state.SetComplexityN(state.range(0));
+  });
+  registered->Unit(benchmark::kMillisecond);
+  for (const int count : points) registered->Arg(count);
+  if (points.size() > 2) registered->Complexity();
+}
+
+void add_all() {
+  const std::vector<int> many = {100, 1000, 10000, 100000};
+  const std::vector<int> some = {100, 300, 1000, 3000};
+  const std::vector<int> few = {100, 300, 1000};
+  for (const std::string system : {"dubins", "bicycle"}) {
+    add("quantise", quantise_belief, {system, 8, "noise_free"}, many);
+    for (const int horizon : {8, 18}) {
+      add("predict", predict_stages, {system, horizon, "noise_free"}, many);
+      add("predict", predict_stages, {system, horizon, "mixture"}, some);
+      add("predict", predict_stages, {system, horizon, "compressed"}, few);
+      add("evaluate", evaluate_cost, {system, horizon, "noise_free"}, many);
+      add("evaluate", evaluate_cost, {system, horizon, "mixture"}, some);
+      add("certify", certify_stages, {system, horizon, "noise_free"}, many);
+      add("certify", certify_stages, {system, horizon, "mixture"}, some);
+      add("plan", plan_next, {system, horizon, "noise_free"}, few);
+      add("plan", plan_next, {system, horizon, "mixture"}, few);
+      add("plan", plan_next, {system, horizon, "compressed"}, {100});
+    }
+  }
+  benchmark::RegisterBenchmark("compress/dubins", compress_points)
+      ->Arg(100)
+      ->Arg(300)
+      ->Arg(1000)
+      ->Complexity()
+      ->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace
+}  // namespace qsmpc::testing
+
+int main(int argc, char** argv) {
+  // A default that the options given may change.
+  std::string least_time = "--benchmark_min_time=0.1";
+  std::vector<char*> arguments(argv, argv + argc);
+  arguments.insert(arguments.begin() + 1, least_time.data());
+  int count = argc + 1;
+  arguments.push_back(nullptr);
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 1;
+  qsmpc::testing::add_all();
+  benchmark::RunSpecifiedBenchmarks();
+  benchmark::Shutdown();
+  return 0;
+}
