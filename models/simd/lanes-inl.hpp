@@ -47,12 +47,26 @@ HWY_INLINE Vector zeros() { return hn::Zero(VectorTag()); }
 /// Eight doubles from or to anywhere, and the same where only `count` of them exist (the others
 /// read as zero and are not written).
 HWY_INLINE Vector load(const double* from) { return hn::LoadU(VectorTag(), from); }
+// The first `count` elements, the others zero; nothing else is read or written. Only newer
+// instruction sets mask accesses to memory; elsewhere Highway's own functions access whole vectors.
 HWY_INLINE Vector load_first(std::size_t count, const double* from) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
   return hn::MaskedLoad(hn::FirstN(VectorTag(), count), VectorTag(), from);
+#else
+  double lane[kWidth] = {};
+  for (std::size_t i = 0; i < count; ++i) lane[i] = from[i];
+  return load(lane);
+#endif
 }
 HWY_INLINE void store(Vector value, double* to) { hn::StoreU(value, VectorTag(), to); }
 HWY_INLINE void store_first(std::size_t count, Vector value, double* to) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX2
   hn::BlendedStore(value, hn::FirstN(VectorTag(), count), VectorTag(), to);
+#else
+  double lane[kWidth];
+  store(value, lane);
+  for (std::size_t i = 0; i < count; ++i) to[i] = lane[i];
+#endif
 }
 
 /// Calls body(i, load, store, part) for every vector of `size` doubles: it covers i … i + kWidth −
@@ -132,17 +146,6 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
                                 2.08757232129817482790e-09, -1.13596475577881948265e-11};
   const VectorTag d;
   const hn::RebindToUnsigned<VectorTag> bits;
-  if (HWY_UNLIKELY(!hn::AllFalse(d, hn::Ge(hn::Abs(x), constant(kLargestReduced))))) {
-    double angle[kWidth];
-    double sine[kWidth];
-    double cosine[kWidth];
-    store(x, angle);
-    for (std::size_t lane = 0; lane < kWidth; ++lane) {
-      sine[lane] = std::sin(angle[lane]);
-      cosine[lane] = std::cos(angle[lane]);
-    }
-    return {load(sine), load(cosine)};
-  }
   const Vector shifted = x * constant(kTwoOverPi) + constant(kRounder);
   const Vector multiple = shifted - constant(kRounder);
   const auto quadrant = hn::BitCast(bits, shifted);
@@ -163,8 +166,23 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
   const Vector sine_sign = hn::BitCast(d, hn::ShiftLeft<62>(hn::And(quadrant, two)));
   const Vector cosine_sign =
       hn::BitCast(d, hn::ShiftLeft<62>(hn::And(hn::Add(quadrant, one), two)));
-  return {hn::Xor(hn::IfThenElse(odd, cosine, sine), sine_sign),
-          hn::Xor(hn::IfThenElse(odd, sine, cosine), cosine_sign)};
+  SineCosine result{hn::Xor(hn::IfThenElse(odd, cosine, sine), sine_sign),
+                    hn::Xor(hn::IfThenElse(odd, sine, cosine), cosine_sign)};
+  const Mask large = hn::Ge(hn::Abs(x), constant(kLargestReduced));
+  if (HWY_UNLIKELY(!hn::AllFalse(d, large))) {
+    double angle[kWidth];
+    double library_sine[kWidth];
+    double library_cosine[kWidth];
+    store(x, angle);
+    for (std::size_t lane = 0; lane < kWidth; ++lane) {
+      library_sine[lane] = std::sin(angle[lane]);
+      library_cosine[lane] = std::cos(angle[lane]);
+    }
+    // The others keep theirs: no result depends on what stands beside it in a vector.
+    result.sine = hn::IfThenElse(large, load(library_sine), result.sine);
+    result.cosine = hn::IfThenElse(large, load(library_cosine), result.cosine);
+  }
+  return result;
 }
 
 }  // namespace HWY_NAMESPACE
