@@ -120,12 +120,13 @@ std::vector<StageCertificate> certify(const PredictedMotion& motion, const SafeS
         std::min(1.0, leaving + worst_case_probability(particles, safe_set, budgets[k + 1].total));
     const double least =
         std::min({certificate.particles, certificate.surrogate, certificate.smoothed});
-    const DiscreteMeasure stepped{.locations = motion.prediction.stepped[k],
-                                  .weights = motion.prediction.stages[k].weights};
+    const GaussianMixture stepped{.centres = motion.prediction.stepped[k],
+                                  .weights = motion.prediction.stages[k].weights,
+                                  .covariance = motion.noise_covariance};
     const double useful = effort == CertificateEffort::kEvery ? 1.0 : least - leaving;
-    certificate.mixture =
-        std::min(1.0, leaving + smoothed_probability(stepped, motion.noise_covariance, safe_set,
-                                                     budgets[k + 1].before_noise, useful));
+    certificate.mixture = std::min(
+        1.0,
+        leaving + smoothed_probability(stepped, safe_set, budgets[k + 1].before_noise, useful));
     certificate.thesis = thesis_probability(particles, safe_set, radii[k + 1]);
     certificate.unsafe_mass = unsafe_mass(particles, safe_set);
     certificate.value = std::min(least, certificate.mixture);

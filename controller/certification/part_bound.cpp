@@ -1,6 +1,7 @@
 #include "controller/certification/part_bound.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -18,14 +19,18 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // ½ · max over sets A of ∫_A ∂²p for a standard normal density p: a quarter of E|Z² − 1|, which is
 // 4φ(1); rounded up.
 constexpr double kCurvature = 0.24198;
-// Golden-section steps over seven decades of t: to within 2 %, and every t gives a bound.
-constexpr int kSearchSteps = 18;
-constexpr double kLargestRatio = 1e7;
-// The same for τ of the norms of higher order; beyond 30, no less than 1e-6 is left.
+// Octaves over which t is searched, from the error's root mean square on; every t gives a bound.
+constexpr int kOctaves = 24;
+// Steps to an octave about the best of these, and to a step about the best of those: 1 % in t.
+constexpr int kFineSteps = 8;
+constexpr int kFinestSteps = 56;
+// Golden sections for τ of the norms of higher order; beyond 30, no less than 1e-6 is left.
 constexpr double kLargestTailRatio = 30.0;
 constexpr int kTailSteps = 7;
 // A probability that no certificate needs to be told from zero.
-constexpr double kNegligible = 1e-9;
+constexpr double kZeroProbability = 1e-9;
+// An estimate from which on a part is not far away.
+constexpr double kNotFar = 0.05;
 // Of n's covariance, relative to the product of the variances: below it rounding decides.
 constexpr double kLeastDeterminant = 1e-12;
 
@@ -38,11 +43,11 @@ double mean_square_density(double edge, double mean, double smooth, double rest)
   return height * normal_density((edge - mean) / std::sqrt(variance)) / std::sqrt(variance);
 }
 
-/// P(z ∈ slab of the part in `axis`).
-double slab_probability(const Gaussian& law, const UnsafePart& part, Eigen::Index axis) {
+/// P(z ∈ slab of the box in `axis`).
+double slab_probability(const Gaussian& law, const Box& box, Eigen::Index axis) {
   const double mean = law.mean[axis];
-  const double lower = part.box.lower[axis];
-  const double upper = part.box.upper[axis];
+  const double lower = box.lower[axis];
+  const double upper = box.upper[axis];
   const double deviation = std::sqrt(std::max(0.0, law.covariance(axis, axis)));
   if (deviation > 0.0) {
     return normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
@@ -58,7 +63,7 @@ double smooth_slab(const PerturbedGaussian& state, const UnsafePart& part, Eigen
   const double upper = part.box.upper[axis];
   const double error = state.error[axis];
   if (!std::isfinite(error) || !std::isfinite(mean)) return 1.0;
-  const double inside = slab_probability(state.law, part, axis);
+  const double inside = slab_probability(state.law, part.box, axis);
   if (error == 0.0) return inside;
   const double smooth = state.smoothing(axis, axis);
   if (!(smooth > 0.0)) return 1.0;
@@ -136,45 +141,126 @@ double smooth_rectangle(const PerturbedGaussian& state, const UnsafePart& part, 
   return bound + kCurvature * error[moved] * error[moved] / spread;
 }
 
-/// At least P(z ∈ part): the least over its coordinates and, unless one of these is small enough
-/// by itself, its pairs of coordinates.
-double probability_of_part(const Gaussian& law, const UnsafePart& part) {
-  double least = 1.0;
-  for (const Eigen::Index axis : part.axes) {
-    least = std::min(least, slab_probability(law, part, axis));
+/// A part of the unsafe set that is moved outwards by τ norms, in units of a law's deviations.
+class WidenedPart {
+ public:
+  WidenedPart(const Gaussian& law, const Eigen::VectorXd& norms, const UnsafePart& part)
+      : law_(law), norms_(norms), axes_(part.axes), part_(part.box), box_(part.box) {}
+
+  /// What may be outside of the widened part of e, |axes| τ^−p.
+  [[nodiscard]] double tails(double ratio, int order) const {
+    double power = static_cast<double>(axes_.size());
+    for (int k = 0; k < order; ++k) power /= ratio;
+    return power;
   }
-  for (std::size_t i = 0; i < part.axes.size() && least > kNegligible; ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      const std::vector<Eigen::Index> pair = {part.axes[j], part.axes[i]};
-      const Eigen::Matrix2d covariance = law.covariance(pair, pair);
-      const double inside = rectangle_probability(law.mean(pair), covariance, part.box.lower(pair),
-                                                  part.box.upper(pair));
-      least = std::min(least, inside + rectangle_error(covariance));
+
+  /// At least P(z ∈ part widened by τ norms): the least over its coordinates and, unless one of
+  /// these is small enough by itself, its pairs of coordinates.
+  double probability(double ratio) {
+    return least_over_pairs(ratio, [&](Eigen::Index a, Eigen::Index b) {
+      const Eigen::Matrix2d covariance = pair_covariance(a, b);
+      const double inside =
+          rectangle_probability({law_.mean[a], law_.mean[b]}, covariance,
+                                {box_.lower[a], box_.lower[b]}, {box_.upper[a], box_.upper[b]});
+      return inside + rectangle_error(covariance);
+    });
+  }
+
+  /// About the same, for searches.
+  double estimate(double ratio) {
+    return least_over_pairs(ratio, [&](Eigen::Index a, Eigen::Index b) {
+      const double first = std::sqrt(law_.covariance(a, a));
+      const double second = std::sqrt(law_.covariance(b, b));
+      const double correlation = law_.covariance(a, b) / (first * second);
+      if (!(std::abs(correlation) < 1.0)) return 1.0;
+      return rectangle_estimate(
+          {.low = {(box_.lower[a] - law_.mean[a]) / first, (box_.lower[b] - law_.mean[b]) / second},
+           .high = {(box_.upper[a] - law_.mean[a]) / first,
+                    (box_.upper[b] - law_.mean[b]) / second}},
+          correlation);
+    });
+  }
+
+ private:
+  template <class Rectangle>
+  double least_over_pairs(double ratio, const Rectangle& rectangle) {
+    double least = 1.0;
+    for (const Eigen::Index axis : axes_) {
+      box_.lower[axis] = part_.lower[axis] - ratio * norms_[axis];
+      box_.upper[axis] = part_.upper[axis] + ratio * norms_[axis];
+      least = std::min(least, slab_probability(law_, box_, axis));
     }
+    for (std::size_t i = 0; i < axes_.size() && least > kZeroProbability; ++i) {
+      for (std::size_t j = 0; j < i; ++j) least = std::min(least, rectangle(axes_[j], axes_[i]));
+    }
+    return least;
   }
-  return least;
-}
+
+  [[nodiscard]] Eigen::Matrix2d pair_covariance(Eigen::Index a, Eigen::Index b) const {
+    Eigen::Matrix2d covariance;
+    covariance << law_.covariance(a, a), law_.covariance(a, b), law_.covariance(b, a),
+        law_.covariance(b, b);
+    return covariance;
+  }
+
+  const Gaussian& law_;
+  const Eigen::VectorXd& norms_;
+  const std::vector<Eigen::Index>& axes_;
+  const Box& part_;
+  Box box_;  ///< widened
+};
 
 bool usable(const Gaussian& law, const Eigen::VectorXd& norms, const UnsafePart& part) {
   const bool known = std::all_of(part.axes.begin(), part.axes.end(),
                                  [&](Eigen::Index axis) { return std::isfinite(norms[axis]); });
-  return known && law.mean.allFinite() && law.covariance.allFinite();
+  return known && !part.axes.empty() && law.mean.allFinite() && law.covariance.allFinite();
 }
 
-/// |axes| τ^−p + P(z ∈ part widened by τ · norms).
-double widened_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                     const UnsafePart& part, double ratio) {
-  UnsafePart wide = part;
-  for (const Eigen::Index axis : part.axes) {
-    wide.box.lower[axis] -= ratio * norms[axis];
-    wide.box.upper[axis] += ratio * norms[axis];
+/// A t at which square/t² + E(1 − d(z, part)²/t²)₊ is near its least.
+class ReachSearch {
+ public:
+  ReachSearch(const SoftPart& part, double square) : part_(part), square_(square) {}
+
+  [[nodiscard]] double best() {
+    const double least = 1.02 * std::sqrt(square_);
+    constexpr int kCount = kSoftReaches;
+    for (int octave = 0; octave < kOctaves; octave += kCount) {
+      // What is near grows with t, so that no larger t can be better.
+      if (try_about(std::ldexp(least, octave), 1.0, 0.0) >= least_value_) break;
+    }
+    const double coarse = best_;
+    try_about(coarse, 1.0 / kFineSteps, kCount);
+    try_about(coarse, 1.0 / kFineSteps, -1.0);
+    try_about(best_, 1.0 / kFinestSteps, 0.5 * (kCount - 1));
+    return best_;
   }
-  return static_cast<double>(part.axes.size()) * std::pow(ratio, -order) +
-         probability_of_part(law, wide);
-}
 
-/// The least of `value` found by golden sections over [first, first · ratio], in the logarithm. One
-/// valley is expected; where there are more, what is found is a value as well.
+ private:
+  /// Tries centre · 2^{step (k − before)}, k = 0, 1, …; returns the last one's expectation.
+  double try_about(double centre, double step, double before) {
+    std::array<double, kSoftReaches> reaches;
+    std::array<double, kSoftReaches> near;
+    const double ratio = std::exp2(step);
+    reaches[0] = centre * std::exp2(-step * before);
+    for (std::size_t k = 1; k < kSoftReaches; ++k) reaches[k] = reaches[k - 1] * ratio;
+    soft_part_by_reach(part_, reaches.data(), near.data());
+    for (std::size_t k = 0; k < kSoftReaches; ++k) {
+      const double value = square_ / (reaches[k] * reaches[k]) + near[k];
+      if (value >= least_value_) continue;
+      least_value_ = value;
+      best_ = reaches[k];
+    }
+    return near.back();
+  }
+
+  const SoftPart& part_;
+  double square_;
+  double best_ = 1.02 * std::sqrt(square_);
+  double least_value_ = kInfinity;
+};
+
+/// Where `value` is least by golden sections over [first, first · ratio], in the logarithm. One
+/// valley is expected; where there are more, what is found is the bottom of one.
 template <class Value>
 double least_on_logarithmic_scale(const Value& value, double first, double ratio, int steps) {
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
@@ -184,7 +270,6 @@ double least_on_logarithmic_scale(const Value& value, double first, double ratio
   double outer = low + golden * (high - low);
   double at_inner = value(std::exp(inner));
   double at_outer = value(std::exp(outer));
-  double best = std::min({1.0, at_inner, at_outer});
   for (int step = 0; step < steps; ++step) {
     if (at_inner < at_outer) {
       high = outer;
@@ -199,9 +284,8 @@ double least_on_logarithmic_scale(const Value& value, double first, double ratio
       outer = low + golden * (high - low);
       at_outer = value(std::exp(outer));
     }
-    best = std::min({best, at_inner, at_outer});
   }
-  return best;
+  return std::exp(at_inner < at_outer ? inner : outer);
 }
 
 }  // namespace
@@ -243,27 +327,30 @@ double markov_part_bound(const PerturbedGaussian& state, const UnsafePart& part)
   if (!std::isfinite(square) || !state.law.mean.allFinite() || !state.law.covariance.allFinite()) {
     return 1.0;
   }
-  const auto value = [&](double t) {
-    return square / (t * t) +
-           soft_part_probability(state.law.mean, state.law.covariance, part.box, t);
-  };
-  if (square == 0.0) return std::min(1.0, value(kSmallestReach));
-  return least_on_logarithmic_scale(value, 1.02 * std::sqrt(square), kLargestRatio, kSearchSteps);
+  const SoftPart soft = soft_part(state.law.mean, state.law.covariance, part.box);
+  // The search is by vectors; what it finds is worked out with the smaller allowances.
+  const double t = square == 0.0 ? kSmallestReach : ReachSearch(soft, square).best();
+  return std::min(1.0, square / (t * t) + soft_part_probability(soft, t));
 }
 
 double tail_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
                        const UnsafePart& part) {
   if (!usable(law, norms, part)) return 1.0;
-  const auto value = [&](double ratio) { return widened_bound(law, norms, order, part, ratio); };
-  return least_on_logarithmic_scale(value, 1.0, kLargestTailRatio, kTailSteps);
+  WidenedPart widened(law, norms, part);
+  const double ratio = least_on_logarithmic_scale(
+      [&](double tau) { return widened.tails(tau, order) + widened.estimate(tau); }, 1.0,
+      kLargestTailRatio, kTailSteps);
+  return std::min(1.0, widened.tails(ratio, order) + widened.probability(ratio));
 }
 
 double far_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
                       const UnsafePart& part, double enough) {
   if (!usable(law, norms, part)) return 1.0;
-  const double tails = static_cast<double>(part.axes.size());
-  const double ratio = std::pow(2.0 * tails / enough, 1.0 / order);
-  return std::min(1.0, widened_bound(law, norms, order, part, ratio));
+  const double axes = static_cast<double>(part.axes.size());
+  const double ratio = std::pow(2.0 * axes / enough, 1.0 / order);
+  WidenedPart widened(law, norms, part);
+  if (widened.estimate(ratio) > kNotFar) return 1.0;
+  return std::min(1.0, widened.tails(ratio, order) + widened.probability(ratio));
 }
 
 double smooth_part_bound(const PerturbedGaussian& state, const UnsafePart& part) {

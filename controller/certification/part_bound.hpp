@@ -33,12 +33,12 @@ struct PerturbedGaussian {
 
 /// C3 by a norm of higher order: min over τ of |axes| τ^−p + P(z ∈ part widened by τ · norms),
 /// since P(|e_a| > τ ‖e_a‖_p) ≤ τ^−p in each of the part's coordinates. norms: bounds of ‖e_a‖_p
-/// (dim). The search ends with the first value that is at most `enough`.
+/// (dim).
 [[nodiscard]] double tail_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
                                      const UnsafePart& part);
 
 /// The same with the one τ that leaves half of `enough` (> 0) to the tails: as good as a search
-/// where the result is at most `enough`.
+/// where the result is at most `enough`. 1 where the part is so near that this τ is of no use.
 [[nodiscard]] double far_part_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
                                     const UnsafePart& part, double enough);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <boost/math/policies/policy.hpp>
 #include <boost/math/special_functions/owens_t.hpp>
 
 #include "controller/measure/normal_distribution.hpp"
@@ -22,6 +23,9 @@ constexpr double kCorrelationRounding = 1e-15;
 // Standard deviations beyond which a tail (1e-19) is nothing at this accuracy.
 constexpr double kFar = 9.0;
 
+// Owen's T in double precision: its few units in the last place are far below kRectangleError.
+using PlainDouble = boost::math::policies::policy<boost::math::policies::promote_double<false>>;
+
 /// P(X ≤ h, Y ≤ k) for standard normal X, Y of correlation r, |r| < 1 (Owen 1956): half of
 /// Φ(h) + Φ(k), less T(h, (k − rh)/(h√(1 − r²))) and its mirror image, less ½ where the signs of h
 /// and k differ.
@@ -34,7 +38,7 @@ double quadrant(double h, double k, double r) {
   // T(0, ±∞) = ±¼, which the quotient's sign decides.
   const auto owen = [&](double first, double second) {
     if (first == 0.0) return second > 0.0 ? 0.25 : -0.25;
-    return boost::math::owens_t(first, (second - r * first) / (first * root));
+    return boost::math::owens_t(first, (second - r * first) / (first * root), PlainDouble());
   };
   const double opposite = h * k < 0.0 || (h * k == 0.0 && h + k < 0.0) ? 0.5 : 0.0;
   return 0.5 * (normal_cumulative(h) + normal_cumulative(k)) - owen(h, k) - owen(k, h) - opposite;

@@ -141,7 +141,8 @@ TEST(Smoothed, without_error_tends_to_the_probability) {
   const DiscreteMeasure centre{.locations = Points::Zero(1, 1),
                                .weights = Eigen::VectorXd::Ones(1)};
   const double probability = normal_cumulative(-2.0);
-  const double value = smoothed_probability(centre, Eigen::MatrixXd::Ones(1, 1), wall, 0.0);
+  const double value = smoothed_probability(
+      {centre.locations, centre.weights, Eigen::MatrixXd::Ones(1, 1)}, wall, 0.0);
   EXPECT_GE(value, probability);
   // What lies within the least t of 1e-4 before the wall.
   EXPECT_LE(value, probability + 1e-4 * normal_density(1.9999));
@@ -165,7 +166,8 @@ TEST(Smoothed, is_at_least_the_probability_under_an_adversarial_error) {
       (cost > radius * radius ? low : high) = c;
     }
     const double worst = normal_cumulative(-high);
-    const double value = smoothed_probability(centre, Eigen::MatrixXd::Ones(1, 1), wall, radius);
+    const double value = smoothed_probability(
+        {centre.locations, centre.weights, Eigen::MatrixXd::Ones(1, 1)}, wall, radius);
     EXPECT_GE(value, worst - 1e-12) << radius;  // rounding of the bisection
     // The bound is the dual of this problem and attained at its best t, which the search finds to
     // a few percent; the value is flat about it.
@@ -180,9 +182,11 @@ TEST(Smoothed, search_that_ends_early_ends_with_a_bound_of_no_use) {
     const DiscreteMeasure centres = random_measure(generator, 3, 8);
     const Eigen::MatrixXd covariance = random_spd(generator, 3, 0.05);
     const double radius = std::pow(10.0, uniform(generator, -4.0, -0.5));
-    const double full = smoothed_probability(centres, covariance, room, radius);
+    const double full =
+        smoothed_probability({centres.locations, centres.weights, covariance}, room, radius);
     for (const double useful : {-0.1, 0.0, 1e-6, 0.5 * full, 1.2 * full, 1.0}) {
-      const double value = smoothed_probability(centres, covariance, room, radius, useful);
+      const double value = smoothed_probability({centres.locations, centres.weights, covariance},
+                                                room, radius, useful);
       // Two searches in t: each ends within a few percent of the best.
       EXPECT_GE(value, 0.97 * full);
       if (useful <= full) {
@@ -199,11 +203,11 @@ TEST(Smoothed, says_one_where_nothing_is_known) {
   wall.bounds.upper[0] = 2.0;
   DiscreteMeasure centre{.locations = Points::Zero(1, 1), .weights = Eigen::VectorXd::Ones(1)};
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
-  EXPECT_EQ(smoothed_probability(centre, one, wall, kInfinity), 1.0);
-  EXPECT_EQ(smoothed_probability(centre, one, wall, std::nan("")), 1.0);
-  EXPECT_EQ(smoothed_probability(centre, one, wall, 1e3), 1.0);
+  EXPECT_EQ(smoothed_probability({centre.locations, centre.weights, one}, wall, kInfinity), 1.0);
+  EXPECT_EQ(smoothed_probability({centre.locations, centre.weights, one}, wall, std::nan("")), 1.0);
+  EXPECT_EQ(smoothed_probability({centre.locations, centre.weights, one}, wall, 1e3), 1.0);
   centre.locations(0, 0) = std::nan("");
-  EXPECT_EQ(smoothed_probability(centre, one, wall, 0.1), 1.0);
+  EXPECT_EQ(smoothed_probability({centre.locations, centre.weights, one}, wall, 0.1), 1.0);
 }
 
 }  // namespace
