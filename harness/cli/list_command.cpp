@@ -41,9 +41,13 @@ std::vector<Table> tables() {
   for (const ShippedScenario& scenario : shipped_scenarios()) {
     scenarios.items.push_back({scenario.name, scenario.description});
   }
-  return {make_table("systems", systems()),       make_table("plants", plants()),
-          make_table("solvers", solvers()),       make_table("propagators", propagators()),
-          make_table("quantisers", quantisers()), scenarios};
+  return {make_table("systems", systems()),
+          make_table("plants", plants()),
+          make_table("solvers", solvers()),
+          make_table("boundings", input_boundings()),
+          make_table("propagators", propagators()),
+          make_table("quantisers", quantisers()),
+          scenarios};
 }
 
 std::string as_text(const std::vector<Table>& chosen) {
@@ -85,9 +89,10 @@ void add_list_command(CLI::App& app, int& exit_code) {
   const auto kind = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   command
-      ->add_option("kind", *kind, "systems, plants, solvers, propagators, quantisers or scenarios")
+      ->add_option("kind", *kind,
+                   "systems, plants, solvers, boundings, propagators, quantisers or scenarios")
       ->check(CLI::IsMember(
-          {"systems", "plants", "solvers", "propagators", "quantisers", "scenarios"}));
+          {"systems", "plants", "solvers", "boundings", "propagators", "quantisers", "scenarios"}));
   command->add_flag("--json", *json, "as JSON");
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }

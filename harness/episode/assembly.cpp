@@ -1,5 +1,7 @@
 #include "harness/episode/assembly.hpp"
 
+#include "harness/threads/executor.hpp"
+
 namespace qsmpc {
 
 std::unique_ptr<const Dynamics> model_of(const Scenario& scenario) {
@@ -13,13 +15,17 @@ PlannerSettings planner_settings(const Scenario& scenario) {
   settings.horizon = controller.horizon;
   settings.closed_loop = controller.policy == "closed_loop";
   settings.feedback_gain = controller.feedback_gain;
+  settings.optimise_gain = controller.optimise_gain;
   settings.solver = controller.solver;
+  settings.input_bounding = controller.input_bounding;
   settings.propagator = controller.propagate_noise ? controller.propagator : "noise_free";
   settings.quantiser = quantiser_kind(controller.quantisation.quantiser);
   settings.state_points = controller.quantisation.state;
   settings.noise_points = controller.quantisation.noise;
   settings.compressed_points = controller.quantisation.compressed;
   settings.max_evaluations = controller.max_iterations;
+  settings.deadline = controller.deadline;
+  settings.run = executor_of(controller.threads);
   settings.noise_covariance = scenario.disturbance_covariance;
   settings.cost = {.state = controller.cost.state,
                    .input = controller.cost.input,

@@ -37,6 +37,11 @@ const std::vector<std::string>& solver_names() {
   return names;
 }
 
+const std::vector<std::string>& input_bounding_names() {
+  static const std::vector<std::string> names = names_of(input_boundings());
+  return names;
+}
+
 const std::vector<std::string>& propagator_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all = names_of(propagators());

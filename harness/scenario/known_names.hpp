@@ -10,6 +10,7 @@
 namespace qsmpc {
 
 [[nodiscard]] const std::vector<std::string>& solver_names();
+[[nodiscard]] const std::vector<std::string>& input_bounding_names();
 /// Those that propagate noise; `propagate_noise: false` stands for the other, "noise_free".
 [[nodiscard]] const std::vector<std::string>& propagator_names();
 [[nodiscard]] const std::vector<std::string>& quantiser_names();

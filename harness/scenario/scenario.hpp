@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,16 +55,22 @@ struct Scenario {
     int horizon = 8;
     std::string policy = "closed_loop";            ///< or "open_loop"
     std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
-    std::string solver = "lbfgs";                  ///< a name from `qsmpc list solvers`
+    /// Whether a matrix that is added to the gains of all stages is optimised along with the
+    /// inputs.
+    bool optimise_gain = false;
+    std::string solver = "lbfgs";            ///< a name from `qsmpc list solvers`
+    std::string input_bounding = "bounded";  ///< a name from `qsmpc list boundings`; "lbfgs"
     Quantisation quantisation;
     bool propagate_noise = true;
-    /// How, in the prediction; a name from `qsmpc list propagators`. "compressed" without noise.
-    std::string propagator = "compressed";
+    /// How, in the prediction; a name from `qsmpc list propagators`. The default without noise.
+    std::string propagator = "mixture";
     Cost cost;
     Penalty penalty;
     Eigen::VectorXd input_lower;  ///< input_dim
     Eigen::VectorXd input_upper;  ///< input_dim
     int max_iterations = 100;
+    double deadline = std::numeric_limits<double>::infinity();  ///< of one plan, s
+    int threads = 1;  ///< that loops over many particles are divided among
   };
   struct Video {
     std::string camera = "chase";  ///< "chase", "top" or "fixed"

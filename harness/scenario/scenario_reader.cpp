@@ -23,13 +23,16 @@ constexpr std::size_t kLongestPath = 1024;        // bytes
 constexpr std::size_t kMostObstacles = 1000;      // every particle is held against each of them
 constexpr double kShortestPeriod = 1e-4;          // s, a simulator's step at its finest
 constexpr double kLongestPeriod = 10.0;           // s
+constexpr double kLongestDeadline = 1e6;          // s; well within what a clock can count
 constexpr WholeRange kHorizonRange{1, kMostStages};
 constexpr WholeRange kPointsRange{1, 100000};
 constexpr WholeRange kIterationsRange{1, 100000};
+constexpr WholeRange kThreadsRange{1, 256};
 constexpr WholeRange kStepsRange{1, 1000000};
 constexpr WholeRange kFpsRange{1, 240};
 constexpr NumberRange kNotNegative{.least = 0.0};
 constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
+constexpr NumberRange kDeadlineRange{.least = 0.0, .most = kLongestDeadline, .above_least = true};
 
 // The vehicle that drives, or is drawn for, a system unless the scenario names another.
 std::string default_mjcf(const std::string& system) {
@@ -105,6 +108,8 @@ class ScenarioReader {
   Box read_box(Section& section, bool& any);
   void read_target();
   void read_controller();
+  void read_gain(Section& controller);
+  void read_solver(Section& controller);
   void read_propagation(Section& controller);
   void read_quantisation(Section& controller);
   void read_cost(Section& controller);
@@ -279,16 +284,37 @@ void ScenarioReader::read_controller() {
   Scenario::Controller& controller = scenario_.controller;
   controller.horizon = section.whole("horizon", controller.horizon, kHorizonRange);
   controller.policy = section.name("policy", controller.policy, policy_names());
-  controller.feedback_gain = section.matrix("feedback_gain", input_dim(), state_dim());
-  controller.solver = section.name("solver", controller.solver, solver_names());
-  controller.max_iterations =
-      section.whole("max_iterations", controller.max_iterations, kIterationsRange);
+  read_gain(section);
+  read_solver(section);
   read_propagation(section);
   read_quantisation(section);
   read_cost(section);
   read_penalty(section);
   read_input_bounds(section);
   section.refuse_unread();
+}
+
+void ScenarioReader::read_gain(Section& section) {
+  Scenario::Controller& controller = scenario_.controller;
+  controller.feedback_gain = section.matrix("feedback_gain", input_dim(), state_dim());
+  controller.optimise_gain = section.flag("optimise_gain", controller.optimise_gain);
+  if (controller.optimise_gain && controller.policy != "closed_loop") {
+    section.note("optimise_gain", "false, or controller.policy: closed_loop");
+  }
+}
+
+void ScenarioReader::read_solver(Section& section) {
+  Scenario::Controller& controller = scenario_.controller;
+  controller.solver = section.name("solver", controller.solver, solver_names());
+  const std::string fallback = controller.input_bounding;
+  controller.input_bounding = section.name("input_bounding", fallback, input_bounding_names());
+  if (controller.solver != "lbfgs" && controller.input_bounding != fallback) {
+    section.note("input_bounding", fallback + ", or controller.solver: lbfgs");
+  }
+  controller.max_iterations =
+      section.whole("max_iterations", controller.max_iterations, kIterationsRange);
+  controller.deadline = section.number("deadline", controller.deadline, kDeadlineRange);
+  controller.threads = section.whole("threads", controller.threads, kThreadsRange);
 }
 
 // A way of propagating noise that is then not propagated is a contradiction, unless it is the

@@ -96,7 +96,8 @@ std::string controller_text(const Scenario::Controller& controller,
   }
   const Scenario::Quantisation& points = controller.quantisation;
   const Scenario::Penalty& penalty = controller.penalty;
-  out += fmt::format("  solver: {}\n", controller.solver);
+  out += fmt::format("  optimise_gain: {}\n  solver: {}\n  input_bounding: {}\n",
+                     controller.optimise_gain, controller.solver, controller.input_bounding);
   out += fmt::format("  quantisation: {{state: {}, noise: {}, compressed: {}, quantiser: {}}}\n",
                      points.state, points.noise, points.compressed, points.quantiser);
   out += fmt::format("  propagate_noise: {}\n  propagator: {}\n", controller.propagate_noise,
@@ -107,7 +108,11 @@ std::string controller_text(const Scenario::Controller& controller,
   out += fmt::format("  penalty: {{shape: {}, box: {}, obstacle: {}, length: {}}}\n", penalty.shape,
                      number(penalty.box), number(penalty.obstacle), number(penalty.length));
   out += fmt::format("  input_bounds: {}\n", input_bounds(controller, inputs));
-  return out + fmt::format("  max_iterations: {}\n", controller.max_iterations);
+  if (std::isfinite(controller.deadline)) {
+    out += fmt::format("  deadline: {}\n", number(controller.deadline));
+  }
+  return out + fmt::format("  max_iterations: {}\n  threads: {}\n", controller.max_iterations,
+                           controller.threads);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "controller/planning/ocp_solver.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/trace/json_values.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -82,9 +83,11 @@ void add_timing(const Trace& trace, Summary& summary) {
   summary.breakdown.optimise = median_of(trace, [](const auto& s) { return s.timing.optimise; });
   summary.breakdown.certify = median_of(trace, [](const auto& s) { return s.timing.certify; });
   const double deadline = kMillisecondsPerSecond * trace.scenario.time_step;
+  const std::string cut_short = solver_status_name(SolverStatus::kDeadline);
   for (const StepRecord& step : trace.steps) {
     if (step.timing.total > deadline) ++summary.deadline_misses;
     if (step.fallback) ++summary.fallbacks;
+    if (step.solver_status == cut_short) ++summary.deadline_stops;
   }
   summary.iterations_median =
       median_of(trace, [](const auto& s) { return static_cast<double>(s.iterations); });
@@ -184,7 +187,8 @@ std::string summary_json(const Trace& trace, const SummaryOptions& options) {
   json["ocp_ms"] = timing_json(summary);
   json["deadline_misses"] = summary.deadline_misses;
   json["ocp"] = {{"iterations", {{"median", summary.iterations_median}}},
-                 {"fallbacks", summary.fallbacks}};
+                 {"fallbacks", summary.fallbacks},
+                 {"deadline_stops", summary.deadline_stops}};
   json["certificate"] = {{"next_step",
                           {{"max", summary.next_step_max},
                            {"mean", summary.next_step_mean},

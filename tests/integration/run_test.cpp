@@ -261,6 +261,7 @@ TEST(Commands, list_and_validate_and_help) {
   EXPECT_THAT(run_qsmpc({"list"}).output, HasSubstr("dubins_obstacles"));
   EXPECT_THAT(run_qsmpc({"list", "systems", "--json"}).output, HasSubstr("\"dubins\""));
   EXPECT_THAT(run_qsmpc({"list", "propagators"}).output, HasSubstr("moment_matched"));
+  EXPECT_THAT(run_qsmpc({"list", "boundings"}).output, HasSubstr("sigmoid"));
   EXPECT_THAT(run_qsmpc({"list", "quantisers"}).output, HasSubstr("lloyd"));
   EXPECT_EQ(run_qsmpc({"list", "wheels"}).exit_code, 2);
   EXPECT_EQ(run_qsmpc({"validate", "dubins_obstacles"}).exit_code, 0);

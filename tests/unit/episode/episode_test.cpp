@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "controller/planning/planner.hpp"
 #include "harness/episode/assembly.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/summary.hpp"
 
 namespace qsmpc {
 namespace {
@@ -196,6 +199,96 @@ TEST(Episode, a_chosen_propagator_and_quantiser_are_what_it_is_predicted_with) {
   // Each key on its own, too.
   EXPECT_EQ(plan_of("compressed", "lloyd").budgets[0].total, chosen.budgets[0].total);
   EXPECT_GT(last_variance(plan_of("moment_matched", "product")), 1.05 * last_variance(usual));
+}
+
+TEST(Episode, what_the_scenario_says_of_the_controller_reaches_the_planner) {
+  const PlannerSettings usual = planner_settings(small_scenario());
+  EXPECT_FALSE(usual.optimise_gain);
+  EXPECT_EQ(usual.solver, "lbfgs");
+  EXPECT_EQ(usual.input_bounding, "bounded");
+  EXPECT_EQ(usual.propagator, "mixture");
+  EXPECT_EQ(usual.deadline, std::numeric_limits<double>::infinity());
+  const PlannerSettings chosen = planner_settings(
+      small_scenario({"controller.optimise_gain=true", "controller.input_bounding=tanh",
+                      "controller.propagator=soft", "controller.deadline=0.02"}));
+  EXPECT_TRUE(chosen.optimise_gain);
+  EXPECT_EQ(chosen.input_bounding, "tanh");
+  EXPECT_EQ(chosen.propagator, "soft");
+  EXPECT_EQ(chosen.deadline, 0.02);
+  EXPECT_EQ(planner_settings(small_scenario({"controller.solver=slsqp"})).solver, "slsqp");
+  EXPECT_EQ(planner_settings(small_scenario({"controller.propagate_noise=false"})).propagator,
+            "noise_free");
+}
+
+TEST(Episode, every_solver_and_bounding_drives_within_the_bounds) {
+  std::vector<std::string> choices = {"controller.optimise_gain=true"};
+  for (const SolverEntry& entry : solvers()) choices.push_back("controller.solver=" + entry.name);
+  for (const SolverEntry& entry : input_boundings()) {
+    choices.push_back("controller.input_bounding=" + entry.name);
+  }
+  for (const std::string& choice : choices) {
+    SCOPED_TRACE(choice);
+    const Trace trace = run_episode(
+        small_scenario({choice, "controller.input_bounds={yaw_rate: [-0.4, 0.7]}"}), {.seed = 1});
+    EXPECT_EQ(trace.steps.size(), 12U);
+    for (const StepRecord& step : trace.steps) {
+      EXPECT_FALSE(step.fallback);
+      EXPECT_NE(step.solver_status, "numerical_trouble");
+      EXPECT_GE(step.plan_inputs.minCoeff(), -0.4);
+      EXPECT_LE(step.plan_inputs.maxCoeff(), 0.7);
+      EXPECT_GE(step.input[0], -0.4);
+      EXPECT_LE(step.input[0], 0.7);
+    }
+  }
+}
+
+// What is planned before the loop, so that its first periods are not slow, must not be seen in it.
+TEST(Episode, the_first_plan_is_that_of_a_planner_that_has_not_planned_before) {
+  const Scenario scenario = small_scenario();
+  const Trace trace = run_episode(scenario, {.seed = 3});
+  const auto model = model_of(scenario);
+  Planner planner(*model, planner_settings(scenario));
+  const Plan& plan = planner.plan(
+      {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance});
+  EXPECT_FALSE(plan.warm);
+  EXPECT_EQ(trace.steps[0].plan_inputs, plan.policy.inputs);
+  EXPECT_EQ(trace.steps[0].iterations, plan.evaluations);
+  EXPECT_EQ(trace.steps[0].cost.total(), plan.cost.total());
+}
+
+// Loops over more than 1024 particles are divided.
+TEST(Episode, the_number_of_threads_changes_nothing) {
+  const auto drive = [](int threads) {
+    return run_episode(
+        small_scenario({"controller.quantisation={state: 3000, noise: 8, compressed: 3000}",
+                        "controller.horizon=2", "controller.max_iterations=5", "limit.steps=2",
+                        "controller.threads=" + std::to_string(threads)}),
+        {.seed = 4});
+  };
+  const Trace first = drive(1);
+  const Trace second = drive(2);
+  ASSERT_EQ(first.steps.size(), 2U);
+  ASSERT_EQ(second.steps.size(), 2U);
+  EXPECT_GT(first.steps[0].particles[0].weights.size(), 2048);
+  EXPECT_GT(first.steps[0].particles[1].weights.size(), 2048);
+  for (std::size_t k = 0; k < first.steps.size(); ++k) {
+    expect_equal_steps(first.steps[k], second.steps[k]);
+  }
+  EXPECT_EQ(first.final_state, second.final_state);
+}
+
+TEST(Episode, drives_on_when_no_plan_is_done_in_time) {
+  const Trace trace = run_episode(small_scenario({"controller.deadline=1e-9"}), {.seed = 2});
+  EXPECT_EQ(trace.outcome, Outcome::kTimeout);
+  ASSERT_EQ(trace.steps.size(), 12U);
+  for (const StepRecord& step : trace.steps) {
+    EXPECT_EQ(step.solver_status, "deadline");
+    EXPECT_TRUE(step.plan_inputs.allFinite());
+    EXPECT_EQ(step.certificates.size(), 5U);
+  }
+  EXPECT_EQ(summarise(trace).deadline_stops, 12);
+  const Trace in_time = run_episode(small_scenario(), {.seed = 2});
+  EXPECT_EQ(summarise(in_time).deadline_stops, 0);
 }
 
 // A trace is what reports and videos are made from: every stage must be there, and consistent.

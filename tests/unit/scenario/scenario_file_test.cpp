@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/planning/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
@@ -56,7 +57,9 @@ void expect_equal(const Scenario::Controller& a, const Scenario::Controller& b) 
   EXPECT_EQ(a.horizon, b.horizon);
   EXPECT_EQ(a.policy, b.policy);
   EXPECT_EQ(a.feedback_gain, b.feedback_gain);
+  EXPECT_EQ(a.optimise_gain, b.optimise_gain);
   EXPECT_EQ(a.solver, b.solver);
+  EXPECT_EQ(a.input_bounding, b.input_bounding);
   EXPECT_EQ(a.quantisation.state, b.quantisation.state);
   EXPECT_EQ(a.quantisation.noise, b.quantisation.noise);
   EXPECT_EQ(a.quantisation.compressed, b.quantisation.compressed);
@@ -73,6 +76,8 @@ void expect_equal(const Scenario::Controller& a, const Scenario::Controller& b) 
   EXPECT_EQ(a.input_lower, b.input_lower);
   EXPECT_EQ(a.input_upper, b.input_upper);
   EXPECT_EQ(a.max_iterations, b.max_iterations);
+  EXPECT_EQ(a.deadline, b.deadline);
+  EXPECT_EQ(a.threads, b.threads);
 }
 
 // Equal values, and equal bytes when written again.
@@ -96,7 +101,12 @@ TEST(ScenarioFile, what_is_left_out_gets_its_documented_default) {
   EXPECT_EQ(scenario.target.radius, 0.5);
   EXPECT_EQ(scenario.controller.horizon, 8);
   EXPECT_EQ(scenario.controller.quantisation.quantiser, "product");
-  EXPECT_EQ(scenario.controller.propagator, "compressed");
+  EXPECT_EQ(scenario.controller.propagator, "mixture");
+  EXPECT_FALSE(scenario.controller.optimise_gain);
+  EXPECT_EQ(scenario.controller.solver, "lbfgs");
+  EXPECT_EQ(scenario.controller.input_bounding, "bounded");
+  EXPECT_EQ(scenario.controller.deadline, kInfinity);
+  EXPECT_EQ(scenario.controller.threads, 1);
   EXPECT_FALSE(scenario.controller.feedback_gain.has_value());
   EXPECT_EQ(scenario.controller.cost.state, Eigen::MatrixXd::Identity(3, 3));
   EXPECT_EQ(scenario.controller.cost.terminal, scenario.controller.cost.state);
@@ -126,14 +136,18 @@ controller:
   horizon: 9
   policy: open_loop
   feedback_gain: [[0.1, 0.2, 0.3]]
+  optimise_gain: false
   solver: lbfgs
+  input_bounding: penalty
   quantisation: {state: 11, noise: 12, compressed: 13, quantiser: lloyd}
   propagate_noise: false
-  propagator: compressed
+  propagator: mixture
   cost: {state: [1, 2, 3], input: [[4]], terminal: [5, 6, 7]}
   penalty: {shape: thesis, box: 21, obstacle: 22, length: 23}
   input_bounds: {yaw_rate: [-0.5, 0.75]}
   max_iterations: 31
+  deadline: 0.075
+  threads: 3
 limit: {steps: 32, stop_when_unsafe: false}
 video: {camera: fixed, size: 640x360, fps: 24}
 )";
@@ -185,7 +199,38 @@ TEST(ScenarioFile, every_controller_key_reaches_its_value) {
   EXPECT_EQ(controller.penalty.length, 23.0);
   EXPECT_EQ(controller.input_lower[0], -0.5);
   EXPECT_EQ(controller.input_upper[0], 0.75);
+  EXPECT_EQ(controller.input_bounding, "penalty");
   EXPECT_EQ(controller.max_iterations, 31);
+  EXPECT_EQ(controller.deadline, 0.075);
+  EXPECT_EQ(controller.threads, 3);
+}
+
+// These do not go with an open loop, or with another solver, as the text above has them.
+TEST(ScenarioFile, gains_can_be_optimised_and_another_solver_be_named) {
+  const Scenario gains = minimal_with({"controller.optimise_gain=true"});
+  EXPECT_TRUE(gains.controller.optimise_gain);
+  expect_round_trip(gains);
+  const Scenario other = minimal_with({"controller.solver=slsqp"});
+  EXPECT_EQ(other.controller.solver, "slsqp");
+  EXPECT_EQ(other.controller.input_bounding, "bounded");
+  expect_round_trip(other);
+}
+
+TEST(ScenarioFile, every_bounding_of_the_inputs_can_be_named) {
+  for (const SolverEntry& entry : input_boundings()) {
+    const Scenario scenario = minimal_with({"controller.input_bounding=" + entry.name});
+    EXPECT_EQ(scenario.controller.input_bounding, entry.name);
+    expect_round_trip(scenario);
+  }
+}
+
+TEST(ScenarioFile, a_deadline_is_written_unless_there_is_none) {
+  const Scenario some = minimal_with({"controller.deadline=0.30000000000000004"});
+  EXPECT_THAT(to_yaml(some), HasSubstr("\n  deadline: 0.30000000000000004\n"));
+  expect_round_trip(some);
+  const Scenario none = parse_scenario(minimal_text);
+  EXPECT_THAT(to_yaml(none), Not(HasSubstr("deadline")));
+  expect_round_trip(none);
 }
 
 TEST(ScenarioFile, every_propagator_of_noise_and_every_quantiser_can_be_named) {
@@ -366,6 +411,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"one_too_many", "target.state.3=1", "target.state", "a list of 4", "3 numbers"},
         BadOverride{"indefinite", "initial_state.covariance=[1, 1, -1]", "initial_state.covariance",
                     "eigenvalue -1", "semidefinite"},
+        BadOverride{"bounding", "controller.input_bounding=sigmod", "controller.input_bounding",
+                    "sigmod", "sigmoid (known: bounded, sigmoid"},
         BadOverride{"item", "target.state.0=north", "target.state.0", "north", "a finite number"}),
     [](const auto& test) { return test.param.name; });
 

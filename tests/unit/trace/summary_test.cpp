@@ -69,6 +69,16 @@ TEST(Summary, quantiles_are_nearest_ranks) {
   EXPECT_EQ(summary.deadline_misses, 100);  // those above 100 ms
 }
 
+TEST(Summary, counts_the_plans_that_fell_back_and_those_cut_short) {
+  Trace trace = straight_trace(4);
+  for (const std::size_t k : {0U, 2U, 3U}) trace.steps[k].solver_status = "deadline";
+  trace.steps[1].solver_status = "iteration_limit";
+  trace.steps[1].fallback = true;
+  const auto json = nlohmann::json::parse(summary_json(trace));
+  EXPECT_EQ(json["ocp"]["deadline_stops"], 3);
+  EXPECT_EQ(json["ocp"]["fallbacks"], 1);
+}
+
 TEST(Summary, certificates_are_summed_over_a_plan_and_along_the_drive) {
   const Summary summary = summarise(straight_trace(3));
   EXPECT_DOUBLE_EQ(summary.next_step_max, 0.03);
@@ -115,6 +125,7 @@ TEST(Summary, json_has_every_documented_key) {
                               "/deadline_misses",
                               "/ocp/iterations/median",
                               "/ocp/fallbacks",
+                              "/ocp/deadline_stops",
                               "/certificate/next_step/max",
                               "/certificate/next_step/mean",
                               "/certificate/horizon/max",
