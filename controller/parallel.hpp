@@ -5,6 +5,8 @@
 // no result depends on it.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <type_traits>
@@ -36,6 +38,36 @@ using Executor = std::function<void(int count, TaskRef task)>;
 /// One after the other, in the calling thread.
 inline void run_in_turn(int count, TaskRef task) {
   for (int n = 0; n < count; ++n) task(n);
+}
+
+/// The particles begin … end − 1.
+struct ParticleRange {
+  std::ptrdiff_t begin = 0;
+  std::ptrdiff_t end = 0;
+};
+
+/// Particles that one task works on. A multiple of eight, so that sums have the same interleaved
+/// parts in every chunk.
+inline constexpr std::ptrdiff_t kChunk = 1024;
+
+[[nodiscard]] inline int chunks_of(std::ptrdiff_t particles) {
+  return static_cast<int>((particles + kChunk - 1) / kChunk);
+}
+
+[[nodiscard]] inline ParticleRange chunk_range(int chunk, std::ptrdiff_t particles) {
+  return {chunk * kChunk, std::min((chunk + 1) * kChunk, particles)};
+}
+
+/// task(range, chunk) for all chunks of the particles.
+template <class Task>
+void for_chunks(const Executor& run, std::ptrdiff_t particles, const Task& task) {
+  const int count = chunks_of(particles);
+  const auto one = [&](int chunk) { task(chunk_range(chunk, particles), chunk); };
+  if (count == 1) {
+    one(0);
+  } else {
+    run(count, one);
+  }
 }
 
 }  // namespace qsmpc

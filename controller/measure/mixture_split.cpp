@@ -13,6 +13,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "controller/measure/mixture_kernels.hpp"
+#include "controller/storage.hpp"
 
 namespace qsmpc {
 namespace {
@@ -31,7 +32,7 @@ constexpr double kCostRounding = 1e-15;
 constexpr double kSparse = 0.5;
 constexpr std::size_t kLeastTable = 64;
 // Sources that one task works on; a multiple of kMixturePadding.
-constexpr std::size_t kChunk = 2048;
+constexpr std::size_t kSourceChunk = 2048;
 constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
 
 std::size_t padded(std::size_t size) {
@@ -53,17 +54,23 @@ class Arena {
       used_ = 0;
     }
     if (at_ == slabs_.size()) {
-      const std::size_t size = std::max(kSlab, count);
-      slabs_.push_back({.size = size, .data = std::make_unique<double[]>(size)});
+      add_slab(count);
       used_ = 0;
     }
     double* const begin = slabs_[at_].data.get() + used_;
     used_ += count;
+    given_ += count;
     return begin;
   }
+  /// Takes everything back, and sees to it that half as much again will fit.
   void reset() {
+    most_ = std::max(most_, given_);
+    std::size_t room = 0;
+    for (const Slab& slab : slabs_) room += slab.size;
+    if (room < most_ + most_ / 2) add_slab(3 * most_ - room);
     at_ = 0;
     used_ = 0;
+    given_ = 0;
   }
 
  private:
@@ -71,9 +78,16 @@ class Arena {
     std::size_t size;
     std::unique_ptr<double[]> data;
   };
+  void add_slab(std::size_t count) {
+    const std::size_t size = std::max(kSlab, count);
+    slabs_.push_back({.size = size, .data = std::make_unique<double[]>(size)});
+  }
+
   std::vector<Slab> slabs_;
   std::size_t at_ = 0;
-  std::size_t used_ = 0;
+  std::size_t used_ = 0;   // of the slab at hand
+  std::size_t given_ = 0;  // in all
+  std::size_t most_ = 0;   // given between two resets
 };
 
 /// Sources that cells are made of: names, weights and positions (d x stride).
@@ -91,7 +105,8 @@ struct Cell {
   MixtureMoments moments;
   int axis = 0;
   double at = 0.0;        // the mean along the axis
-  double spread = 0.0;    // Σ mass (x − mean)² along the axis; 0: not to be split
+  double spread = 0.0;    // Σ mass (x − mean)² along the axis, as a share of the mixture's
+                          // second moment; 0: not to be split
   std::uint32_t key = 0;  // rounded(spread)
 };
 
@@ -112,7 +127,12 @@ struct MixtureSplitter::Work {
     axes = eigen.eigenvectors();
     deviations = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
     centre.resize(dim);
+    for (Eigen::MatrixXd* matrix : {&mixture_covariance, &cells_covariance, &product})
+      matrix->setZero(dim, dim);
     cell_list.reserve(limit);
+    tables.reserve(2 * limit + 1);
+    round.reserve(limit);
+    splits.reserve(limit);
   }
 
   void start(const Points& sources, const Eigen::VectorXd& weights);
@@ -122,15 +142,18 @@ struct MixtureSplitter::Work {
   void finish(const Split& split);
   void give_own_table(Cell& cell, std::size_t parts);
   void list(MixtureCells& out);
+  void rotate(Eigen::MatrixXd& in_axes, Eigen::MatrixXd& out);
 
   int dim;
   int limit;
   double least_share;
-  Eigen::MatrixXd axes;        // of the noise, columns
-  Eigen::VectorXd deviations;  // along them
-  Eigen::VectorXd centre;      // mean of the sources
-  double second_moment = 0.0;  // of the mixture about the centre
-  double kept_moment = 0.0;    // of the cells' means
+  Eigen::MatrixXd axes;                // of the noise, columns
+  Eigen::VectorXd deviations;          // along them
+  Eigen::VectorXd centre;              // mean of the sources
+  double second_moment = 0.0;          // of the mixture about the centre
+  Eigen::MatrixXd mixture_covariance;  // covariance of the mixture, in the axes
+  Eigen::MatrixXd cells_covariance;    // of the cells' means
+  Eigen::MatrixXd product;
 
   Arena arena;
   std::vector<Table> tables;
@@ -189,6 +212,15 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
     cell.intervals[a] = {.lower = nothing, .upper = all};
     second_moment += cell.moments.second[a];
   }
+  for (int a = 0; a < dim; ++a) {
+    const double* const first = table.position + a * stride;
+    for (int b = 0; b <= a; ++b) {
+      const double* const second = table.position + b * stride;
+      double sum = a == b ? deviations[a] * deviations[a] * cell.moments.mass : 0.0;
+      for (std::size_t i = 0; i < size; ++i) sum += table.weight[i] * first[i] * second[i];
+      mixture_covariance(a, b) = sum;
+    }
+  }
   tables.push_back(table);
   choose_axis(cell);
   cell_list.push_back(cell);
@@ -199,8 +231,8 @@ void MixtureSplitter::Work::choose_axis(Cell& cell) const {
   cell.key = 0;
   for (int a = 0; a < dim; ++a) {
     const double mean = cell.moments.first[a] / cell.moments.mass;
-    const double spread = cell.moments.second[a] - mean * cell.moments.first[a];
-    if (!(spread > kNoSpread * second_moment)) continue;
+    const double spread = (cell.moments.second[a] - mean * cell.moments.first[a]) / second_moment;
+    if (!(spread > kNoSpread)) continue;
     const std::uint32_t key = rounded(spread);
     if (key > cell.key) {
       cell.key = key;
@@ -232,7 +264,11 @@ bool MixtureSplitter::Work::begin_round() {
     return cell_list[a].key != cell_list[b].key ? cell_list[a].key > cell_list[b].key : a < b;
   });
   if (static_cast<int>(round.size()) > left) round.resize(left);
+  std::size_t chunks = 0;
+  for (const int index : round) chunks += tables[cell_list[index].table].size / kSourceChunk + 1;
+  make_room(tasks, chunks);
   for (const int index : round) prepare(index);
+  make_room(results, tasks.size());
   results.resize(std::max(results.size(), tasks.size()));
   return true;
 }
@@ -253,7 +289,7 @@ void MixtureSplitter::Work::prepare(int index) {
   for (int a = 0, b = 1; a < dim; ++a) {
     if (a != cell.axis) split.cut.intervals[b++] = cell.intervals[a];
   }
-  for (std::size_t begin = 0; begin < table.size; begin += kChunk) {
+  for (std::size_t begin = 0; begin < table.size; begin += kSourceChunk) {
     tasks.emplace_back(static_cast<int>(splits.size()), begin);
   }
   split.tasks = tasks.size() - split.first_task;
@@ -346,17 +382,29 @@ void MixtureSplitter::Work::give_own_table(Cell& cell, std::size_t parts) {
   tables.push_back(table);
 }
 
+/// From the noise's axes, of which the lower triangle is given, to the state's.
+void MixtureSplitter::Work::rotate(Eigen::MatrixXd& in_axes, Eigen::MatrixXd& out) {
+  in_axes.triangularView<Eigen::StrictlyUpper>() = in_axes.transpose();
+  product.noalias() = axes * in_axes;
+  out.noalias() = product * axes.transpose();
+}
+
 /// Lists the parts of all cells.
 void MixtureSplitter::Work::list(MixtureCells& out) {
   const std::size_t count = cell_list.size();
-  kept_moment = 0.0;
+  cells_covariance.setZero();
   out.begin.assign(1, 0);
   out.source.clear();
   out.mass.clear();
+  std::size_t most = 0;
+  for (const Cell& cell : cell_list) most += tables[cell.table].size;
+  make_room(out.source, most);
+  make_room(out.mass, most);
   out.weight.resize(count);
+  out.mean.resize(dim * count);
   out.noise_mean.resize(dim * count);
-  for (std::size_t n = 0; n < count; ++n) {
-    const Cell& cell = cell_list[n];
+  std::size_t n = 0;
+  for (const Cell& cell : cell_list) {
     const Table& table = tables[cell.table];
     MixtureCell finished{.dim = dim,
                          .intervals = cell.intervals,
@@ -369,15 +417,35 @@ void MixtureSplitter::Work::list(MixtureCells& out) {
     part_source.resize(std::max(part_source.size(), room));
     const MixtureParts parts =
         list_mixture_parts(finished, table.size, part_mass.data(), part_source.data());
+    // By differences of moments the cell had some mass, of which rounding was all.
+    if (parts.count == 0) continue;
     out.mass.insert(out.mass.end(), part_mass.begin(), part_mass.begin() + parts.count);
     out.source.insert(out.source.end(), part_source.begin(), part_source.begin() + parts.count);
     out.begin.push_back(static_cast<int>(out.mass.size()));
     out.weight[n] = parts.mass;
-    for (int a = 0; a < dim; ++a) kept_moment += parts.first[a] * parts.first[a] / parts.mass;
+    for (int a = 0; a < dim; ++a) {
+      for (int b = 0; b <= a; ++b)
+        cells_covariance(a, b) += parts.first[a] * parts.first[b] / parts.mass;
+    }
     for (int b = 0; b < dim; ++b) {
       double mean = 0.0;
-      for (int a = 0; a < dim; ++a) mean += axes(b, a) * parts.noise[a];
-      out.noise_mean[b * count + n] = mean / parts.mass;
+      double noise = 0.0;
+      for (int a = 0; a < dim; ++a) {
+        mean += axes(b, a) * parts.first[a];
+        noise += axes(b, a) * parts.noise[a];
+      }
+      out.mean[b * count + n] = mean / parts.mass;
+      out.noise_mean[b * count + n] = noise / parts.mass;
+    }
+    ++n;
+  }
+  if (n < count) {
+    out.weight.resize(n);
+    for (std::vector<double>* const rows : {&out.mean, &out.noise_mean}) {
+      for (int b = 1; b < dim; ++b) {
+        std::copy_n(rows->begin() + b * count, n, rows->begin() + b * n);
+      }
+      rows->resize(dim * n);
     }
   }
 }
@@ -405,15 +473,17 @@ void MixtureSplitter::split(const Points& sources, const Eigen::VectorXd& weight
       const auto [split, begin] = work.tasks[k];
       const MixtureCut& cut = work.splits[split].cut;
       const std::size_t size = work.tables[work.cell_list[work.splits[split].cell].table].size;
-      work.results[k] = cut_mixture(cut, begin, std::min(size, begin + kChunk));
+      work.results[k] = cut_mixture(cut, begin, std::min(size, begin + kSourceChunk));
     };
     run(static_cast<int>(work.tasks.size()), task);
     for (const Split& split : work.splits) work.finish(split);
   }
   work.list(out);
   // The cost is what the cells lack of the mixture's second moment.
-  out.w2 = std::sqrt(std::max(0.0, work.second_moment - work.kept_moment) +
+  out.w2 = std::sqrt(std::max(0.0, work.second_moment - work.cells_covariance.trace()) +
                      kCostRounding * work.second_moment);
+  work.rotate(work.cells_covariance, out.covariance);
+  work.rotate(work.mixture_covariance, out.whole_covariance);
 }
 
 }  // namespace qsmpc

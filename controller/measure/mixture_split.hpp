@@ -30,9 +30,13 @@ struct MixtureCells {
   std::vector<int> source;     ///< of each part, increasing within a cell
   std::vector<double> mass;    ///< of each part: ρ_i P(w in the part)
   std::vector<double> weight;  ///< cells; the sum of the cell's parts, > 0
+  /// d x cells, row by row: the cell's mean less the mixture's.
+  std::vector<double> mean;
   /// d x cells, row by row: the mean of the noise over the cell's parts, by mass.
   std::vector<double> noise_mean;
   double w2 = 0.0;  ///< of the coupling; W2 of the mixture to the cells' means is at most this
+  Eigen::MatrixXd covariance;        ///< d x d, of the cells' means
+  Eigen::MatrixXd whole_covariance;  ///< d x d, of the mixture
 
   [[nodiscard]] int cells() const { return static_cast<int>(weight.size()); }
 };

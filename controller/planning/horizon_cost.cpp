@@ -6,17 +6,8 @@
 namespace qsmpc {
 namespace {
 
-// Particles that one task works on. A multiple of eight, so that sums have the same interleaved
-// parts in every chunk.
-constexpr Eigen::Index kChunk = 1024;
-
 using StateView = Eigen::Map<const StateBatch>;
 using StateSpan = Eigen::Map<StateBatch>;
-
-ParticleRange range_of(int chunk, Eigen::Index particles) {
-  const Eigen::Index begin = chunk * kChunk;
-  return {begin, std::min(begin + kChunk, particles)};
-}
 
 auto columns(const Points& points, ParticleRange range) {
   return points.middleCols(range.begin, range.end - range.begin);
@@ -62,7 +53,7 @@ void HorizonCost::hold(const Prediction& prediction, const Policy& policy) {
   double belief = 0.0;
   for (Eigen::Index i = 0; i < first.points.cols(); i += kChunk) {
     belief += weighted_quadratic(state_form_, 0.5, first.points, prediction.stages[0].weights,
-                                 range_of(static_cast<int>(i / kChunk), first.points.cols()),
+                                 chunk_range(static_cast<int>(i / kChunk), first.points.cols()),
                                  first.pulled);
   }
   constant_state_cost_ = belief + 0.5 * (cost.state.cwiseProduct(terms_.within_covariance).sum() +
@@ -91,7 +82,7 @@ void HorizonCost::resize_stages() {
     resize_packed(static_cast<int>(dim), size, stage.packed_stepped);
     stage.constant.resize(inputs);
   }
-  partials_.resize((most + kChunk - 1) / kChunk);
+  partials_.resize(chunks_of(most));
   for (Partial& partial : partials_) {
     partial.inputs.resize(inputs);
     partial.outer.resize(inputs, dim);
@@ -101,16 +92,6 @@ void HorizonCost::resize_stages() {
   nominal_input_adjoint_.resize(inputs);
   input_sum_.resize(inputs);
   outer_sum_.resize(inputs, dim);
-}
-
-template <class Task>
-void HorizonCost::for_chunks(Eigen::Index particles, const Task& task) {
-  const int count = static_cast<int>((particles + kChunk - 1) / kChunk);
-  if (count == 1) {
-    task(0);
-  } else {
-    run_(count, task);
-  }
 }
 
 double HorizonCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
@@ -158,7 +139,7 @@ StagePolicy HorizonCost::stage_policy(Eigen::Index k) const {
 }
 
 void HorizonCost::forward(const Eigen::VectorXd& z) {
-  decision_ = z;
+  decision_.assign(z.begin(), z.end());
   rolled_ = true;
   penalties_at_hand_ = true;
   set_decision(z);
@@ -176,7 +157,9 @@ void HorizonCost::forward(const Eigen::VectorXd& z) {
 
     const Eigen::Index sources = stage.points.cols();
     const Eigen::Index clusters = stages_[k + 1].points.cols();
-    for_chunks(sources, [&](int chunk) { forward_sources(k, chunk); });
+    for_chunks(run_, sources, [&](ParticleRange range, int chunk) {
+      partials_[chunk].cost = forward_sources(k, range);
+    });
     for (Eigen::Index i = 0; i < sources; i += kChunk) {
       const CostParts& part = partials_[i / kChunk].cost;
       parts_.input += part.input;
@@ -185,28 +168,27 @@ void HorizonCost::forward(const Eigen::VectorXd& z) {
     }
     const bool spread = prediction_->maps[k].spread.size() != 0;
     if (spread) {
-      for_chunks(clusters, [&](int chunk) {
-        const ParticleRange range = range_of(chunk, clusters);
+      for_chunks(run_, clusters, [&](ParticleRange range, int) {
         apply_shares(prediction_->maps[k], stage.stepped, stage.packed_stepped, range.begin,
                      range.end, stages_[k + 1].points);
       });
       apply_spread(prediction_->maps[k], stages_[k + 1].points);
     }
-    for_chunks(clusters, [&](int chunk) { forward_clusters(k, chunk); });
+    for_chunks(run_, clusters, [&](ParticleRange range, int chunk) {
+      partials_[chunk].penalty = forward_clusters(k, range);
+    });
     for (Eigen::Index i = 0; i < clusters; i += kChunk) {
-      parts_.box += partials_[i / kChunk].cost.box;
-      parts_.obstacle += partials_[i / kChunk].cost.obstacle;
+      parts_.box += partials_[i / kChunk].penalty.box;
+      parts_.obstacle += partials_[i / kChunk].penalty.obstacle;
     }
   }
 }
 
 /// Policy, step and costs of some particles of stage k.
-void HorizonCost::forward_sources(Eigen::Index k, int chunk) {
+CostParts HorizonCost::forward_sources(Eigen::Index k, ParticleRange range) {
   Stage& stage = stages_[k];
-  const ParticleRange range = range_of(chunk, stage.points.cols());
   const Eigen::VectorXd& weights = prediction_->stages[k].weights;
-  CostParts& cost = partials_[chunk].cost;
-  cost = {};
+  CostParts cost;
   apply_policy(stage_policy(k), stage.points, range, stage.inputs);
   cost.input =
       weighted_quadratic(input_form_, 1.0, stage.inputs, weights, range, stage.input_gradient);
@@ -222,20 +204,18 @@ void HorizonCost::forward_sources(Eigen::Index k, int chunk) {
   if (!prediction_->maps[k].identity) {
     pack(stage.stepped, range.begin, range.end, stage.packed_stepped);
   }
+  return cost;
 }
 
 /// Some particles of stage k + 1, and their penalties.
-void HorizonCost::forward_clusters(Eigen::Index k, int chunk) {
+PenaltyValue HorizonCost::forward_clusters(Eigen::Index k, ParticleRange range) {
   const Stage& stage = stages_[k];
   Stage& next = stages_[k + 1];
   const StageMap& map = prediction_->maps[k];
-  const ParticleRange range = range_of(chunk, next.points.cols());
   if (map.spread.size() == 0) {
     apply_shares(map, stage.stepped, stage.packed_stepped, range.begin, range.end, next.points);
   }
-  const PenaltyValue value = penalise(penalties_, next.points, map.weights, range, next.adjoint);
-  partials_[chunk].cost.box = value.box;
-  partials_[chunk].cost.obstacle = value.obstacle;
+  return penalise(penalties_, next.points, map.weights, range, next.adjoint);
 }
 
 /// From the adjoints of stage `from` and, with the cost, of all stages before it.
@@ -250,12 +230,13 @@ void HorizonCost::backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& g
     const StageMap& map = prediction_->maps[k];
     pullback_spread(map, next.adjoint);
     if (!map.identity) {
-      for_chunks(map.clusters(), [&](int chunk) {
-        const ParticleRange range = range_of(chunk, map.clusters());
+      for_chunks(run_, map.clusters(), [&](ParticleRange range, int) {
         pack(next.adjoint, range.begin, range.end, next.packed_adjoint);
       });
     }
-    for_chunks(sources, [&](int chunk) { backward_sources(k, with_cost, chunk); });
+    for_chunks(run_, sources, [&](ParticleRange range, int chunk) {
+      backward_sources(k, with_cost, range, partials_[chunk]);
+    });
     input_sum_.setZero();
     outer_sum_.setZero();
     for (Eigen::Index i = 0; i < sources; i += kChunk) {
@@ -267,10 +248,10 @@ void HorizonCost::backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& g
 }
 
 /// Through map, step and policy, for some particles of stage k.
-void HorizonCost::backward_sources(Eigen::Index k, bool with_cost, int chunk) {
+void HorizonCost::backward_sources(Eigen::Index k, bool with_cost, ParticleRange range,
+                                   Partial& partial) {
   Stage& stage = stages_[k];
   const Stage& next = stages_[k + 1];
-  const ParticleRange range = range_of(chunk, stage.points.cols());
   pullback_shares(prediction_->maps[k], next.adjoint, next.packed_adjoint, range.begin, range.end,
                   stage.stepped_adjoint);
   if (with_cost) add_points(stage.state_gradient, range, stage.stepped_adjoint);
@@ -280,7 +261,6 @@ void HorizonCost::backward_sources(Eigen::Index k, bool with_cost, int chunk) {
                            columns(stage.pulled, range), columns(stage.input_adjoint, range));
   add_points(stage.pulled, range, stage.adjoint);
   if (with_cost) add_points(stage.input_gradient, range, stage.input_adjoint);
-  Partial& partial = partials_[chunk];
   partial.inputs.setZero();
   if (with_gain_) partial.outer.setZero();
   pullback_policy(stage_policy(k), stage.points, stage.inputs, stage.input_adjoint, range,

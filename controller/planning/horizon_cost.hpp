@@ -9,6 +9,7 @@
 // and the terminal cost (Eq. 4-19) likewise, without the ½. Penalties act on the compressed points.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
@@ -56,11 +57,14 @@ class HorizonCost {
   /// `run` is what loops over many particles go through; results do not depend on it.
   explicit HorizonCost(const HorizonCostTerms& terms, Executor run = run_in_turn);
   HorizonCost(const HorizonCostTerms& terms, const Prediction& prediction, const Policy& policy);
+  HorizonCost(const HorizonCostTerms& terms, const Prediction&& prediction,
+              const Policy& policy) = delete;
 
   /// From now on, holds the assignments of `prediction`, which must stay alive and unchanged, and
   /// the gains, bounds and start of `policy`. The covariances are those of the terms, which may
   /// have changed. Allocates only what the last prediction did not need.
   void hold(const Prediction& prediction, const Policy& policy);
+  void hold(const Prediction&& prediction, const Policy& policy) = delete;
 
   /// Expected cost under the nominal inputs `inputs` (input_dim x horizon) and its gradient with
   /// respect to them (overwritten; same shape, sized by the caller). Where an input saturates, the
@@ -108,27 +112,26 @@ class HorizonCost {
   // What one chunk of particles adds to sums.
   struct Partial {
     CostParts cost;
+    PenaltyValue penalty;
     Eigen::VectorXd inputs;  // Σ a
     Eigen::MatrixXd outer;   // Σ a xᵀ
   };
 
   [[nodiscard]] bool is_rolled(const Eigen::VectorXd& z) const {
-    return rolled_ && decision_.size() == z.size() && decision_ == z;
+    return rolled_ && std::equal(decision_.begin(), decision_.end(), z.begin(), z.end());
   }
   void resize_stages();
   void set_decision(const Eigen::VectorXd& z);
   void forward(const Eigen::VectorXd& z);
-  void forward_sources(Eigen::Index k, int chunk);
-  void forward_clusters(Eigen::Index k, int chunk);
+  [[nodiscard]] CostParts forward_sources(Eigen::Index k, ParticleRange range);
+  [[nodiscard]] PenaltyValue forward_clusters(Eigen::Index k, ParticleRange range);
   void backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient);
-  void backward_sources(Eigen::Index k, bool with_cost, int chunk);
+  void backward_sources(Eigen::Index k, bool with_cost, ParticleRange range, Partial& partial);
   void backward_nominal(Eigen::Index k, const double* sum, const double* outer,
                         Eigen::VectorXd& gradient);
   void lone_particle_gradient(Eigen::Index k, Eigen::Index particle, Eigen::Index axis,
                               Eigen::VectorXd& gradient);
   [[nodiscard]] StagePolicy stage_policy(Eigen::Index k) const;
-  template <class Task>
-  void for_chunks(Eigen::Index particles, const Task& task);
 
   HorizonCostTerms terms_;
   Executor run_;
@@ -142,7 +145,7 @@ class HorizonCost {
   bool with_gain_ = false;              // whether the decision has a ΔK
   bool closed_loop_ = false;            // whether any gain is not zero
   bool lone_ = false;                   // whether no particle ever meets another
-  Eigen::VectorXd decision_;            // that the stages belong to …
+  std::vector<double> decision_;        // that the stages belong to …
   bool rolled_ = false;                 // … if any
   bool penalties_at_hand_ = false;      // whether the adjoints are still those of the penalties
   CostParts parts_;

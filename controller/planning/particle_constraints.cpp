@@ -37,7 +37,7 @@ void ParticleConstraints::values(const Eigen::VectorXd& z, Eigen::VectorXd& out)
   for (const Block& block : blocks_) {
     const Face& face = faces_[block.face];
     out.segment(block.begin, block.particles) =
-        face.sign * (cost_.particles(block.stage).row(face.axis).array() - face.at);
+        face.sign * (cost_.particles(block.stage).row(face.axis).array() - face.at) + margin_;
   }
 }
 
@@ -52,7 +52,7 @@ void ParticleConstraints::some(const Eigen::VectorXd& z, const std::vector<int>&
     const Block& block = *(after - 1);
     const Face& face = faces_[block.face];
     const Eigen::Index particle = which[j] - block.begin;
-    out[j] = face.sign * (cost_.particles(block.stage)(face.axis, particle) - face.at);
+    out[j] = face.sign * (cost_.particles(block.stage)(face.axis, particle) - face.at) + margin_;
     cost_.particle_gradient(block.stage, particle, face.axis, gradient_);
     gradients.col(j) = face.sign * gradient_;
   }

@@ -11,9 +11,9 @@
 
 namespace qsmpc {
 
-/// Constraint c ≤ 0 for each particle of the stages 1 … horizon against each finite face of the
-/// bounds; c is how far the particle is beyond the face, in the unit of the state. Refers to both
-/// arguments.
+/// constraint c + margin ≤ 0 for each particle of the stages 1 … horizon against each finite face
+/// of the bounds; c is how far the particle is beyond the face, in the unit of the state. Refers to
+/// both arguments.
 class ParticleConstraints {
  public:
   ParticleConstraints(HorizonCost& cost, const SafeSet& safe_set);
@@ -21,6 +21,10 @@ class ParticleConstraints {
   /// Makes `out` the constraints of the prediction that the cost holds now. To be called again
   /// whenever it holds another one; `out` refers to this object.
   void describe(const Prediction& prediction, ConstraintSet& out);
+
+  /// Particles are asked to stay this far within the faces (≥ 0, in the unit of the state).
+  void set_margin(double margin) { margin_ = margin; }
+  [[nodiscard]] double margin() const { return margin_; }
 
  private:
   struct Face {
@@ -41,6 +45,7 @@ class ParticleConstraints {
             Eigen::MatrixXd& gradients);
 
   HorizonCost& cost_;
+  double margin_ = 0.0;
   std::vector<Face> faces_;
   std::vector<Block> blocks_;
   Eigen::VectorXd gradient_;

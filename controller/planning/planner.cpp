@@ -10,10 +10,15 @@ namespace {
 
 // Rounds of "optimise at frozen assignments, then predict with new ones" in one plan.
 constexpr int kAssignmentRounds = 3;
+// The same with the gains among what is optimised.
+constexpr int kGainRounds = 2;
 // What a round must promise of the cost, relatively, to be worth a prediction.
 constexpr double kSettled = 1e-5;
 // How far a particle may be beyond a bound (m, or the state's unit) and still count as within.
 constexpr double kConstraintTolerance = 1e-6;
+// Further rounds where a particle is beyond a bound with new assignments, though none was with the
+// old ones. Each asks for as much more room as was lacking.
+constexpr int kConstraintRounds = 5;
 
 class Stopwatch {
  public:
@@ -29,8 +34,9 @@ class Stopwatch {
   Clock::time_point last_ = Clock::now();
 };
 
-void require(bool holds, const std::string& message) {
-  if (!holds) throw std::invalid_argument("planner: " + message);
+// A message that is made only where it is needed: planning allocates nothing.
+void require(bool holds, const char* message) {
+  if (!holds) throw std::invalid_argument(std::string("planner: ") + message);
 }
 
 PlannerSettings checked(PlannerSettings settings, const Dynamics& dynamics) {
@@ -58,7 +64,6 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
       no_noise_(Eigen::MatrixXd::Zero(dynamics.state_dim(), dynamics.state_dim())),
       within_(no_noise_),
       propagator_(make_propagator(settings_.propagator, propagation(settings_))),
-      solver_(make_solver(settings_.solver, {.bounding = settings_.input_bounding})),
       policies_(dynamics_, settings_),
       cost_({.dynamics = dynamics_,
              .safe_set = settings_.safe_set,
@@ -75,19 +80,26 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
                          .within_covariance = within_}),
       constraints_(cost_, settings_.safe_set),
       gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
-  const bool with_gain = settings_.closed_loop && settings_.optimise_gain;
-  const Eigen::Index inputs = dynamics.input_dim() * settings_.horizon;
-  const Eigen::Index entries = with_gain ? gain_change_.size() : 0;
+  make_search(0, inputs_);
+  if (settings_.closed_loop && settings_.optimise_gain) {
+    make_search(gain_change_.size(), gain_search_.emplace());
+  }
+}
+
+/// Over the inputs of all stages and `entries` entries of the gains, which are not bounded.
+void Planner::make_search(Eigen::Index entries, Search& out) {
+  const Eigen::Index inputs = dynamics_.input_dim() * settings_.horizon;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  problem_.lower.setConstant(inputs + entries, -kInfinity);
-  problem_.upper.setConstant(inputs + entries, kInfinity);
-  problem_.lower.head(inputs) = settings_.bounds.lower.replicate(settings_.horizon, 1);
-  problem_.upper.head(inputs) = settings_.bounds.upper.replicate(settings_.horizon, 1);
-  problem_.cost = [this](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+  out.problem.lower.setConstant(inputs + entries, -kInfinity);
+  out.problem.upper.setConstant(inputs + entries, kInfinity);
+  out.problem.lower.head(inputs) = settings_.bounds.lower.replicate(settings_.horizon, 1);
+  out.problem.upper.head(inputs) = settings_.bounds.upper.replicate(settings_.horizon, 1);
+  out.problem.cost = [this](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
     return cost_.evaluate(z, gradient);
   };
-  if (constrained_) problem_.constraints.emplace();
-  z_.resize(inputs + entries);
+  if (constrained_) out.problem.constraints.emplace();
+  out.solver = make_solver(settings_.solver, {.bounding = settings_.input_bounding});
+  out.z.resize(inputs + entries);
 }
 
 const Plan& Planner::plan(const Gaussian& belief) {
@@ -138,11 +150,8 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
   const bool warm = guess_.choose(belief.mean, belief_.measure,
                                   previous != nullptr ? &previous->policy.inputs : nullptr,
                                   gain_change_, policies_);
-  if (warm) {
-    solver_->shift({.inputs_per_stage = dynamics_.input_dim(), .horizon = settings_.horizon});
-  } else {
-    solver_->forget();
-  }
+  start_solver(*inputs_.solver, warm);
+  if (gain_search_) start_solver(*gain_search_->solver, warm);
   policies_.make(belief.mean, guess_.inputs(), gain_change_, current_->policy);
   current_->gain_change = gain_change_;
   if (warm && maps_fit(*last_)) {
@@ -156,6 +165,14 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
   return warm;
 }
 
+void Planner::start_solver(OcpSolver& solver, bool warm) const {
+  if (warm) {
+    solver.shift({.inputs_per_stage = dynamics_.input_dim(), .horizon = settings_.horizon});
+  } else {
+    solver.forget();
+  }
+}
+
 /// Whether the plan's assignments can be held for the belief at hand.
 bool Planner::maps_fit(const Plan& plan) const {
   const Prediction& prediction = plan.prediction;
@@ -165,43 +182,74 @@ bool Planner::maps_fit(const Plan& plan) const {
                      [](const StageMap& map) { return std::isfinite(map.compression_w2); });
 }
 
-/// Leaves in `current_` the best plan, priced with assignments and gains of its own.
+/// Leaves in `current_` the best plan, priced with assignments and gains of its own: first the
+/// inputs are optimised, and then, if wanted, the gain with them, so that it never costs more.
 void Planner::optimise(const Gaussian& belief, Round& round) {
+  constraints_.set_margin(0.0);
+  const int rounds = kAssignmentRounds + (round.priced ? 0 : 1);
+  if (optimise(belief, inputs_, rounds, round) && gain_search_) {
+    // What was predicted last may be a candidate that was refused.
+    hold(current_->prediction, current_->policy);
+    (void)optimise(belief, *gain_search_, kGainRounds, round);
+  }
+  if (!round.stopped() && current_->violation > kConstraintTolerance) {
+    round.status = SolverStatus::kInfeasible;
+  }
+}
+
+/// Rounds of one search. Returns whether another one may follow.
+bool Planner::optimise(const Gaussian& belief, Search& search, int rounds, Round& round) {
   Stopwatch stopwatch;
-  for (int n = 0; n < kAssignmentRounds + (round.priced ? 0 : 1); ++n) {
-    const bool promising = run_solver(current_->policy, round);
+  const int most_rounds = rounds + kConstraintRounds;
+  bool more = true;
+  for (int n = 0; n < rounds && more; ++n) {
+    const bool promising = run_solver(search, round);
     stopwatch.add_to(round.timing.optimise);
     if (!promising) break;
-    candidate_->gain_change = current_->gain_change;
-    if (z_.size() > current_->policy.inputs.size()) {
-      candidate_->gain_change +=
-          z_.tail(gain_change_.size()).reshaped(gain_change_.rows(), gain_change_.cols());
-    }
-    policies_.make(belief.mean,
-                   z_.head(current_->policy.inputs.size())
-                       .reshaped(current_->policy.inputs.rows(), settings_.horizon),
-                   candidate_->gain_change, candidate_->policy);
-    predict_and_price(*candidate_);
+    predict_candidate(belief, search.z);
     stopwatch.add_to(round.timing.propagate);
+    const double excess = candidate_->violation;
     const bool accepted = !round.priced || better(*candidate_, *current_);
     if (accepted) {
       std::swap(current_, candidate_);
       round.priced = true;
     }
-    if (!accepted || round.evaluations >= settings_.max_evaluations) break;
+    more = round.evaluations < settings_.max_evaluations;
     if (Clock::now() >= round.deadline) {
       round.status = SolverStatus::kDeadline;
+      more = false;
+    }
+    if (excess > kConstraintTolerance && round.status != SolverStatus::kInfeasible) {
+      constraints_.set_margin(constraints_.margin() + excess);
+      rounds = std::clamp(n + 2, rounds, most_rounds);
+    } else if (!accepted) {
       break;
     }
   }
   if (!round.priced) predict_and_price(*current_);
+  round.priced = true;
   stopwatch.add_to(round.timing.propagate);
+  return more && !round.stopped();
 }
 
-/// Optimises at the assignments that are held, from `policy`; the result is in `z_`. Returns
+/// Makes `candidate_` the plan of the decision z.
+void Planner::predict_candidate(const Gaussian& belief, const Eigen::VectorXd& z) {
+  const Policy& policy = current_->policy;
+  const Eigen::Index inputs = policy.inputs.size();
+  candidate_->gain_change = current_->gain_change;
+  if (z.size() > inputs) {
+    candidate_->gain_change +=
+        z.tail(gain_change_.size()).reshaped(gain_change_.rows(), gain_change_.cols());
+  }
+  policies_.make(belief.mean, z.head(inputs).reshaped(policy.inputs.rows(), settings_.horizon),
+                 candidate_->gain_change, candidate_->policy);
+  predict_and_price(*candidate_);
+}
+
+/// Optimises at the assignments that are held, from `current_`; the result is in search.z. Returns
 /// whether it is worth a prediction: finite, better by more than nothing, and in time.
-bool Planner::run_solver(const Policy& policy, Round& round) {
-  flatten(policy);
+bool Planner::run_solver(Search& search, Round& round) {
+  flatten(current_->policy, search.z);
   SolverOptions options{.max_evaluations = settings_.max_evaluations - round.evaluations,
                         .constraint_tolerance = kConstraintTolerance};
   if (round.deadline != Clock::time_point::max()) {
@@ -209,14 +257,16 @@ bool Planner::run_solver(const Policy& policy, Round& round) {
     options.deadline =
         round.deadline - std::chrono::duration_cast<Clock::duration>(prediction_time_);
   }
-  const SolverResult& result = solver_->minimise(problem_, z_, options);
+  const SolverResult& result = search.solver->minimise(search.problem, search.z, options);
   round.evaluations += result.evaluations;
   round.status = result.status;
   if (!std::isfinite(result.value)) {
-    if (round.priced) current_->cost.state = result.value;
+    // Without time for a single evaluation there is no value, and the plan stands as it is.
+    const bool trouble = result.status == SolverStatus::kNumericalTrouble;
+    if (round.priced && trouble) current_->cost.state = result.value;
     return false;
   }
-  z_ = result.z;
+  search.z = result.z;
   if (!round.priced) return true;
   if (result.status == SolverStatus::kDeadline && Clock::now() >= options.deadline) return false;
   const double gain = current_->cost.total() - result.value;
@@ -244,12 +294,14 @@ void Planner::fall_back(const Gaussian& belief) {
 
 void Planner::hold(const Prediction& prediction, const Policy& policy) {
   cost_.hold(prediction, policy);
-  if (constrained_) constraints_.describe(prediction, *problem_.constraints);
+  if (!constrained_) return;
+  constraints_.describe(prediction, *inputs_.problem.constraints);
+  if (gain_search_) gain_search_->problem.constraints = inputs_.problem.constraints;
 }
 
-void Planner::flatten(const Policy& policy) {
-  z_.setZero();
-  z_.head(policy.inputs.size()) = policy.inputs.reshaped();
+void Planner::flatten(const Policy& policy, Eigen::VectorXd& z) {
+  z.setZero();
+  z.head(policy.inputs.size()) = policy.inputs.reshaped();
 }
 
 /// Predicts under plan.policy with assignments of its own, holds them, and prices them.
@@ -258,14 +310,14 @@ void Planner::predict_and_price(Plan& plan) {
   predict(dynamics_, *propagator_, belief_.measure, plan.policy, settings_.run, scratch_,
           plan.prediction);
   hold(plan.prediction, plan.policy);
-  flatten(plan.policy);
-  cost_.price(z_);
+  flatten(plan.policy, inputs_.z);
+  cost_.price(inputs_.z);
   plan.cost = cost_.parts();
   plan.violation = 0.0;
   if (constrained_) {
-    constraint_values_.resize(problem_.constraints->count);
-    problem_.constraints->values(z_, constraint_values_);
-    plan.violation = std::max(0.0, constraint_values_.maxCoeff());
+    constraint_values_.resize(inputs_.problem.constraints->count);
+    inputs_.problem.constraints->values(inputs_.z, constraint_values_);
+    plan.violation = std::max(0.0, constraint_values_.maxCoeff() - constraints_.margin());
   }
   prediction_time_ = Clock::now() - start;
 }

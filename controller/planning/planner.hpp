@@ -83,7 +83,10 @@ class Planner {
   void prepare(const Eigen::MatrixXd& covariance);
 
   /// Forgets the last plan: the next one is a cold start.
-  void reset() { last_ = nullptr; }
+  void reset() {
+    last_ = nullptr;
+    failed_ = false;
+  }
 
   [[nodiscard]] const PlannerSettings& settings() const { return settings_; }
   [[nodiscard]] const Propagator& propagator() const { return *propagator_; }
@@ -98,17 +101,31 @@ class Planner {
     SolverStatus status = SolverStatus::kConverged;
     int evaluations = 0;
     PlanTiming timing;
+
+    [[nodiscard]] bool stopped() const {
+      return status == SolverStatus::kDeadline || status == SolverStatus::kNumericalTrouble;
+    }
+  };
+  /// A problem with its solver, and the decision that they work on.
+  struct Search {
+    OcpProblem problem;
+    std::unique_ptr<OcpSolver> solver;
+    Eigen::VectorXd z;
   };
 
   void quantise_belief(const Gaussian& belief, GaussianQuantisation& out);
   [[nodiscard]] bool begin(const Gaussian& belief, Round& round);
+  void make_search(Eigen::Index entries, Search& out);
+  void start_solver(OcpSolver& solver, bool warm) const;
   void optimise(const Gaussian& belief, Round& round);
-  [[nodiscard]] bool run_solver(const Policy& policy, Round& round);
+  [[nodiscard]] bool optimise(const Gaussian& belief, Search& search, int rounds, Round& round);
+  [[nodiscard]] bool run_solver(Search& search, Round& round);
+  void predict_candidate(const Gaussian& belief, const Eigen::VectorXd& z);
   void fall_back(const Gaussian& belief);
   [[nodiscard]] bool maps_fit(const Plan& plan) const;
   void predict_and_price(Plan& plan);
   void hold(const Prediction& prediction, const Policy& policy);
-  void flatten(const Policy& policy);
+  static void flatten(const Policy& policy, Eigen::VectorXd& z);
   [[nodiscard]] bool better(const Plan& plan, const Plan& other) const;
 
   const Dynamics& dynamics_;
@@ -119,14 +136,13 @@ class Planner {
   Eigen::MatrixXd no_noise_;
   Eigen::MatrixXd within_;  // covariance that the belief's quantiser loses
   std::unique_ptr<Propagator> propagator_;
-  std::unique_ptr<OcpSolver> solver_;
   PolicyMaker policies_;
   HorizonCost cost_;
   FirstGuess guess_;
   ParticleConstraints constraints_;
-  OcpProblem problem_;
+  Search inputs_;
+  std::optional<Search> gain_search_;  // over inputs and gains, where these are optimised
   PredictionScratch scratch_;
-  Eigen::VectorXd z_;
   Eigen::VectorXd constraint_values_;
   Eigen::MatrixXd gain_change_;
   std::chrono::duration<double> prediction_time_{0.0};  // of the last one
@@ -138,7 +154,7 @@ class Planner {
   Plan* last_ = nullptr;       // the plan last made, null for a cold start
   Plan* current_ = nullptr;    // best so far of the plan in the making
   Plan* candidate_ = nullptr;  // what may replace it
-  bool failed_ = false;        // the last plan had to fall back
+  bool failed_ = false;        // the last plan fell back, or its solver met numerical trouble
   Plan prescribed_;
 };
 

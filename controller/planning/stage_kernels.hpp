@@ -8,15 +8,11 @@
 #include <Eigen/Core>
 
 #include "controller/measure/measures.hpp"
+#include "controller/parallel.hpp"
 #include "controller/planning/penalty.hpp"
 #include "controller/planning/safe_set.hpp"
 
 namespace qsmpc {
-
-struct ParticleRange {
-  Eigen::Index begin = 0;
-  Eigen::Index end = 0;
-};
 
 /// One stage of a policy as the loops want it: u = clamp(constant + K x).
 struct StagePolicy {

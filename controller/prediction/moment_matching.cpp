@@ -11,40 +11,72 @@ namespace {
 // Eigenvalues below this fraction of the largest are rounding.
 constexpr double kNoVariance = 1e-12;
 
-Eigen::MatrixXd symmetric(const Eigen::MatrixXd& matrix) {
+// Up to this dimension everything stays on the stack.
+constexpr int kSmall = 8;
+using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kSmall, kSmall>;
+using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSmall, 1>;
+
+template <class Matrix>
+Matrix symmetric(const Matrix& matrix) {
   return 0.5 * (matrix + matrix.transpose());
 }
 
-}  // namespace
-
-Eigen::MatrixXd spread_between(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to) {
+template <class Matrix, class Vector>
+void spread(const Matrix& from, const Matrix& to, Eigen::MatrixXd& out) {
   const Eigen::Index dim = from.rows();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(from);
+  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(from);
   const double least = kNoVariance * eigen.eigenvalues()[dim - 1];
   Eigen::Index null = 0;  // eigenvalues increase
   while (null < dim && eigen.eigenvalues()[null] <= least) ++null;
   const Eigen::Index rank = dim - null;
-  if (rank == 0) return Eigen::MatrixXd::Identity(dim, dim);
+  out.setIdentity(dim, dim);
+  if (rank == 0) return;
   // In the coordinates of the support U, where U'·from·U is diagonal.
-  const Eigen::MatrixXd support = eigen.eigenvectors().rightCols(rank);
-  const Eigen::VectorXd deviation = eigen.eigenvalues().tail(rank).cwiseSqrt();
-  const Eigen::MatrixXd scaled_target =
-      deviation.asDiagonal() * (support.transpose() * to * support) * deviation.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> target(symmetric(scaled_target));
-  const Eigen::MatrixXd root = target.eigenvectors() *
-                               target.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
-                               target.eigenvectors().transpose();
-  const Eigen::VectorXd inverse = deviation.cwiseInverse();
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> stretch(
-      symmetric(inverse.asDiagonal() * root * inverse.asDiagonal()));
-  const Eigen::MatrixXd axes = support * stretch.eigenvectors();
-  const Eigen::VectorXd excess = stretch.eigenvalues().cwiseMin(kLargestStretch).array() - 1.0;
-  return Eigen::MatrixXd::Identity(dim, dim) + axes * excess.asDiagonal() * axes.transpose();
+  const Matrix support = eigen.eigenvectors().rightCols(rank);
+  const Vector deviation = eigen.eigenvalues().tail(rank).cwiseSqrt();
+  const Matrix reached = to * support;
+  const Matrix projected = support.transpose() * reached;
+  const Matrix scaled_target = deviation.asDiagonal() * projected * deviation.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> target(symmetric<Matrix>(scaled_target));
+  const Vector roots = target.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const Matrix stretched = target.eigenvectors() * roots.asDiagonal();
+  const Matrix root = stretched * target.eigenvectors().transpose();
+  const Vector inverse = deviation.cwiseInverse();
+  const Matrix scaled_root = inverse.asDiagonal() * root * inverse.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix> stretch(symmetric<Matrix>(scaled_root));
+  const Matrix directions = support * stretch.eigenvectors();
+  const Vector excess = stretch.eigenvalues().cwiseMin(kLargestStretch).array() - 1.0;
+  const Matrix weighted = directions * excess.asDiagonal();
+  out.noalias() += weighted * directions.transpose();
+}
+
+}  // namespace
+
+void spread_between(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to, Eigen::MatrixXd& out) {
+  if (from.rows() <= kSmall) {
+    spread<SmallMatrix, SmallVector>(from, to, out);
+  } else {
+    spread<Eigen::MatrixXd, Eigen::VectorXd>(from, to, out);
+  }
+}
+
+Eigen::MatrixXd spread_between(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to) {
+  Eigen::MatrixXd result;
+  spread_between(from, to, result);
+  return result;
 }
 
 double spread_w2(const Eigen::MatrixXd& from, const Eigen::MatrixXd& spread) {
-  const Eigen::MatrixXd moved = spread - Eigen::MatrixXd::Identity(from.rows(), from.cols());
-  return std::sqrt(std::max(0.0, (moved * from * moved.transpose()).trace()));
+  double sum = 0.0;
+  for (Eigen::Index a = 0; a < from.rows(); ++a) {
+    for (Eigen::Index b = 0; b < from.rows(); ++b) {
+      const double left = spread(a, b) - (a == b ? 1.0 : 0.0);
+      for (Eigen::Index c = 0; c < from.rows(); ++c) {
+        sum += left * from(b, c) * (spread(a, c) - (a == c ? 1.0 : 0.0));
+      }
+    }
+  }
+  return std::sqrt(std::max(0.0, sum));
 }
 
 }  // namespace qsmpc

@@ -19,6 +19,9 @@ inline constexpr double kLargestStretch = 2.0;
 [[nodiscard]] Eigen::MatrixXd spread_between(const Eigen::MatrixXd& from,
                                              const Eigen::MatrixXd& to);
 
+/// The same, written to `out`. Allocates nothing up to eight dimensions, if `out` has the size.
+void spread_between(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to, Eigen::MatrixXd& out);
+
 /// √tr((S − I)·from·(S − I)): the root mean square of how far the points of a measure with the
 /// covariance `from` move under x ↦ m + S (x − m), m their mean.
 [[nodiscard]] double spread_w2(const Eigen::MatrixXd& from, const Eigen::MatrixXd& spread);

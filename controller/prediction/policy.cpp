@@ -9,7 +9,8 @@ Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
   return wanted.cwiseMax(policy.bounds.lower).cwiseMin(policy.bounds.upper);
 }
 
-void policy_inputs(const Policy& policy, Eigen::Index stage, const Points& states, Points& out) {
+void policy_inputs(const Policy& policy, Eigen::Index stage, const Dynamics::BatchView& states,
+                   Dynamics::BatchOut out) {
   const Eigen::MatrixXd& gain = policy.gains[stage];
   for (Eigen::Index input = 0; input < out.rows(); ++input) {
     auto row = out.row(input).array();

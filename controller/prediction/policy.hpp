@@ -33,7 +33,8 @@ struct Policy {
                                            const Eigen::Ref<const Eigen::VectorXd>& state);
 
 /// The same for every column of `states` (state_dim x n), written to `out` (input_dim x n).
-void policy_inputs(const Policy& policy, Eigen::Index stage, const Points& states, Points& out);
+void policy_inputs(const Policy& policy, Eigen::Index stage, const Dynamics::BatchView& states,
+                   Dynamics::BatchOut out);
 
 /// x̄_0 = start, x̄_{k+1} = f(x̄_k, v_k): state_dim x (horizon + 1).
 [[nodiscard]] Eigen::MatrixXd nominal_states(const Dynamics& dynamics,

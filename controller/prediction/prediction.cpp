@@ -1,6 +1,33 @@
 #include "controller/prediction/prediction.hpp"
 
+#include "controller/storage.hpp"
+
 namespace qsmpc {
+namespace {
+
+using Span = Eigen::Map<StateBatch>;
+
+/// stepped = f(x, u) for the particles of stage k, which are packed as well unless nothing is to
+/// be compressed.
+void step_stage(const Dynamics& dynamics, const DiscreteMeasure& stage, const Policy& policy,
+                Eigen::Index k, const Executor& run, PredictionScratch& scratch, Points& stepped) {
+  const Eigen::Index inputs = policy.inputs.rows();
+  stepped.resize(stage.dim(), stage.size());
+  const std::size_t room = static_cast<std::size_t>(inputs * stage.size());
+  make_room(scratch.inputs, room);
+  scratch.inputs.resize(room);
+  resize_packed(static_cast<int>(stage.dim()), stage.size(), scratch.packed);
+  for_chunks(run, stage.size(), [&](ParticleRange range, int) {
+    const Eigen::Index count = range.end - range.begin;
+    const auto states = stage.locations.middleCols(range.begin, count);
+    Span chosen(scratch.inputs.data() + inputs * range.begin, inputs, count);
+    policy_inputs(policy, k, states, chosen);
+    dynamics.step(states, chosen, stepped.middleCols(range.begin, count));
+    pack(stepped, range.begin, range.end, scratch.packed);
+  });
+}
+
+}  // namespace
 
 void predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
              const Policy& policy, const Executor& run, PredictionScratch& scratch,
@@ -12,21 +39,16 @@ void predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMea
   out.stages[0] = start;
   for (Eigen::Index k = 0; k < horizon; ++k) {
     const DiscreteMeasure& stage = out.stages[k];
-    Points& stepped = out.stepped[k];
-    scratch.inputs.resize(policy.inputs.rows(), stage.size());
-    stepped.resize(stage.dim(), stage.size());
-    policy_inputs(policy, k, stage.locations, scratch.inputs);
-    dynamics.step(stage.locations, scratch.inputs, stepped);
+    const Points& stepped = out.stepped[k];
+    step_stage(dynamics, stage, policy, k, run, scratch, out.stepped[k]);
     StageMap& map = out.maps[k];
     propagator.update(stepped, stage.weights, run, map);
     DiscreteMeasure& next = out.stages[k + 1];
     next.weights = map.weights;
     next.locations.resize(stage.dim(), map.clusters());
-    if (!map.identity) {
-      resize_packed(static_cast<int>(stage.dim()), stage.size(), scratch.packed);
-      pack(stepped, 0, stage.size(), scratch.packed);
-    }
-    apply_shares(map, stepped, scratch.packed, 0, map.clusters(), next.locations);
+    for_chunks(run, map.clusters(), [&](ParticleRange range, int) {
+      apply_shares(map, stepped, scratch.packed, range.begin, range.end, next.locations);
+    });
     apply_spread(map, next.locations);
   }
 }

@@ -21,7 +21,7 @@ struct Prediction {
 
 /// What a prediction works on, so that the next one allocates nothing.
 struct PredictionScratch {
-  Points inputs;
+  std::vector<double> inputs;
   PackedPoints packed;
 };
 

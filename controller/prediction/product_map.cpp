@@ -3,6 +3,8 @@
 #include <limits>
 #include <numeric>
 
+#include "controller/storage.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -89,6 +91,8 @@ void cluster_map(const MixtureCells& cells, Eigen::Index sources, StageMap& out)
   const Eigen::Index dim = static_cast<Eigen::Index>(cells.noise_mean.size()) / count;
   out.identity = false;
   out.shares.begin = cells.begin;
+  make_room(out.shares.column, cells.source.size());
+  make_room(out.shares.value, cells.source.size());
   out.shares.column = cells.source;
   out.shares.value.resize(cells.mass.size());
   for (int n = 0; n < count; ++n) {
@@ -98,9 +102,9 @@ void cluster_map(const MixtureCells& cells, Eigen::Index sources, StageMap& out)
     }
   }
   transpose(out.shares, static_cast<int>(sources), out.shares_transposed);
+  out.spread.resize(0, 0);
   out.offset = Eigen::Map<const Points>(cells.noise_mean.data(), dim, count);
   out.weights = Eigen::Map<const Eigen::VectorXd>(cells.weight.data(), count);
-  out.spread.resize(0, 0);
   out.compression_w2 = cells.w2;
 }
 

@@ -110,7 +110,8 @@ class SoftPropagator final : public ProductPropagator {
   }
 };
 
-/// The noise stays Gaussian: the mixture of the stepped points' noise is cut into cells.
+/// The noise stays Gaussian: the mixture of the stepped points' noise is cut into cells, whose
+/// means are spread so that they have its covariance.
 class MixturePropagator final : public Propagator {
  public:
   explicit MixturePropagator(const PropagatorSettings& settings)
@@ -124,14 +125,32 @@ class MixturePropagator final : public Propagator {
     }
     splitter_.split(stepped, weights, run, cells_);
     cluster_map(cells_, stepped.cols(), out);
+    spread_between(cells_.covariance, cells_.whole_covariance, spread_);
+    displace(out);
+    // As above: the two parts of a product's way are uncorrelated.
+    out.compression_w2 = std::hypot(cells_.w2, spread_w2(cells_.covariance, spread_));
   }
 
   /// The noise is not quantised; what its cells lose is in the cost of the map.
   [[nodiscard]] double noise_w2() const override { return 0.0; }
 
  private:
+  /// Moves the points to where the spread puts them, by constants: held, a spread would magnify
+  /// how they answer to the inputs, and optimisation would come to rest too early.
+  void displace(StageMap& map) const {
+    const Eigen::Index dim = map.offset.rows();
+    const Eigen::Map<const Points> mean(cells_.mean.data(), dim, map.clusters());
+    for (Eigen::Index a = 0; a < dim; ++a) {
+      for (Eigen::Index b = 0; b < dim; ++b) {
+        const double excess = spread_(a, b) - (a == b ? 1.0 : 0.0);
+        map.offset.row(a) += excess * mean.row(b);
+      }
+    }
+  }
+
   MixtureSplitter splitter_;
   MixtureCells cells_;
+  Eigen::MatrixXd spread_;
 };
 
 /// Every point stays as it is. The noise is represented by its mean, so its whole standard

@@ -1,5 +1,7 @@
 #include "controller/prediction/sparse_matrix.hpp"
 
+#include "controller/storage.hpp"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "controller/prediction/sparse_matrix.cpp"
 #include <hwy/foreach_target.h>
@@ -79,6 +81,8 @@ void multiply(const SparseMatrix& a, const PackedPoints& points, int begin, int 
 
 void transpose(const SparseMatrix& a, int columns, SparseMatrix& out) {
   out.begin.assign(columns + 1, 0);
+  make_room(out.column, a.column.size());
+  make_room(out.value, a.value.size());
   out.column.resize(a.column.size());
   out.value.resize(a.value.size());
   for (const int column : a.column) ++out.begin[column + 1];
@@ -101,6 +105,7 @@ void resize_packed(int dim, Eigen::Index count, PackedPoints& packed) {
   const std::size_t size = static_cast<std::size_t>(stride) * count;
   if (packed.stride == stride && packed.data.size() == size) return;
   packed.stride = stride;
+  make_room(packed.data, size);
   packed.data.assign(size, 0.0);
 }
 

@@ -1,0 +1,29 @@
+// Executors that run tasks as unkindly as they may: results must not depend on them.
+#pragma once
+
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include "controller/parallel.hpp"
+
+namespace qsmpc::testing {
+
+inline void run_backwards(int count, TaskRef task) {
+  for (int n = count - 1; n >= 0; --n) task(n);
+}
+
+/// Three threads take tasks as they come.
+inline void run_on_threads(int count, TaskRef task) {
+  constexpr int kThreads = 3;
+  std::atomic<int> next{0};
+  std::vector<std::thread> threads;
+  for (int t = 0; t < kThreads; ++t) {
+    threads.emplace_back([&] {
+      for (int n = next++; n < count; n = next++) task(n);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+}
+
+}  // namespace qsmpc::testing

@@ -1,0 +1,38 @@
+// The mixture split of controller/measure/mixture_split.hpp, written as plainly as it can be: one
+// struct a piece of a source, one loop over the pieces a sum, the standard library's erfc and exp.
+// Tests hold the fast one against it.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+
+namespace qsmpc::testing {
+
+/// The part of one source that is in one cell.
+struct PlainPart {
+  int source = 0;
+  double mass = 0.0;
+};
+
+struct PlainCell {
+  std::vector<PlainPart> parts;  ///< by increasing source
+  double weight = 0.0;
+  Eigen::VectorXd noise_mean;  ///< d
+  Eigen::VectorXd mean;        ///< d; of the mixture over the cell
+  Eigen::MatrixXd covariance;  ///< d x d; of the mixture over the cell
+};
+
+struct PlainMixture {
+  std::vector<PlainCell> cells;
+  double w2 = 0.0;
+};
+
+/// The mixture of N(sources.col(i), covariance) with `weights`, cut into at most `cells` cells, a
+/// source into at most `parts` parts.
+[[nodiscard]] PlainMixture plain_split(const Eigen::MatrixXd& covariance, int cells, int parts,
+                                       const Points& sources, const Eigen::VectorXd& weights);
+
+}  // namespace qsmpc::testing

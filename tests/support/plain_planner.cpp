@@ -1,0 +1,404 @@
+#include "tests/support/plain_planner.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "controller/prediction/moment_matching.hpp"
+
+namespace qsmpc::testing {
+namespace {
+
+Eigen::VectorXd step(const Dynamics& dynamics, const Eigen::VectorXd& state,
+                     const Eigen::VectorXd& input) {
+  StateBatch next(state.size(), 1);
+  dynamics.step(StateBatch(state), StateBatch(input), next);
+  return next.col(0);
+}
+
+/// Σ share · stepped + offset for each destination.
+std::vector<Eigen::VectorXd> moved(const std::vector<PlainDestination>& map,
+                                   const std::vector<Eigen::VectorXd>& stepped) {
+  std::vector<Eigen::VectorXd> result;
+  for (const PlainDestination& destination : map) {
+    Eigen::VectorXd place = destination.offset;
+    for (const PlainShare& share : destination.shares) {
+      place += share.share * stepped[share.source];
+    }
+    result.push_back(place);
+  }
+  return result;
+}
+
+/// The map of one stage, and the weights that it leads to.
+struct Taken {
+  std::vector<PlainDestination> map;
+  std::vector<double> weights;
+  double w2 = 0.0;
+};
+
+/// Moves the destinations to where the linear map of least cost from the covariance of the cells'
+/// means to the mixture's puts these means.
+void displace(const PlainMixture& mixture, Taken& taken) {
+  const Eigen::Index dim = mixture.cells[0].mean.size();
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(dim);
+  double weight = 0.0;
+  for (const PlainCell& cell : mixture.cells) {
+    mean += cell.weight * cell.mean;
+    weight += cell.weight;
+  }
+  mean /= weight;
+  Eigen::MatrixXd between = Eigen::MatrixXd::Zero(dim, dim);
+  Eigen::MatrixXd within = Eigen::MatrixXd::Zero(dim, dim);
+  for (const PlainCell& cell : mixture.cells) {
+    between += cell.weight * (cell.mean - mean) * (cell.mean - mean).transpose();
+    within += cell.weight * cell.covariance;
+  }
+  const Eigen::MatrixXd spread = spread_between(between, between + within);
+  double cost = 0.0;
+  for (std::size_t n = 0; n < mixture.cells.size(); ++n) {
+    const Eigen::VectorXd offset = mixture.cells[n].mean - mean;
+    const Eigen::VectorXd moved_by = spread * offset - offset;
+    taken.map[n].offset += moved_by;
+    cost += mixture.cells[n].weight * moved_by.squaredNorm();
+  }
+  taken.w2 = std::sqrt(mixture.w2 * mixture.w2 + cost);
+}
+
+Taken take_up_noise(const std::vector<Eigen::VectorXd>& stepped, const std::vector<double>& weights,
+                    const PlainNoise& noise) {
+  Taken taken;
+  const Eigen::Index dim = stepped[0].size();
+  if (noise.none) {
+    for (std::size_t i = 0; i < stepped.size(); ++i) {
+      taken.map.push_back(
+          {.shares = {{static_cast<int>(i), 1.0}}, .offset = Eigen::VectorXd::Zero(dim)});
+    }
+    taken.weights = weights;
+    return taken;
+  }
+  Points sources(dim, stepped.size());
+  for (std::size_t i = 0; i < stepped.size(); ++i) sources.col(i) = stepped[i];
+  const PlainMixture mixture =
+      plain_split(noise.covariance, noise.cells, noise.parts, sources,
+                  Eigen::Map<const Eigen::VectorXd>(weights.data(), weights.size()));
+  for (const PlainCell& cell : mixture.cells) {
+    PlainDestination destination{.shares = {}, .offset = cell.noise_mean};
+    for (const PlainPart& part : cell.parts) {
+      destination.shares.push_back({part.source, part.mass / cell.weight});
+    }
+    taken.map.push_back(destination);
+    taken.weights.push_back(cell.weight);
+  }
+  displace(mixture, taken);
+  return taken;
+}
+
+struct ValueAndSlope {
+  double value = 0.0;
+  double slope = 0.0;
+};
+
+/// h of penalty.hpp.
+ValueAndSlope hinge(double distance, double length) {
+  const double ratio = distance / length;
+  if (ratio >= 1.0) return {};
+  if (ratio >= 0.0) return {0.5 * (1.0 - ratio) * (1.0 - ratio), -(1.0 - ratio) / length};
+  return {0.5 - ratio, -1.0 / length};
+}
+
+bool bounded(const Box& box, Eigen::Index axis) {
+  return std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis]);
+}
+
+/// The penalties of one particle, without its weight; gradients are added to `slope`.
+class PlainPenalty {
+ public:
+  PlainPenalty(const SafeSet& safe_set, const Penalty& penalty)
+      : safe_set_(safe_set), penalty_(penalty) {}
+
+  PenaltyValue operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+    return penalty_.shape == PenaltyShape::kThesis ? thesis(x, slope) : smooth(x, slope);
+  }
+
+ private:
+  PenaltyValue smooth(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+    PenaltyValue value;
+    const Box& room = safe_set_.bounds;
+    for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
+      const ValueAndSlope low = hinge(x[axis] - room.lower[axis], penalty_.length);
+      const ValueAndSlope high = hinge(room.upper[axis] - x[axis], penalty_.length);
+      value.box += penalty_.box * (low.value + high.value);
+      slope[axis] += penalty_.box * (low.slope - high.slope);
+    }
+    for (const Box& obstacle : safe_set_.obstacles) {
+      Eigen::VectorXd outward = Eigen::VectorXd::Zero(x.size());
+      const double distance = signed_distance(x, obstacle, outward);
+      const ValueAndSlope h = hinge(distance, penalty_.length);
+      value.obstacle += penalty_.obstacle * h.value;
+      slope += penalty_.obstacle * h.slope * outward;
+    }
+    return value;
+  }
+
+  /// Negative inside; `outward` is its gradient.
+  static double signed_distance(const Eigen::VectorXd& x, const Box& box,
+                                Eigen::VectorXd& outward) {
+    const Eigen::VectorXd nearest = x.cwiseMax(box.lower).cwiseMin(box.upper);
+    const double distance = (x - nearest).norm();
+    if (distance > 0.0) {
+      outward = (x - nearest) / distance;
+      return distance;
+    }
+    double depth = std::numeric_limits<double>::infinity();
+    for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
+      const double below = x[axis] - box.lower[axis];
+      const double above = box.upper[axis] - x[axis];
+      if (std::min(below, above) >= depth) continue;
+      depth = std::min(below, above);
+      outward.setZero();
+      outward[axis] = below < above ? -1.0 : 1.0;
+    }
+    return -depth;
+  }
+
+  /// How far x is outside an interval (Eq. 4-10).
+  static ValueAndSlope excess(double x, double lower, double upper) {
+    if (x > upper) return {x - upper, 1.0};
+    if (x < lower) return {lower - x, -1.0};
+    return {};
+  }
+
+  PenaltyValue thesis(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+    PenaltyValue value;
+    const Box& room = safe_set_.bounds;
+    for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
+      const ValueAndSlope out = excess(x[axis], room.lower[axis], room.upper[axis]);
+      value.box += penalty_.box * out.value;
+      slope[axis] += penalty_.box * out.slope;
+    }
+    double largest = 0.0;
+    Eigen::VectorXd of_largest = Eigen::VectorXd::Zero(x.size());
+    for (const Box& obstacle : safe_set_.obstacles) {
+      double outside = 0.0;
+      Eigen::VectorXd direction = Eigen::VectorXd::Zero(x.size());
+      for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
+        if (!bounded(obstacle, axis)) continue;
+        const ValueAndSlope out = excess(x[axis], obstacle.lower[axis], obstacle.upper[axis]);
+        outside += out.value;
+        direction[axis] = -out.slope;
+      }
+      if (1.0 - std::min(outside, 1.0) <= largest) continue;
+      largest = 1.0 - std::min(outside, 1.0);
+      of_largest = direction;
+    }
+    value.obstacle = penalty_.obstacle * largest;
+    slope += penalty_.obstacle * of_largest;
+    return value;
+  }
+
+  const SafeSet& safe_set_;
+  const Penalty& penalty_;
+};
+
+/// One stage on the way forward.
+struct Stage {
+  std::vector<Eigen::VectorXd> states;
+  std::vector<Eigen::VectorXd> inputs;
+  std::vector<std::vector<bool>> clamped;
+  std::vector<Eigen::VectorXd> stepped;
+  std::vector<Eigen::VectorXd> penalty_slope;  // of weighted penalties
+};
+
+class PlainHorizon {
+ public:
+  PlainHorizon(const HorizonCostTerms& terms, const PlainPrediction& prediction,
+               const Policy& policy, bool optimises_gain)
+      : terms_(terms),
+        prediction_(prediction),
+        policy_(policy),
+        closed_(optimises_gain ||
+                std::any_of(policy.gains.begin(), policy.gains.end(),
+                            [](const Eigen::MatrixXd& gain) { return !gain.isZero(0.0); })),
+        dim_(policy.states.rows()),
+        horizon_(policy.horizon()) {}
+
+  PlainCost run(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& gain_change) {
+    policy_.inputs = inputs;
+    policy_.states = nominal_states(terms_.dynamics, policy_.states.col(0), inputs);
+    for (Eigen::MatrixXd& gain : policy_.gains) gain += gain_change;
+    forward();
+    backward();
+    return result_;
+  }
+
+ private:
+  [[nodiscard]] double weight(Eigen::Index k, std::size_t i) const {
+    return prediction_.stages[k][i].weight;
+  }
+
+  /// W and factor of the state's cost at stage k: ½ xᵀQx, and xᵀPx at the end.
+  [[nodiscard]] const Eigen::MatrixXd& form(Eigen::Index k) const {
+    return k == horizon_ ? terms_.cost.terminal : terms_.cost.state;
+  }
+  [[nodiscard]] double factor(Eigen::Index k) const { return k == horizon_ ? 1.0 : 0.5; }
+
+  void add_state_cost(Eigen::Index k, double value) {
+    (k == horizon_ ? result_.parts.terminal : result_.parts.state) += value;
+  }
+
+  /// Of the points before noise and compression, with what the noise adds.
+  void price_states(Eigen::Index k, const std::vector<Eigen::VectorXd>& points,
+                    const Eigen::MatrixXd& lost, Eigen::Index weights_of) {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::VectorXd away = points[i] - terms_.cost.target;
+      add_state_cost(k, factor(k) * weight(weights_of, i) * away.dot(form(k) * away));
+    }
+    add_state_cost(k, factor(k) * (form(k) * lost).trace());
+  }
+
+  void forward() {
+    const PlainPenalty penalty(terms_.safe_set, terms_.penalty);
+    stages_.assign(horizon_ + 1, {});
+    for (const PlainParticle& particle : prediction_.stages[0]) {
+      stages_[0].states.push_back(particle.state);
+    }
+    price_states(0, stages_[0].states, terms_.within_covariance, 0);
+    for (Eigen::Index k = 0; k < horizon_; ++k) {
+      Stage& stage = stages_[k];
+      for (std::size_t i = 0; i < stage.states.size(); ++i) act(k, i);
+      price_states(k + 1, stage.stepped, terms_.noise_covariance, k);
+      Stage& next = stages_[k + 1];
+      next.states = moved(prediction_.maps[k], stage.stepped);
+      for (std::size_t n = 0; n < next.states.size(); ++n) {
+        Eigen::VectorXd slope = Eigen::VectorXd::Zero(dim_);
+        const PenaltyValue value = penalty(next.states[n], slope);
+        result_.parts.box += weight(k + 1, n) * value.box;
+        result_.parts.obstacle += weight(k + 1, n) * value.obstacle;
+        next.penalty_slope.emplace_back(weight(k + 1, n) * slope);
+      }
+    }
+  }
+
+  /// Input, its cost and the step of one particle.
+  void act(Eigen::Index k, std::size_t i) {
+    Stage& stage = stages_[k];
+    const Eigen::VectorXd wanted =
+        policy_.inputs.col(k) + policy_.gains[k] * (stage.states[i] - policy_.states.col(k));
+    Eigen::VectorXd input = wanted;
+    std::vector<bool> clamped(wanted.size(), false);
+    for (Eigen::Index a = 0; a < wanted.size(); ++a) {
+      input[a] = std::clamp(wanted[a], policy_.bounds.lower[a], policy_.bounds.upper[a]);
+      clamped[a] =
+          closed_ && (wanted[a] <= policy_.bounds.lower[a] || wanted[a] >= policy_.bounds.upper[a]);
+    }
+    result_.parts.input += weight(k, i) * input.dot(terms_.cost.input * input);
+    stage.stepped.push_back(step(terms_.dynamics, stage.states[i], input));
+    stage.inputs.push_back(input);
+    stage.clamped.push_back(clamped);
+  }
+
+  void backward() {
+    const Eigen::Index inputs = policy_.inputs.rows();
+    result_.input_gradient = Eigen::MatrixXd::Zero(inputs, horizon_);
+    result_.gain_gradient = Eigen::MatrixXd::Zero(inputs, dim_);
+    Eigen::VectorXd of_nominal = Eigen::VectorXd::Zero(dim_);
+    std::vector<Eigen::VectorXd> of_next = stages_[horizon_].penalty_slope;
+    for (Eigen::Index k = horizon_ - 1; k >= 0; --k) {
+      std::vector<Eigen::VectorXd> of_stepped = through_map(k, of_next);
+      of_next = through_step(k, of_stepped, of_nominal);
+      if (k == 0) break;
+      for (std::size_t i = 0; i < of_next.size(); ++i) of_next[i] += stages_[k].penalty_slope[i];
+    }
+  }
+
+  [[nodiscard]] std::vector<Eigen::VectorXd> through_map(
+      Eigen::Index k, const std::vector<Eigen::VectorXd>& of_next) const {
+    const Stage& stage = stages_[k];
+    std::vector<Eigen::VectorXd> of_stepped;
+    for (std::size_t i = 0; i < stage.stepped.size(); ++i) {
+      of_stepped.emplace_back(2.0 * factor(k + 1) * weight(k, i) *
+                              (form(k + 1) * (stage.stepped[i] - terms_.cost.target)));
+    }
+    for (std::size_t n = 0; n < of_next.size(); ++n) {
+      for (const PlainShare& share : prediction_.maps[k][n].shares) {
+        of_stepped[share.source] += share.share * of_next[n];
+      }
+    }
+    return of_stepped;
+  }
+
+  /// Returns the adjoints of the states; replaces that of the next nominal state by that of stage
+  /// k's.
+  std::vector<Eigen::VectorXd> through_step(Eigen::Index k,
+                                            const std::vector<Eigen::VectorXd>& of_stepped,
+                                            Eigen::VectorXd& of_nominal) {
+    const Stage& stage = stages_[k];
+    const Eigen::Index inputs = policy_.inputs.rows();
+    Eigen::MatrixXd by_state(dim_, dim_);
+    Eigen::MatrixXd by_input(dim_, inputs);
+    const Eigen::VectorXd nominal = policy_.states.col(k);
+    terms_.dynamics.jacobians(nominal, policy_.inputs.col(k), by_state, by_input);
+    result_.input_gradient.col(k) += by_input.transpose() * of_nominal;
+    of_nominal = by_state.transpose() * of_nominal;
+    std::vector<Eigen::VectorXd> of_states;
+    for (std::size_t i = 0; i < stage.states.size(); ++i) {
+      terms_.dynamics.jacobians(stage.states[i], stage.inputs[i], by_state, by_input);
+      Eigen::VectorXd of_input = by_input.transpose() * of_stepped[i] +
+                                 2.0 * weight(k, i) * (terms_.cost.input * stage.inputs[i]);
+      for (Eigen::Index a = 0; a < inputs; ++a) {
+        if (stage.clamped[i][a]) of_input[a] = 0.0;
+      }
+      result_.input_gradient.col(k) += of_input;
+      result_.gain_gradient += of_input * (stage.states[i] - nominal).transpose();
+      of_nominal -= policy_.gains[k].transpose() * of_input;
+      of_states.emplace_back(by_state.transpose() * of_stepped[i] +
+                             policy_.gains[k].transpose() * of_input);
+    }
+    return of_states;
+  }
+
+  const HorizonCostTerms& terms_;
+  const PlainPrediction& prediction_;
+  Policy policy_;
+  bool closed_;
+  Eigen::Index dim_;
+  Eigen::Index horizon_;
+  std::vector<Stage> stages_;
+  PlainCost result_;
+};
+
+}  // namespace
+
+PlainPrediction plain_predict(const Dynamics& dynamics, const DiscreteMeasure& start,
+                              const Policy& policy, const PlainNoise& noise) {
+  PlainPrediction prediction;
+  prediction.stages.emplace_back();
+  for (Eigen::Index i = 0; i < start.size(); ++i) {
+    prediction.stages[0].push_back({start.locations.col(i), start.weights[i]});
+  }
+  for (Eigen::Index k = 0; k < policy.horizon(); ++k) {
+    std::vector<Eigen::VectorXd> stepped;
+    std::vector<double> weights;
+    for (const PlainParticle& particle : prediction.stages[k]) {
+      stepped.push_back(step(dynamics, particle.state, policy_input(policy, k, particle.state)));
+      weights.push_back(particle.weight);
+    }
+    const Taken taken = take_up_noise(stepped, weights, noise);
+    const std::vector<Eigen::VectorXd> places = moved(taken.map, stepped);
+    std::vector<PlainParticle> next;
+    for (std::size_t n = 0; n < places.size(); ++n) next.push_back({places[n], taken.weights[n]});
+    prediction.stages.push_back(next);
+    prediction.maps.push_back(taken.map);
+    prediction.w2.push_back(taken.w2);
+  }
+  return prediction;
+}
+
+PlainCost plain_cost(const HorizonCostTerms& terms, const PlainPrediction& prediction,
+                     const Policy& policy, const Eigen::MatrixXd& inputs,
+                     const Eigen::MatrixXd& gain_change, bool optimises_gain) {
+  return PlainHorizon(terms, prediction, policy, optimises_gain).run(inputs, gain_change);
+}
+
+}  // namespace qsmpc::testing

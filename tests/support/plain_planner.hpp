@@ -1,0 +1,62 @@
+// Prediction and expected cost along a horizon, written as plainly as they can be: a struct a
+// particle, loops over particles, dense sums, scalar code. Tests hold prediction.hpp and
+// horizon_cost.hpp against it.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/horizon_cost.hpp"
+#include "controller/prediction/policy.hpp"
+#include "models/dynamics/dynamics.hpp"
+#include "tests/support/plain_mixture.hpp"
+
+namespace qsmpc::testing {
+
+struct PlainParticle {
+  Eigen::VectorXd state;
+  double weight = 0.0;
+};
+
+/// Where one particle's new place comes from: Σ share · stepped + offset.
+struct PlainShare {
+  int source = 0;
+  double share = 0.0;
+};
+struct PlainDestination {
+  std::vector<PlainShare> shares;
+  Eigen::VectorXd offset;
+};
+
+struct PlainPrediction {
+  std::vector<std::vector<PlainParticle>> stages;   ///< horizon + 1
+  std::vector<std::vector<PlainDestination>> maps;  ///< horizon
+  std::vector<double> w2;                           ///< horizon; of the maps
+};
+
+/// How a stage takes up noise: as "mixture" does, or as "noise_free".
+struct PlainNoise {
+  bool none = false;
+  Eigen::MatrixXd covariance;
+  int cells = 1;
+  int parts = 1;
+};
+
+[[nodiscard]] PlainPrediction plain_predict(const Dynamics& dynamics, const DiscreteMeasure& start,
+                                            const Policy& policy, const PlainNoise& noise);
+
+struct PlainCost {
+  CostParts parts;
+  Eigen::MatrixXd input_gradient;  ///< input_dim x horizon
+  Eigen::MatrixXd gain_gradient;   ///< input_dim x state_dim; of a ΔK in all gains
+};
+
+/// The expected cost at the maps of `prediction` if the nominal inputs become `inputs` and all
+/// gains change by `gain_change`, and its gradient by reverse mode. With `optimises_gain` false and
+/// all gains zero the loop counts as open, in which the clamp has the derivative one.
+[[nodiscard]] PlainCost plain_cost(const HorizonCostTerms& terms, const PlainPrediction& prediction,
+                                   const Policy& policy, const Eigen::MatrixXd& inputs,
+                                   const Eigen::MatrixXd& gain_change, bool optimises_gain);
+
+}  // namespace qsmpc::testing

@@ -1,0 +1,153 @@
+// Once rehearsed, planning takes nothing from the heap.
+#include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "controller/planning/planner.hpp"
+#include "tests/unit/allocation/allocations.hpp"
+
+namespace qsmpc::testing {
+namespace {
+
+TEST(AllocationCount, sees_every_kind_of_allocation) {
+  std::vector<double> numbers;
+  Eigen::VectorXd vector;
+  const AllocationCount allocations;
+  numbers.resize(10);
+  EXPECT_EQ(allocations.count(), 1U);
+  vector.resize(10);
+  EXPECT_EQ(allocations.count(), 2U);
+  void* volatile block = std::aligned_alloc(64, 128);  // volatile, so that it is not left out
+  std::free(block);
+  EXPECT_EQ(allocations.count(), 3U);
+  numbers.resize(5);
+  vector.setZero();
+  EXPECT_EQ(allocations.count(), 3U);
+}
+
+struct Case {
+  std::string system;
+  bool closed_loop = false;
+  bool optimise_gain = false;
+  std::string propagator = "mixture";
+  bool obstacles = true;
+  int points = 100;
+};
+
+std::string name_of(const Case& options) {
+  return options.system + (options.closed_loop ? "_closed" : "_open") +
+         (options.optimise_gain ? "_gain_" : "_") + options.propagator +
+         (options.obstacles ? "_obstacles_" : "_free_") + std::to_string(options.points);
+}
+
+PlannerSettings settings_of(const Case& options, const Dynamics& dynamics) {
+  const Eigen::Index dim = dynamics.state_dim();
+  const bool car = options.system == "dubins";
+  PlannerSettings settings;
+  settings.horizon = 6;
+  settings.closed_loop = options.closed_loop;
+  settings.optimise_gain = options.optimise_gain;
+  settings.propagator = options.propagator;
+  settings.state_points = options.points;
+  settings.noise_points = 50;
+  settings.compressed_points = options.points;
+  settings.noise_covariance = 1e-3 * Eigen::MatrixXd::Identity(dim, dim);
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(dim);
+  weights.head<2>().setConstant(4.0);
+  settings.cost = {
+      .state = weights.asDiagonal(),
+      .input = 0.1 * Eigen::MatrixXd::Identity(dynamics.input_dim(), dynamics.input_dim()),
+      .terminal = weights.asDiagonal(),
+      .target = Eigen::VectorXd::Zero(dim)};
+  settings.cost.target.head<2>() << (car ? 5.0 : 40.0), 3.0;
+  settings.safe_set = unbounded_safe_set(dim);
+  settings.safe_set.bounds.lower.head<2>().setConstant(-1.0);
+  settings.safe_set.bounds.upper.head<2>().setConstant(50.0);
+  if (options.obstacles) {
+    Box block{.lower = Eigen::VectorXd::Constant(dim, -1e9),
+              .upper = Eigen::VectorXd::Constant(dim, 1e9)};
+    block.lower.head<2>() << (car ? 0.8 : 8.0), -0.5;
+    block.upper.head<2>() << (car ? 1.2 : 10.0), 0.6;
+    settings.safe_set.obstacles.push_back(block);
+  }
+  settings.bounds = {.lower = dynamics.description().input_lower,
+                     .upper = dynamics.description().input_upper};
+  return settings;
+}
+
+Gaussian belief_of(const Dynamics& dynamics) {
+  const Eigen::Index dim = dynamics.state_dim();
+  Gaussian belief{.mean = Eigen::VectorXd::Zero(dim),
+                  .covariance = 0.005 * Eigen::MatrixXd::Identity(dim, dim)};
+  const int speed = dynamics.description().state_index("longitudinal_speed");
+  if (speed >= 0) belief.mean[speed] = 10.0;
+  return belief;
+}
+
+class PlannerAllocations : public ::testing::TestWithParam<Case> {};
+
+TEST_P(PlannerAllocations, none_after_a_rehearsal_along_the_path) {
+  constexpr int kRehearsal = 12;
+  constexpr int kPlans = 12;
+  const auto dynamics = make_dynamics(GetParam().system, {}, 0.1);
+  Planner planner(*dynamics, settings_of(GetParam(), *dynamics));
+  Gaussian belief = belief_of(*dynamics);
+  for (int n = 0; n < kRehearsal + kPlans; ++n) {
+    const AllocationCount allocations;
+    const Plan& plan = planner.plan(belief);
+    const std::size_t count = allocations.count();
+    if (n >= kRehearsal) {
+      EXPECT_EQ(count, 0U) << "plan " << n;
+    }
+    ASSERT_TRUE(std::isfinite(plan.cost.total()));
+    // As if the car were somewhere beside where it was expected.
+    belief.mean = plan.policy.states.col(1);
+    belief.mean[1] += 0.05 * std::sin(2.0 * n);
+    belief.mean[2] += 0.03 * std::cos(3.0 * n);
+  }
+}
+
+TEST_P(PlannerAllocations, none_for_the_same_beliefs_again) {
+  constexpr int kPlans = 6;
+  const auto dynamics = make_dynamics(GetParam().system, {}, 0.1);
+  Planner planner(*dynamics, settings_of(GetParam(), *dynamics));
+  for (int rehearsal = 0; rehearsal < 4; ++rehearsal) {
+    planner.reset();
+    Gaussian belief = belief_of(*dynamics);
+    for (int n = 0; n < kPlans; ++n) {
+      const AllocationCount allocations;
+      const Plan& plan = planner.plan(belief);
+      const std::size_t count = allocations.count();
+      // A plan may be worked out in any of three places, all of which have been used by then.
+      if (rehearsal == 3) {
+        EXPECT_EQ(count, 0U) << "plan " << n;
+      }
+      belief.mean = plan.policy.states.col(1);
+    }
+  }
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const char* system : {"dubins", "bicycle"}) {
+    for (const char* propagator : {"mixture", "noise_free"}) {
+      all.push_back({.system = system, .propagator = propagator});
+      all.push_back({.system = system, .closed_loop = true, .propagator = propagator});
+      all.push_back(
+          {.system = system, .closed_loop = true, .optimise_gain = true, .propagator = propagator});
+    }
+    all.push_back({.system = system, .closed_loop = true, .obstacles = false});
+    all.push_back({.system = system, .closed_loop = true, .points = 1500});
+  }
+  return all;
+}
+
+INSTANTIATE_TEST_SUITE_P(cases, PlannerAllocations, ::testing::ValuesIn(cases()),
+                         [](const auto& information) { return name_of(information.param); });
+
+}  // namespace
+}  // namespace qsmpc::testing
