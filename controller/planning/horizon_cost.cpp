@@ -25,7 +25,13 @@ HorizonCost::HorizonCost(const HorizonCostTerms& terms, Executor run)
       state_form_(terms.cost.state, terms.cost.target),
       terminal_form_(terms.cost.terminal, terms.cost.target),
       input_form_(terms.cost.input, Eigen::VectorXd::Zero(terms.cost.input.rows())),
-      penalties_(terms.safe_set, terms.penalty) {}
+      penalties_(terms.safe_set, terms.penalty),
+      expected_bounds_(penalties_) {
+  // Of the printed penalty nothing is taken in expectation.
+  const bool smooth = terms.penalty.shape == PenaltyShape::kSmooth;
+  (smooth ? penalties_.bounds : expected_bounds_.bounds).clear();
+  expected_bounds_.obstacles.clear();
+}
 
 HorizonCost::HorizonCost(const HorizonCostTerms& terms, const Prediction& prediction,
                          const Policy& policy)
@@ -46,6 +52,7 @@ void HorizonCost::hold(const Prediction& prediction, const Policy& policy) {
   lone_ = std::all_of(prediction.maps.begin(), prediction.maps.end(),
                       [](const StageMap& map) { return map.identity; });
   resize_stages();
+  noise_deviations_ = terms_.noise_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const QuadraticCost& cost = terms_.cost;
   const double noise = cost.state.cwiseProduct(terms_.noise_covariance).sum();
   Stage& first = stages_[0];
@@ -165,6 +172,7 @@ void HorizonCost::forward(const Eigen::VectorXd& z) {
       parts_.input += part.input;
       parts_.state += part.state;
       parts_.terminal += part.terminal;
+      parts_.box += part.box;
     }
     const bool spread = prediction_->maps[k].spread.size() != 0;
     if (spread) {
@@ -200,6 +208,10 @@ CostParts HorizonCost::forward_sources(Eigen::Index k, ParticleRange range) {
   } else {
     cost.state =
         weighted_quadratic(state_form_, 0.5, stage.stepped, weights, range, stage.state_gradient);
+  }
+  if (!expected_bounds_.bounds.empty() && expected_bounds_.penalty.box > 0.0) {
+    cost.box = add_expected_bounds(expected_bounds_, noise_deviations_, stage.stepped, weights,
+                                   range, stage.state_gradient);
   }
   if (!prediction_->maps[k].identity) {
     pack(stage.stepped, range.begin, range.end, stage.packed_stepped);

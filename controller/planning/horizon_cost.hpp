@@ -138,7 +138,9 @@ class HorizonCost {
   QuadraticForm state_form_;
   QuadraticForm terminal_form_;
   QuadraticForm input_form_;
-  PenaltyTable penalties_;
+  PenaltyTable penalties_;        // at the particles
+  PenaltyTable expected_bounds_;  // before noise and compression, in expectation over the noise
+  Eigen::VectorXd noise_deviations_;
   const Prediction* prediction_ = nullptr;
   Policy policy_;                       // with the decision last evaluated
   std::vector<Eigen::MatrixXd> gains_;  // as held, without ΔK

@@ -80,6 +80,14 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
                          .within_covariance = within_}),
       constraints_(cost_, settings_.safe_set),
       gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
+  if (!settings_.safe_set.obstacles.empty()) {
+    valleys_.emplace(settings_, HorizonCostTerms{.dynamics = dynamics_,
+                                                 .safe_set = settings_.safe_set,
+                                                 .cost = settings_.cost,
+                                                 .penalty = settings_.penalty,
+                                                 .noise_covariance = no_noise_,
+                                                 .within_covariance = no_noise_});
+  }
   make_search(0, inputs_);
   if (settings_.closed_loop && settings_.optimise_gain) {
     make_search(gain_change_.size(), gain_search_.emplace());
@@ -152,6 +160,12 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
                                   gain_change_, policies_);
   start_solver(*inputs_.solver, warm);
   if (gain_search_) start_solver(*gain_search_->solver, warm);
+  if (!warm && valleys_) {
+    start_in_deepest_valley(belief, round.deadline);
+    round.priced = true;
+    stopwatch.add_to(round.timing.propagate);
+    return false;
+  }
   policies_.make(belief.mean, guess_.inputs(), gain_change_, current_->policy);
   current_->gain_change = gain_change_;
   if (warm && maps_fit(*last_)) {
@@ -163,6 +177,24 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
   }
   stopwatch.add_to(round.timing.propagate);
   return warm;
+}
+
+/// Makes `current_` the best of the plans at the bottoms of the valleys, as the prediction prices
+/// them, and holds its assignments.
+void Planner::start_in_deepest_valley(const Gaussian& belief, Clock::time_point deadline) {
+  bool first = true;
+  bool held = false;
+  for (const Eigen::MatrixXd* const inputs : valleys_->search(belief, policies_, deadline)) {
+    if (!first && Clock::now() >= deadline) break;
+    Plan& plan = first ? *current_ : *candidate_;
+    plan.gain_change = gain_change_;
+    policies_.make(belief.mean, *inputs, gain_change_, plan.policy);
+    predict_and_price(plan);
+    held = first || better(plan, *current_);
+    if (held && !first) std::swap(current_, candidate_);
+    first = false;
+  }
+  if (!held) hold(current_->prediction, current_->policy);
 }
 
 void Planner::start_solver(OcpSolver& solver, bool warm) const {
@@ -201,8 +233,10 @@ void Planner::optimise(const Gaussian& belief, Round& round) {
 bool Planner::optimise(const Gaussian& belief, Search& search, int rounds, Round& round) {
   Stopwatch stopwatch;
   const int most_rounds = rounds + kConstraintRounds;
-  bool more = true;
-  for (int n = 0; n < rounds && more; ++n) {
+  const auto may_go_on = [&] {
+    return round.evaluations < settings_.max_evaluations && !round.stopped();
+  };
+  for (int n = 0; n < rounds && may_go_on(); ++n) {
     const bool promising = run_solver(search, round);
     stopwatch.add_to(round.timing.optimise);
     if (!promising) break;
@@ -214,11 +248,7 @@ bool Planner::optimise(const Gaussian& belief, Search& search, int rounds, Round
       std::swap(current_, candidate_);
       round.priced = true;
     }
-    more = round.evaluations < settings_.max_evaluations;
-    if (Clock::now() >= round.deadline) {
-      round.status = SolverStatus::kDeadline;
-      more = false;
-    }
+    if (Clock::now() >= round.deadline) round.status = SolverStatus::kDeadline;
     if (excess > kConstraintTolerance && round.status != SolverStatus::kInfeasible) {
       constraints_.set_margin(constraints_.margin() + excess);
       rounds = std::clamp(n + 2, rounds, most_rounds);
@@ -229,7 +259,7 @@ bool Planner::optimise(const Gaussian& belief, Search& search, int rounds, Round
   if (!round.priced) predict_and_price(*current_);
   round.priced = true;
   stopwatch.add_to(round.timing.propagate);
-  return more && !round.stopped();
+  return may_go_on();
 }
 
 /// Makes `candidate_` the plan of the decision z.

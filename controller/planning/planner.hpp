@@ -26,6 +26,7 @@
 #include "controller/planning/particle_constraints.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
+#include "controller/planning/valley_search.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -117,6 +118,7 @@ class Planner {
   [[nodiscard]] bool begin(const Gaussian& belief, Round& round);
   void make_search(Eigen::Index entries, Search& out);
   void start_solver(OcpSolver& solver, bool warm) const;
+  void start_in_deepest_valley(const Gaussian& belief, Clock::time_point deadline);
   void optimise(const Gaussian& belief, Round& round);
   [[nodiscard]] bool optimise(const Gaussian& belief, Search& search, int rounds, Round& round);
   [[nodiscard]] bool run_solver(Search& search, Round& round);
@@ -139,6 +141,7 @@ class Planner {
   PolicyMaker policies_;
   HorizonCost cost_;
   FirstGuess guess_;
+  std::optional<ValleySearch> valleys_;  // where there are obstacles
   ParticleConstraints constraints_;
   Search inputs_;
   std::optional<Search> gain_search_;  // over inputs and gains, where these are optimised

@@ -33,7 +33,7 @@ struct Options {
   int starts = 8;
   int points = 100;
   int evaluations = 100;
-  std::string propagator = "compressed";
+  std::string propagator = "mixture";
   std::vector<int> horizons = {8, 12, 18};
   bool inputs = false;
 };

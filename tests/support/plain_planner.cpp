@@ -107,6 +107,23 @@ ValueAndSlope hinge(double distance, double length) {
   return {0.5 - ratio, -1.0 / length};
 }
 
+/// E(m + s z)²₊ for standard normal z, and half its derivative.
+ValueAndSlope squared_hinge(double m, double s) {
+  const double inside = 0.5 * std::erfc(-m / s / std::sqrt(2.0));
+  const double density = std::exp(-0.5 * m * m / (s * s)) / std::sqrt(2.0 * M_PI);
+  return {(m * m + s * s) * inside + m * s * density, m * inside + s * density};
+}
+
+/// E h(distance + n) for normal noise n: h is ½ t²₊ − ½ (t − 1)²₊ with t = 1 − distance/length.
+ValueAndSlope expected_hinge(double distance, double deviation, double length) {
+  if (deviation == 0.0) return hinge(distance, length);
+  if (std::isinf(distance)) return {};
+  const double t = 1.0 - distance / length;
+  const ValueAndSlope whole = squared_hinge(t, deviation / length);
+  const ValueAndSlope beyond = squared_hinge(t - 1.0, deviation / length);
+  return {0.5 * (whole.value - beyond.value), (beyond.slope - whole.slope) / length};
+}
+
 bool bounded(const Box& box, Eigen::Index axis) {
   return std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis]);
 }
@@ -121,16 +138,27 @@ class PlainPenalty {
     return penalty_.shape == PenaltyShape::kThesis ? thesis(x, slope) : smooth(x, slope);
   }
 
+  /// Of the bounds, in expectation over the noise; 0 for the printed shape, which has them above.
+  double of_bounds(const Eigen::VectorXd& x, const Eigen::MatrixXd& noise,
+                   Eigen::VectorXd& slope) const {
+    double value = 0.0;
+    if (penalty_.shape == PenaltyShape::kThesis) return value;
+    const Box& room = safe_set_.bounds;
+    for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
+      const double deviation = std::sqrt(noise(axis, axis));
+      const ValueAndSlope low =
+          expected_hinge(x[axis] - room.lower[axis], deviation, penalty_.length);
+      const ValueAndSlope high =
+          expected_hinge(room.upper[axis] - x[axis], deviation, penalty_.length);
+      value += penalty_.box * (low.value + high.value);
+      slope[axis] += penalty_.box * (low.slope - high.slope);
+    }
+    return value;
+  }
+
  private:
   PenaltyValue smooth(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
     PenaltyValue value;
-    const Box& room = safe_set_.bounds;
-    for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
-      const ValueAndSlope low = hinge(x[axis] - room.lower[axis], penalty_.length);
-      const ValueAndSlope high = hinge(room.upper[axis] - x[axis], penalty_.length);
-      value.box += penalty_.box * (low.value + high.value);
-      slope[axis] += penalty_.box * (low.slope - high.slope);
-    }
     for (const Box& obstacle : safe_set_.obstacles) {
       Eigen::VectorXd outward = Eigen::VectorXd::Zero(x.size());
       const double distance = signed_distance(x, obstacle, outward);
@@ -208,6 +236,7 @@ struct Stage {
   std::vector<std::vector<bool>> clamped;
   std::vector<Eigen::VectorXd> stepped;
   std::vector<Eigen::VectorXd> penalty_slope;  // of weighted penalties
+  std::vector<Eigen::VectorXd> bound_slope;    // of weighted penalties of the bounds, at `stepped`
 };
 
 class PlainHorizon {
@@ -268,6 +297,12 @@ class PlainHorizon {
       Stage& stage = stages_[k];
       for (std::size_t i = 0; i < stage.states.size(); ++i) act(k, i);
       price_states(k + 1, stage.stepped, terms_.noise_covariance, k);
+      for (std::size_t i = 0; i < stage.stepped.size(); ++i) {
+        Eigen::VectorXd slope = Eigen::VectorXd::Zero(dim_);
+        result_.parts.box +=
+            weight(k, i) * penalty.of_bounds(stage.stepped[i], terms_.noise_covariance, slope);
+        stage.bound_slope.emplace_back(weight(k, i) * slope);
+      }
       Stage& next = stages_[k + 1];
       next.states = moved(prediction_.maps[k], stage.stepped);
       for (std::size_t n = 0; n < next.states.size(); ++n) {
@@ -318,7 +353,8 @@ class PlainHorizon {
     std::vector<Eigen::VectorXd> of_stepped;
     for (std::size_t i = 0; i < stage.stepped.size(); ++i) {
       of_stepped.emplace_back(2.0 * factor(k + 1) * weight(k, i) *
-                              (form(k + 1) * (stage.stepped[i] - terms_.cost.target)));
+                                  (form(k + 1) * (stage.stepped[i] - terms_.cost.target)) +
+                              stage.bound_slope[i]);
     }
     for (std::size_t n = 0; n < of_next.size(); ++n) {
       for (const PlainShare& share : prediction_.maps[k][n].shares) {

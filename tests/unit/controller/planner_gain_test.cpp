@@ -1,4 +1,6 @@
 // Gains that are given, and gains that are optimised with the inputs.
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/unit/controller/planner_fixture.hpp"
@@ -74,6 +76,23 @@ TEST(PlannerGain, warm_starts_keep_the_gain_that_was_found) {
     // A valley away from the cold start's may be a little worse, as elsewhere.
     EXPECT_LE(plan.cost.total(), 1.02 * cold.plan(belief).cost.total()) << step;
     belief.mean = plan.policy.states.col(1);
+  }
+}
+
+TEST(PlannerGain, any_number_of_evaluations_is_enough_for_a_plan) {
+  const auto car = dubins_car();
+  PlannerSettings settings = room_settings(400.0);
+  settings.optimise_gain = true;
+  for (int evaluations = 1; evaluations <= 60; ++evaluations) {
+    settings.max_evaluations = evaluations;
+    Planner planner(*car, settings);
+    Gaussian belief = dubins_belief();
+    for (int step = 0; step < 2; ++step) {
+      const Plan& plan = planner.plan(belief);
+      EXPECT_LE(plan.evaluations, evaluations);
+      EXPECT_TRUE(std::isfinite(plan.cost.total())) << evaluations;
+      belief.mean = plan.policy.states.col(1);
+    }
   }
 }
 
