@@ -31,6 +31,8 @@ constexpr double kCostRounding = 1e-15;
 // A cell whose sources are fewer than this share of its table gets a table of its own.
 constexpr double kSparse = 0.5;
 constexpr std::size_t kLeastTable = 64;
+// Cells whose parts one task lists.
+constexpr std::size_t kCellGroup = 64;
 // Sources that one task works on; a multiple of kMixturePadding.
 constexpr std::size_t kSourceChunk = 2048;
 constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
@@ -118,6 +120,14 @@ struct Split {
   std::size_t tasks = 0;
 };
 
+/// A table that takes those sources of another that have a part in a cell.
+struct TableCopy {
+  Table from;
+  Table to;
+  std::array<MixtureInterval, kMixtureDimLimit> intervals{};     // of the cell, in `from`
+  std::array<std::array<double*, 2>, kMixtureDimLimit> edges{};  // lower, upper, in `to`
+};
+
 }  // namespace
 
 struct MixtureSplitter::Work {
@@ -133,6 +143,8 @@ struct MixtureSplitter::Work {
     tables.reserve(2 * limit + 1);
     round.reserve(limit);
     splits.reserve(limit);
+    copies.reserve(2 * limit);
+    places.reserve(limit);
   }
 
   void start(const Points& sources, const Eigen::VectorXd& weights);
@@ -141,7 +153,10 @@ struct MixtureSplitter::Work {
   void prepare(int index);
   void finish(const Split& split);
   void give_own_table(Cell& cell, std::size_t parts);
-  void list(MixtureCells& out);
+  void fill(const TableCopy& copy) const;
+  void list(const Executor& run, MixtureCells& out);
+  [[nodiscard]] MixtureParts list_cell(std::size_t n);
+  void describe(MixtureCells& out);
   void rotate(Eigen::MatrixXd& in_axes, Eigen::MatrixXd& out);
 
   int dim;
@@ -162,8 +177,11 @@ struct MixtureSplitter::Work {
   std::vector<Split> splits;
   std::vector<std::pair<int, std::size_t>> tasks;  // split and first source
   std::vector<MixtureCutResult> results;
+  std::vector<TableCopy> copies;    // of this round
+  std::vector<std::size_t> places;  // of a cell's parts in the following two
   std::vector<double> part_mass;
   std::vector<std::int64_t> part_source;
+  std::vector<MixtureParts> listed;  // by cell
 };
 
 /// One cell that holds everything.
@@ -335,7 +353,8 @@ void MixtureSplitter::Work::finish(const Split& split) {
   cell_list.push_back(upper);
 }
 
-/// Where few of the table's sources have a part in the cell, the cell goes on with these alone.
+/// Where few of the table's sources have a part in the cell, the cell goes on with these alone, in
+/// a table that is yet to be filled.
 void MixtureSplitter::Work::give_own_table(Cell& cell, std::size_t parts) {
   const Table old = tables[cell.table];
   if (old.size < kLeastTable ||
@@ -343,43 +362,49 @@ void MixtureSplitter::Work::give_own_table(Cell& cell, std::size_t parts) {
     return;
   }
   const std::size_t stride = padded(parts);
-  Table table{.stride = stride};
-  table.name = reinterpret_cast<std::int64_t*>(arena.take(stride));
-  table.weight = arena.take(stride);
-  table.position = arena.take(dim * stride);
-  std::array<double*, 2 * kMixtureDimLimit> edges{};
-  for (int a = 0; a < 2 * dim; ++a) edges[a] = arena.take(3 * stride);
-  for (std::size_t i = 0; i < old.size; ++i) {
-    bool some = true;
-    for (int a = 0; a < dim; ++a) some &= cell.intervals[a].upper[i] > cell.intervals[a].lower[i];
-    if (!some) continue;
-    const std::size_t to = table.size++;
-    table.name[to] = old.name[i];
-    table.weight[to] = old.weight[i];
-    for (int a = 0; a < dim; ++a) {
-      table.position[a * stride + to] = old.position[a * old.stride + i];
-      for (int c = 0; c < 3; ++c) {
-        edges[2 * a][c * stride + to] = cell.intervals[a].lower[c * old.stride + i];
-        edges[2 * a + 1][c * stride + to] = cell.intervals[a].upper[c * old.stride + i];
-      }
-    }
-  }
-  for (std::size_t to = table.size; to < stride; ++to) {
-    table.weight[to] = 0.0;
-    table.name[to] = 0;
-    for (int a = 0; a < dim; ++a) {
-      table.position[a * stride + to] = 0.0;
-      for (int c = 0; c < 3; ++c) {
-        edges[2 * a][c * stride + to] = 0.0;
-        edges[2 * a + 1][c * stride + to] = 0.0;
-      }
-    }
-  }
+  TableCopy copy{.from = old, .to = {.size = parts, .stride = stride}};
+  copy.to.name = reinterpret_cast<std::int64_t*>(arena.take(stride));
+  copy.to.weight = arena.take(stride);
+  copy.to.position = arena.take(dim * stride);
   for (int a = 0; a < dim; ++a) {
-    cell.intervals[a] = {.lower = edges[2 * a], .upper = edges[2 * a + 1]};
+    copy.intervals[a] = cell.intervals[a];
+    for (double*& edge : copy.edges[a]) edge = arena.take(3 * stride);
+    cell.intervals[a] = {.lower = copy.edges[a][0], .upper = copy.edges[a][1]};
   }
   cell.table = tables.size();
-  tables.push_back(table);
+  tables.push_back(copy.to);
+  copies.push_back(copy);
+}
+
+void MixtureSplitter::Work::fill(const TableCopy& copy) const {
+  const Table& from = copy.from;
+  const Table& to = copy.to;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < from.size && count < to.size; ++i) {
+    bool some = true;
+    for (int a = 0; a < dim; ++a) some &= copy.intervals[a].upper[i] > copy.intervals[a].lower[i];
+    if (!some) continue;
+    to.name[count] = from.name[i];
+    to.weight[count] = from.weight[i];
+    for (int a = 0; a < dim; ++a) {
+      to.position[a * to.stride + count] = from.position[a * from.stride + i];
+      for (int c = 0; c < 3; ++c) {
+        copy.edges[a][0][c * to.stride + count] = copy.intervals[a].lower[c * from.stride + i];
+        copy.edges[a][1][c * to.stride + count] = copy.intervals[a].upper[c * from.stride + i];
+      }
+    }
+    ++count;
+  }
+  for (; count < to.stride; ++count) {
+    to.weight[count] = 0.0;
+    to.name[count] = 0;
+    for (int a = 0; a < dim; ++a) {
+      to.position[a * to.stride + count] = 0.0;
+      for (int c = 0; c < 3; ++c) {
+        for (double* const edge : copy.edges[a]) edge[c * to.stride + count] = 0.0;
+      }
+    }
+  }
 }
 
 /// From the noise's axes, of which the lower triangle is given, to the state's.
@@ -389,43 +414,88 @@ void MixtureSplitter::Work::rotate(Eigen::MatrixXd& in_axes, Eigen::MatrixXd& ou
   out.noalias() = product * axes.transpose();
 }
 
-/// Lists the parts of all cells.
-void MixtureSplitter::Work::list(MixtureCells& out) {
+/// Lists the parts of all cells: first each cell's in a place of its own, then side by side.
+void MixtureSplitter::Work::list(const Executor& run, MixtureCells& out) {
+  places.clear();
+  std::size_t room = 0;
+  for (const Cell& cell : cell_list) {
+    places.push_back(room);
+    room += tables[cell.table].stride + kMixturePadding;
+  }
+  make_room(part_mass, room);
+  make_room(part_source, room);
+  part_mass.resize(std::max(part_mass.size(), room));
+  part_source.resize(std::max(part_source.size(), room));
+  listed.resize(cell_list.size());
+  const int groups = static_cast<int>((cell_list.size() + kCellGroup - 1) / kCellGroup);
+  const auto for_cells = [&](const auto& action) {
+    const auto group = [&](int index) {
+      const std::size_t begin = index * kCellGroup;
+      const std::size_t end = std::min(begin + kCellGroup, cell_list.size());
+      for (std::size_t n = begin; n < end; ++n) action(n);
+    };
+    if (room < kSourceChunk) {
+      run_in_turn(groups, group);
+    } else {
+      run(groups, group);
+    }
+  };
+  for_cells([&](std::size_t n) { listed[n] = list_cell(n); });
+  out.begin.assign(1, 0);
+  std::size_t total = 0;
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < listed.size(); ++n) {
+    // By differences of moments a cell may have some mass, of which rounding is all.
+    if (listed[n].count == 0) continue;
+    cell_list[count] = cell_list[n];
+    places[count] = places[n];
+    listed[count++] = listed[n];
+    total += listed[n].count;
+    out.begin.push_back(static_cast<int>(total));
+  }
+  cell_list.resize(count);
+  make_room(out.source, total);
+  make_room(out.mass, total);
+  out.source.resize(total);
+  out.mass.resize(total);
+  for_cells([&](std::size_t n) {
+    if (n >= count) return;
+    const std::size_t from = places[n];
+    std::copy_n(part_mass.begin() + from, listed[n].count, out.mass.begin() + out.begin[n]);
+    for (std::size_t k = 0; k < listed[n].count; ++k) {
+      out.source[out.begin[n] + k] = static_cast<int>(part_source[from + k]);
+    }
+  });
+  describe(out);
+}
+
+MixtureParts MixtureSplitter::Work::list_cell(std::size_t n) {
+  const Cell& cell = cell_list[n];
+  const Table& table = tables[cell.table];
+  MixtureCell finished{.dim = dim,
+                       .intervals = cell.intervals,
+                       .weight = table.weight,
+                       .source = table.name,
+                       .stride = table.stride};
+  for (int a = 0; a < dim; ++a) finished.position[a] = table.position + a * table.stride;
+  return list_mixture_parts(finished, table.size, part_mass.data() + places[n],
+                            part_source.data() + places[n]);
+}
+
+/// Weights and means of the cells that were listed.
+void MixtureSplitter::Work::describe(MixtureCells& out) {
   const std::size_t count = cell_list.size();
   cells_covariance.setZero();
-  out.begin.assign(1, 0);
-  out.source.clear();
-  out.mass.clear();
-  std::size_t most = 0;
-  for (const Cell& cell : cell_list) most += tables[cell.table].size;
-  make_room(out.source, most);
-  make_room(out.mass, most);
   out.weight.resize(count);
   out.mean.resize(dim * count);
   out.noise_mean.resize(dim * count);
-  std::size_t n = 0;
-  for (const Cell& cell : cell_list) {
-    const Table& table = tables[cell.table];
-    MixtureCell finished{.dim = dim,
-                         .intervals = cell.intervals,
-                         .weight = table.weight,
-                         .source = table.name,
-                         .stride = table.stride};
-    for (int a = 0; a < dim; ++a) finished.position[a] = table.position + a * table.stride;
-    const std::size_t room = table.stride + kMixturePadding;
-    part_mass.resize(std::max(part_mass.size(), room));
-    part_source.resize(std::max(part_source.size(), room));
-    const MixtureParts parts =
-        list_mixture_parts(finished, table.size, part_mass.data(), part_source.data());
-    // By differences of moments the cell had some mass, of which rounding was all.
-    if (parts.count == 0) continue;
-    out.mass.insert(out.mass.end(), part_mass.begin(), part_mass.begin() + parts.count);
-    out.source.insert(out.source.end(), part_source.begin(), part_source.begin() + parts.count);
-    out.begin.push_back(static_cast<int>(out.mass.size()));
+  for (std::size_t n = 0; n < count; ++n) {
+    const MixtureParts& parts = listed[n];
     out.weight[n] = parts.mass;
     for (int a = 0; a < dim; ++a) {
-      for (int b = 0; b <= a; ++b)
+      for (int b = 0; b <= a; ++b) {
         cells_covariance(a, b) += parts.first[a] * parts.first[b] / parts.mass;
+      }
     }
     for (int b = 0; b < dim; ++b) {
       double mean = 0.0;
@@ -436,16 +506,6 @@ void MixtureSplitter::Work::list(MixtureCells& out) {
       }
       out.mean[b * count + n] = mean / parts.mass;
       out.noise_mean[b * count + n] = noise / parts.mass;
-    }
-    ++n;
-  }
-  if (n < count) {
-    out.weight.resize(n);
-    for (std::vector<double>* const rows : {&out.mean, &out.noise_mean}) {
-      for (int b = 1; b < dim; ++b) {
-        std::copy_n(rows->begin() + b * count, n, rows->begin() + b * n);
-      }
-      rows->resize(dim * n);
     }
   }
 }
@@ -476,9 +536,12 @@ void MixtureSplitter::split(const Points& sources, const Eigen::VectorXd& weight
       work.results[k] = cut_mixture(cut, begin, std::min(size, begin + kSourceChunk));
     };
     run(static_cast<int>(work.tasks.size()), task);
+    work.copies.clear();
     for (const Split& split : work.splits) work.finish(split);
+    const auto fill = [&work](int k) { work.fill(work.copies[k]); };
+    run(static_cast<int>(work.copies.size()), fill);
   }
-  work.list(out);
+  work.list(run, out);
   // The cost is what the cells lack of the mixture's second moment.
   out.w2 = std::sqrt(std::max(0.0, work.second_moment - work.cells_covariance.trace()) +
                      kCostRounding * work.second_moment);

@@ -224,8 +224,12 @@ void Planner::optimise(const Gaussian& belief, Round& round) {
     hold(current_->prediction, current_->policy);
     (void)optimise(belief, *gain_search_, kGainRounds, round);
   }
-  if (!round.stopped() && current_->violation > kConstraintTolerance) {
+  if (round.stopped()) return;
+  if (current_->violation > kConstraintTolerance) {
     round.status = SolverStatus::kInfeasible;
+  } else if (round.status == SolverStatus::kInfeasible) {
+    // Of a search for something better than the plan that is kept.
+    round.status = SolverStatus::kStalled;
   }
 }
 
@@ -298,7 +302,7 @@ bool Planner::run_solver(Search& search, Round& round) {
   }
   search.z = result.z;
   if (!round.priced) return true;
-  if (result.status == SolverStatus::kDeadline && Clock::now() >= options.deadline) return false;
+  if (Clock::now() >= round.deadline) return false;
   const double gain = current_->cost.total() - result.value;
   return gain > kSettled * std::abs(current_->cost.total()) ||
          current_->violation > std::max(kConstraintTolerance, result.violation);

@@ -24,7 +24,8 @@ namespace qsmpc {
                                    const Eigen::VectorXd& weights, const DiscreteMeasure& noise);
 
 /// The map from `sources` stepped points to the means of the cells; reuses the storage of `out`.
-void cluster_map(const MixtureCells& cells, Eigen::Index sources, StageMap& out);
+void cluster_map(const MixtureCells& cells, Eigen::Index sources, const Executor& run,
+                 StageMap& out);
 
 /// The map of stepped points that are not finite: all into one cluster, at infinite cost.
 [[nodiscard]] StageMap lost_map(const DiscreteMeasure& stepped);

@@ -1,5 +1,9 @@
 #include "controller/prediction/sparse_matrix.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
 #include "controller/storage.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -75,28 +79,65 @@ namespace qsmpc {
 
 HWY_EXPORT(multiply_packed);
 
+namespace {
+// Entries that are worth a block of their own in a transposition, and blocks at most.
+constexpr std::ptrdiff_t kBlock = 16384;
+constexpr std::ptrdiff_t kMostBlocks = 16;
+}  // namespace
+
 void multiply(const SparseMatrix& a, const PackedPoints& points, int begin, int end, Points& out) {
   HWY_DYNAMIC_DISPATCH(multiply_packed)(a, points, begin, end, out);
 }
 
-void transpose(const SparseMatrix& a, int columns, SparseMatrix& out) {
+void transpose(const SparseMatrix& a, int columns, const Executor& run, SparseMatrix& out) {
+  // Rows are divided into blocks, whose entries of a column follow one another.
+  const auto entries = static_cast<std::ptrdiff_t>(a.column.size());
+  const int rows = a.rows();
+  const int blocks = static_cast<int>(std::clamp<std::ptrdiff_t>(entries / kBlock, 1, kMostBlocks));
+  const auto first_row = [&](int block) {
+    const auto entry = static_cast<int>(entries * block / blocks);
+    return static_cast<int>(std::lower_bound(a.begin.begin(), a.begin.end() - 1, entry) -
+                            a.begin.begin());
+  };
+  const auto rows_of = [&](int block) {
+    return std::pair(first_row(block), block + 1 == blocks ? rows : first_row(block + 1));
+  };
+  make_room(out.column, entries);
+  make_room(out.value, entries);
+  out.column.resize(entries);
+  out.value.resize(entries);
+  make_room(out.places, static_cast<std::size_t>(blocks) * columns);
+  out.places.assign(static_cast<std::size_t>(blocks) * columns, 0);
+  const auto places_of = [&](int block) {
+    return out.places.data() + static_cast<std::ptrdiff_t>(block) * columns;
+  };
+  const auto count = [&](int block) {
+    const auto [begin, end] = rows_of(block);
+    int* const places = places_of(block);
+    for (int k = a.begin[begin]; k < a.begin[end]; ++k) ++places[a.column[k]];
+  };
+  run(blocks, count);
   out.begin.assign(columns + 1, 0);
-  make_room(out.column, a.column.size());
-  make_room(out.value, a.value.size());
-  out.column.resize(a.column.size());
-  out.value.resize(a.value.size());
-  for (const int column : a.column) ++out.begin[column + 1];
-  for (int i = 0; i < columns; ++i) out.begin[i + 1] += out.begin[i];
-  // The beginnings serve as places to write to, and are moved back afterwards.
-  for (int n = 0; n < a.rows(); ++n) {
-    for (int k = a.begin[n]; k < a.begin[n + 1]; ++k) {
-      const int to = out.begin[a.column[k]]++;
-      out.column[to] = n;
-      out.value[to] = a.value[k];
+  int place = 0;
+  for (int column = 0; column < columns; ++column) {
+    out.begin[column] = place;
+    for (int block = 0; block < blocks; ++block) {
+      place += std::exchange(places_of(block)[column], place);
     }
   }
-  for (int i = columns; i > 0; --i) out.begin[i] = out.begin[i - 1];
-  out.begin[0] = 0;
+  out.begin[columns] = place;
+  const auto scatter = [&](int block) {
+    const auto [begin, end] = rows_of(block);
+    int* const places = places_of(block);
+    for (int n = begin; n < end; ++n) {
+      for (int k = a.begin[n]; k < a.begin[n + 1]; ++k) {
+        const int to = places[a.column[k]]++;
+        out.column[to] = n;
+        out.value[to] = a.value[k];
+      }
+    }
+  };
+  run(blocks, scatter);
 }
 
 void resize_packed(int dim, Eigen::Index count, PackedPoints& packed) {

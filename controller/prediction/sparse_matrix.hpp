@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "controller/measure/measures.hpp"
+#include "controller/parallel.hpp"
 
 namespace qsmpc {
 
@@ -12,12 +13,13 @@ struct SparseMatrix {
   std::vector<int> begin;  ///< rows + 1
   std::vector<int> column;
   std::vector<double> value;
+  std::vector<int> places;  ///< what a transposition into this works on
 
   [[nodiscard]] int rows() const { return static_cast<int>(begin.size()) - 1; }
 };
 
 /// out = aᵀ, for `a` with `columns` columns; the entries of a row stay in the order of a's rows.
-void transpose(const SparseMatrix& a, int columns, SparseMatrix& out);
+void transpose(const SparseMatrix& a, int columns, const Executor& run, SparseMatrix& out);
 
 /// Points one after the other, each with its coordinates side by side and zeros up to `stride`.
 struct PackedPoints {

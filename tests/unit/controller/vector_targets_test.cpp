@@ -126,7 +126,7 @@ TEST(VectorTargets, penalties_are_equal_bit_for_bit) {
 TEST(VectorTargets, sparse_products_are_equal_bit_for_bit) {
   Generator generator(904);
   for (int dim = 1; dim <= 9; ++dim) {
-    SparseMatrix matrix{.begin = {0}, .column = {}, .value = {}};
+    SparseMatrix matrix{.begin = {0}, .column = {}, .value = {}, .places = {}};
     for (int row = 0; row < 30; ++row) {
       for (int k = 0; k < row % 11; ++k) {
         matrix.column.push_back((row * 7 + k * 3) % 40);
