@@ -6,7 +6,8 @@
 // With f_i the stepped points and w the noise, the stage cost of Eq. 4-18 (its first line) is taken
 // before this stage's compression, which would lose a part of the second moment:
 //     ½ E|x − r|²_Q = ½ Σ_i ρ_i |f_i − r|²_Q + ½ tr(Q Σ_w),
-// and the terminal cost (Eq. 4-19) likewise, without the ½. Penalties act on the compressed points.
+// and the terminal cost (Eq. 4-19) likewise, without the ½. The smooth penalties of the bounds are
+// taken there, too, in expectation over the noise; the others act on the compressed points.
 #pragma once
 
 #include <algorithm>

@@ -49,11 +49,12 @@ struct PropagatorEntry {
   std::string summary;
 };
 
-/// The table of propagators: "compressed" (product with the noise quantiser, then compression by
-/// the split tree alone), "moment_matched" (the same with Lloyd's noise quantiser and refined
-/// compression, spread to the covariance of the stepped points plus that of the noise), "soft" (as
-/// "compressed", with the soft assignments of Algorithm 1) and "noise_free" (only the belief is
-/// propagated; the noise counts fully as error).
+/// The table of propagators: "mixture" (the noise stays Gaussian and is cut into cells with the
+/// points, which are displaced to the mixture's covariance), "compressed" (product with the noise
+/// quantiser, then compression by the split tree alone), "moment_matched" (the same with Lloyd's
+/// noise quantiser and refined compression, spread to the covariance of the stepped points plus
+/// that of the noise), "soft" (as "compressed", with the soft assignments of Algorithm 1) and
+/// "noise_free" (only the belief is propagated; the noise counts fully as error).
 [[nodiscard]] const std::vector<PropagatorEntry>& propagators();
 
 /// Throws std::invalid_argument on an unknown name or senseless settings.
