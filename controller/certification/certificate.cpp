@@ -67,19 +67,21 @@ SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
 /// it is left more often, and its residuals are smaller.
 std::vector<SurrogateBounds> surrogate_bounds_of_stages(const PredictedMotion& motion,
                                                         const SafeSet& safe_set,
-                                                        CertificateEffort effort) {
+                                                        CertificateEffort effort,
+                                                        const Executor& run) {
   const std::vector<UnsafePart> parts = unsafe_parts(safe_set);
   std::vector<SurrogateBounds> least(motion.policy.horizon());
   for (const double core : {kWideCore, kNarrowCore}) {
     const std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core);
-    double largest = 0.0;
-    for (std::size_t k = 0; k < least.size(); ++k) {
+    const auto stage = [&](int k) {
       const SurrogateBounds bounds = surrogate_bounds(
           motion, parts, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1], effort);
       least[k] = {.markov = std::min(least[k].markov, bounds.markov),
                   .smooth = std::min(least[k].smooth, bounds.smooth)};
-      largest = std::max(largest, least[k].smooth);
-    }
+    };
+    run(static_cast<int>(least.size()), stage);
+    double largest = 0.0;
+    for (const SurrogateBounds& bounds : least) largest = std::max(largest, bounds.smooth);
     // Without a core in use the narrow one changes nothing.
     if (largest < kTryNarrow || surrogates.back().leaving == 0.0) break;
   }
@@ -101,41 +103,50 @@ std::vector<double> thesis_radii(const PredictedMotion& motion,
   return radii;
 }
 
+/// The certificate of stage k + 1; `radius` is the one that the thesis would use there.
+StageCertificate certify_stage(const PredictedMotion& motion, const SafeSet& safe_set,
+                               const StageBudget& budget, const SurrogateBounds& surrogate,
+                               double radius, std::size_t k, CertificateEffort effort) {
+  StageCertificate certificate;
+  const DiscreteMeasure& particles = motion.prediction.stages[k + 1];
+  certificate.surrogate = surrogate.markov;
+  certificate.smoothed = surrogate.smooth;
+  const double leaving = budget.leaving;
+  certificate.particles =
+      std::min(1.0, leaving + worst_case_probability(particles, safe_set, budget.total));
+  const double least =
+      std::min({certificate.particles, certificate.surrogate, certificate.smoothed});
+  const GaussianMixture stepped{.centres = motion.prediction.stepped[k],
+                                .weights = motion.prediction.stages[k].weights,
+                                .covariance = motion.noise_covariance};
+  const double useful = effort == CertificateEffort::kEvery ? 1.0 : least - leaving;
+  certificate.mixture =
+      std::min(1.0, leaving + smoothed_probability(stepped, safe_set, budget.before_noise, useful));
+  certificate.thesis = thesis_probability(particles, safe_set, radius);
+  certificate.unsafe_mass = unsafe_mass(particles, safe_set);
+  certificate.value = std::min(least, certificate.mixture);
+  // Of equal bounds the simplest is named.
+  certificate.kind = certificate.value == certificate.particles   ? "c1"
+                     : certificate.value == certificate.mixture   ? "c2"
+                     : certificate.value == certificate.surrogate ? "c3"
+                                                                  : "c4";
+  return certificate;
+}
+
 }  // namespace
 
 std::vector<StageCertificate> certify(const PredictedMotion& motion, const SafeSet& safe_set,
                                       const std::vector<StageBudget>& budgets,
-                                      CertificateEffort effort) {
+                                      CertificateEffort effort, const Executor& run) {
   const std::vector<SurrogateBounds> surrogates =
-      surrogate_bounds_of_stages(motion, safe_set, effort);
+      surrogate_bounds_of_stages(motion, safe_set, effort, run);
   const std::vector<double> radii = thesis_radii(motion, budgets);
   std::vector<StageCertificate> certificates(motion.policy.horizon());
-  for (std::size_t k = 0; k < certificates.size(); ++k) {
-    StageCertificate& certificate = certificates[k];
-    const DiscreteMeasure& particles = motion.prediction.stages[k + 1];
-    certificate.surrogate = surrogates[k].markov;
-    certificate.smoothed = surrogates[k].smooth;
-    const double leaving = budgets[k + 1].leaving;
-    certificate.particles =
-        std::min(1.0, leaving + worst_case_probability(particles, safe_set, budgets[k + 1].total));
-    const double least =
-        std::min({certificate.particles, certificate.surrogate, certificate.smoothed});
-    const GaussianMixture stepped{.centres = motion.prediction.stepped[k],
-                                  .weights = motion.prediction.stages[k].weights,
-                                  .covariance = motion.noise_covariance};
-    const double useful = effort == CertificateEffort::kEvery ? 1.0 : least - leaving;
-    certificate.mixture = std::min(
-        1.0,
-        leaving + smoothed_probability(stepped, safe_set, budgets[k + 1].before_noise, useful));
-    certificate.thesis = thesis_probability(particles, safe_set, radii[k + 1]);
-    certificate.unsafe_mass = unsafe_mass(particles, safe_set);
-    certificate.value = std::min(least, certificate.mixture);
-    // Of equal bounds the simplest is named.
-    certificate.kind = certificate.value == certificate.particles   ? "c1"
-                       : certificate.value == certificate.mixture   ? "c2"
-                       : certificate.value == certificate.surrogate ? "c3"
-                                                                    : "c4";
-  }
+  const auto stage = [&](int k) {
+    certificates[k] = certify_stage(motion, safe_set, budgets[k + 1], surrogates[k], radii[k + 1],
+                                    static_cast<std::size_t>(k), effort);
+  };
+  run(static_cast<int>(certificates.size()), stage);
   return certificates;
 }
 

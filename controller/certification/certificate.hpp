@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "controller/certification/error_budget.hpp"
+#include "controller/parallel.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
 
@@ -38,10 +39,11 @@ enum class CertificateEffort {
 };
 
 /// Certificates of stages 1 … horizon of `motion`.
-/// budgets: what `error_budget` gives for it.
+/// budgets: what `error_budget` gives for it. run: what the stages, which do not depend on one
+/// another, are divided among; no result depends on it.
 [[nodiscard]] std::vector<StageCertificate> certify(
     const PredictedMotion& motion, const SafeSet& safe_set, const std::vector<StageBudget>& budgets,
-    CertificateEffort effort = CertificateEffort::kLeast);
+    CertificateEffort effort = CertificateEffort::kLeast, const Executor& run = run_in_turn);
 
 /// Upper bound of the probability that the state is unsafe at any of the stages: their sum, at
 /// most 1.

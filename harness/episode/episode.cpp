@@ -131,7 +131,9 @@ class Episode {
     StepRecord record;
     const PredictedMotion motion = motion_of(planner_, belief, plan);
     record.budgets = error_budget(motion);
-    record.certificates = certify(motion, planner_.settings().safe_set, record.budgets);
+    const PlannerSettings& settings = planner_.settings();
+    record.certificates =
+        certify(motion, settings.safe_set, record.budgets, CertificateEffort::kLeast, settings.run);
     record.timing.certify = milliseconds_since(start);
     record.timing.quantise = plan.timing.quantise;
     record.timing.propagate = plan.timing.propagate;
