@@ -1,7 +1,9 @@
 // Storage that is written again and again with about as much.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <vector>
 
 namespace qsmpc {
@@ -12,5 +14,52 @@ template <class T>
 void make_room(std::vector<T>& entries, std::size_t count) {
   if (entries.capacity() < count) entries.reserve(2 * count);
 }
+
+/// Memory for doubles that is given out piece by piece and taken back all at once.
+class Arena {
+ public:
+  /// `count` doubles, which are whatever they were.
+  double* take(std::size_t count) {
+    while (at_ < slabs_.size() && used_ + count > slabs_[at_].size) {
+      ++at_;
+      used_ = 0;
+    }
+    if (at_ == slabs_.size()) {
+      add_slab(count);
+      used_ = 0;
+    }
+    double* const begin = slabs_[at_].data.get() + used_;
+    used_ += count;
+    given_ += count;
+    return begin;
+  }
+  /// Takes everything back, and sees to it that half as much again will fit.
+  void reset() {
+    most_ = std::max(most_, given_);
+    std::size_t room = 0;
+    for (const Slab& slab : slabs_) room += slab.size;
+    if (room < most_ + most_ / 2) add_slab(3 * most_ - room);
+    at_ = 0;
+    used_ = 0;
+    given_ = 0;
+  }
+
+ private:
+  static constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
+  struct Slab {
+    std::size_t size;
+    std::unique_ptr<double[]> data;
+  };
+  void add_slab(std::size_t count) {
+    const std::size_t size = std::max(kSlab, count);
+    slabs_.push_back({.size = size, .data = std::make_unique<double[]>(size)});
+  }
+
+  std::vector<Slab> slabs_;
+  std::size_t at_ = 0;
+  std::size_t used_ = 0;   // of the slab at hand
+  std::size_t given_ = 0;  // in all
+  std::size_t most_ = 0;   // given between two resets
+};
 
 }  // namespace qsmpc

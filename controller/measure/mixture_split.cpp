@@ -35,7 +35,6 @@ constexpr std::size_t kLeastTable = 64;
 constexpr std::size_t kCellGroup = 64;
 // Sources that one task works on; a multiple of kMixturePadding.
 constexpr std::size_t kSourceChunk = 2048;
-constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
 
 std::size_t padded(std::size_t size) {
   return (size + kMixturePadding - 1) / kMixturePadding * kMixturePadding;
@@ -46,51 +45,6 @@ std::uint32_t rounded(double spread) {
   constexpr int kDropped = 6;  // of the 23 bits of a float
   return std::bit_cast<std::uint32_t>(static_cast<float>(spread)) >> kDropped;
 }
-
-/// Memory that is given out piece by piece and taken back all at once.
-class Arena {
- public:
-  double* take(std::size_t count) {
-    while (at_ < slabs_.size() && used_ + count > slabs_[at_].size) {
-      ++at_;
-      used_ = 0;
-    }
-    if (at_ == slabs_.size()) {
-      add_slab(count);
-      used_ = 0;
-    }
-    double* const begin = slabs_[at_].data.get() + used_;
-    used_ += count;
-    given_ += count;
-    return begin;
-  }
-  /// Takes everything back, and sees to it that half as much again will fit.
-  void reset() {
-    most_ = std::max(most_, given_);
-    std::size_t room = 0;
-    for (const Slab& slab : slabs_) room += slab.size;
-    if (room < most_ + most_ / 2) add_slab(3 * most_ - room);
-    at_ = 0;
-    used_ = 0;
-    given_ = 0;
-  }
-
- private:
-  struct Slab {
-    std::size_t size;
-    std::unique_ptr<double[]> data;
-  };
-  void add_slab(std::size_t count) {
-    const std::size_t size = std::max(kSlab, count);
-    slabs_.push_back({.size = size, .data = std::make_unique<double[]>(size)});
-  }
-
-  std::vector<Slab> slabs_;
-  std::size_t at_ = 0;
-  std::size_t used_ = 0;   // of the slab at hand
-  std::size_t given_ = 0;  // in all
-  std::size_t most_ = 0;   // given between two resets
-};
 
 /// Sources that cells are made of: names, weights and positions (d x stride).
 struct Table {
