@@ -26,7 +26,7 @@ PlannerSettings planner_settings(const Scenario& scenario) {
   settings.max_evaluations = controller.max_iterations;
   settings.deadline = controller.deadline;
   settings.run = executor_of(controller.threads);
-  settings.noise_covariance = scenario.disturbance_covariance;
+  settings.noise_covariance = scenario.disturbance.covariance;
   settings.cost = {.state = controller.cost.state,
                    .input = controller.cost.input,
                    .terminal = controller.cost.terminal,

@@ -47,7 +47,7 @@ class Episode {
         options_(options),
         model_(model_of(scenario)),
         planner_(*model_, planner_settings(scenario)),
-        disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance_covariance),
+        disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.covariance),
         belief_{.mean = scenario.initial_state.mean,
                 .covariance = scenario.initial_state.covariance} {
     rehearse();
@@ -114,7 +114,7 @@ class Episode {
   /// the first time, tables and memory, is then over before the loop begins.
   void rehearse() {
     for (const Eigen::MatrixXd& covariance :
-         {scenario_.disturbance_covariance, scenario_.initial_state.covariance}) {
+         {scenario_.disturbance.covariance, scenario_.initial_state.covariance}) {
       const Gaussian belief{.mean = belief_.mean, .covariance = covariance};
       for (int n = 0; n < kRehearsals; ++n) {
         const StepRecord record = certified(belief, planner_.plan(belief));
@@ -172,7 +172,7 @@ class Episode {
     const StateBatch input = record.input;
     StateBatch predicted(state.rows(), 1);
     model_->step(state, input, predicted);
-    belief_ = {.mean = predicted.col(0), .covariance = scenario_.disturbance_covariance};
+    belief_ = {.mean = predicted.col(0), .covariance = scenario_.disturbance.covariance};
     state_ = next_state;
   }
 

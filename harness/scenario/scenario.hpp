@@ -30,6 +30,9 @@ struct Scenario {
     Eigen::VectorXd mean;        ///< state_dim
     Eigen::MatrixXd covariance;  ///< state_dim x state_dim
   };
+  struct Disturbance {
+    Eigen::MatrixXd covariance;  ///< of the noise in the model, state_dim x state_dim, per period
+  };
   struct Target {
     Eigen::VectorXd state;  ///< state_dim
     double radius = 0.5;    ///< m, in the plane of position (or over all states without one)
@@ -85,7 +88,7 @@ struct Scenario {
   Plant plant;
   double time_step = 0.1;  ///< s, the control period
   GaussianValue initial_state;
-  Eigen::MatrixXd disturbance_covariance;  ///< state_dim x state_dim, per control period
+  Disturbance disturbance;
   SafeSet safe_set;
   Target target;
   Controller controller;

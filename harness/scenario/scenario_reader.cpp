@@ -225,7 +225,7 @@ void ScenarioReader::read_initial_state() {
 
 void ScenarioReader::read_disturbance() {
   Section section = root_.section("disturbance");
-  scenario_.disturbance_covariance =
+  scenario_.disturbance.covariance =
       semidefinite(section, "covariance", Eigen::MatrixXd::Zero(state_dim(), state_dim()));
   section.refuse_unread();
 }

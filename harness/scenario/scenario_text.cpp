@@ -131,7 +131,7 @@ std::string to_yaml(const Scenario& scenario) {
   out += fmt::format("time_step: {}\n", number(scenario.time_step));
   out += fmt::format("initial_state:\n  mean: {}\n  covariance: {}\n",
                      list(scenario.initial_state.mean), square(scenario.initial_state.covariance));
-  out += fmt::format("disturbance:\n  covariance: {}\n", square(scenario.disturbance_covariance));
+  out += fmt::format("disturbance:\n  covariance: {}\n", square(scenario.disturbance.covariance));
   out += safe_set_text(scenario.safe_set, system.states);
   out += fmt::format("target:\n  state: {}\n  radius: {}\n", list(scenario.target.state),
                      number(scenario.target.radius));

@@ -277,13 +277,13 @@ TEST(BrokenScenarios, a_matrix_asymmetric_by_rounding_is_made_symmetric) {
   const Scenario scenario = parse_scenario(
       minimal_text +
       "disturbance: {covariance: [[1, 0.5, 0], [0.50000000000001, 1, 0], [0, 0, 1]]}\n");
-  EXPECT_EQ(scenario.disturbance_covariance, scenario.disturbance_covariance.transpose());
+  EXPECT_EQ(scenario.disturbance.covariance, scenario.disturbance.covariance.transpose());
 }
 
 TEST(BrokenScenarios, a_zero_covariance_and_a_zero_cost_are_accepted) {
   const Scenario scenario = parse_scenario(
       minimal_text + "disturbance: {covariance: [0, 0, 0]}\ncontroller: {cost: {input: [0]}}\n");
-  EXPECT_TRUE(scenario.disturbance_covariance.isZero(0.0));
+  EXPECT_TRUE(scenario.disturbance.covariance.isZero(0.0));
   EXPECT_EQ(scenario.controller.cost.input(0, 0), 0.0);
 }
 

@@ -1,0 +1,59 @@
+#include "harness/scenario/plant_choice.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "harness/errors.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/shipped_files.hpp"
+
+namespace qsmpc {
+namespace {
+
+std::vector<std::string> plant_names(const std::string& system) {
+  std::vector<std::string> names{"analytic", "mujoco"};
+  for (const ShippedPlant& plant : shipped_plants()) {
+    if (plant.system == system) names.push_back(plant.name);
+  }
+  return names;
+}
+
+}  // namespace
+
+const std::vector<ShippedPlant>& shipped_plants() {
+  static const std::vector<ShippedPlant> plants{
+      {.name = "mujoco_car",
+       .system = "dubins",
+       .mjcf = "dubins_car.xml",
+       .summary = "a small car on four wheels that steers, rolls and slips"}};
+  return plants;
+}
+
+Scenario with_plant(Scenario scenario, const std::string& name) {
+  const std::string& system = scenario.model.system;
+  Scenario::Plant& plant = scenario.plant;
+  if (name == "analytic") {
+    plant.kind = "analytic";
+    return scenario;
+  }
+  std::string mjcf = name == "mujoco" ? plant.mjcf : "";
+  const auto shipped = std::ranges::find_if(shipped_plants(), [&](const ShippedPlant& entry) {
+    return entry.name == name && entry.system == system;
+  });
+  if (shipped != shipped_plants().end()) mjcf = find_mjcf(shipped->mjcf, "");
+  if (mjcf.empty() && std::filesystem::path(name).extension() == ".xml") {
+    mjcf = find_mjcf(name, std::filesystem::current_path().string());
+  }
+  if (mjcf.empty()) {
+    throw InputError(
+        {.key = "--plant",
+         .found = name,
+         .expected = "an MJCF file that exists, or " + expected_names(name, plant_names(system))});
+  }
+  plant.kind = "mujoco";
+  plant.mjcf = std::move(mjcf);
+  return scenario;
+}
+
+}  // namespace qsmpc
