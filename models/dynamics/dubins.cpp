@@ -5,6 +5,7 @@
 
 #include "models/dynamics/dubins_batch.hpp"
 #include "models/dynamics/parameter_checks.hpp"
+#include "models/dynamics/spectral_norm.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
 namespace qsmpc {
@@ -37,14 +38,6 @@ class DubinsDynamics final : public TemplatedDynamics<Dubins> {
     pullback_dubins(model(), states, next_adjoint, state_adjoint, input_adjoint);
   }
 };
-
-/// Largest singular value of [[a, b], [c, d]].
-double spectral_norm(double a, double b, double c, double d) {
-  const double sum = a * a + b * b + c * c + d * d;
-  const double determinant = a * d - b * c;
-  const double root = std::sqrt(std::max(0.0, sum * sum - 4.0 * determinant * determinant));
-  return std::sqrt(0.5 * (sum + root));
-}
 
 }  // namespace
 

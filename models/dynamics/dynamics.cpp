@@ -8,6 +8,7 @@
 #include "models/dynamics/cart_pole.hpp"
 #include "models/dynamics/double_integrator.hpp"
 #include "models/dynamics/dubins.hpp"
+#include "models/dynamics/dubins_rk4.hpp"
 
 namespace qsmpc {
 namespace {
@@ -22,6 +23,7 @@ struct Registration {
 const std::vector<Registration>& registrations() {
   static const std::vector<Registration> table = {
       {dubins_entry(), make_dubins},
+      {dubins_rk4_entry(), make_dubins_rk4},
       {bicycle_entry(), make_bicycle},
       {double_integrator_entry(), make_double_integrator},
       {cart_pole_entry(), make_cart_pole},

@@ -64,7 +64,7 @@ struct Family {
 Family random_family(Generator& generator) {
   const double which = uniform(generator, 0.0, 1.0);
   if (which < 0.55) {
-    return {.system = "dubins",
+    return {.system = which < 0.35 ? "dubins" : "dubins_rk4",
             .parameters = {{"speed", uniform(generator, 0.5, 3.0)}},
             .start = uniform_vector(generator, 3, -2.0, 2.0),
             .walls = {0, 1, 2}};
