@@ -10,6 +10,7 @@
 #include "controller/planning/ocp_solver.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/trace/json_values.hpp"
+#include "harness/trace/residuals.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
@@ -49,17 +50,10 @@ Distribution distribution_of(const std::vector<double>& sorted) {
           .mean = sum / static_cast<double>(sorted.size())};
 }
 
-/// The true states at the control instants, the last one included where it is known.
-std::vector<Eigen::VectorXd> true_states(const Trace& trace) {
-  std::vector<Eigen::VectorXd> states;
-  for (const StepRecord& step : trace.steps) states.push_back(step.state);
-  if (trace.final_state.size() > 0) states.push_back(trace.final_state);
-  return states;
-}
-
 void add_clearance(const Trace& trace, Summary& summary) {
   summary.min_clearance = std::numeric_limits<double>::infinity();
-  for (const Eigen::VectorXd& state : true_states(trace)) {
+  const Eigen::MatrixXd states = true_states(trace);
+  for (const auto& state : states.colwise()) {
     summary.min_clearance =
         std::min(summary.min_clearance, clearance(state, trace.scenario.safe_set));
   }
@@ -112,24 +106,12 @@ void add_mismatch(const Trace& trace, Summary& summary) {
   const auto model =
       make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   const int dim = model->state_dim();
-  const std::vector<Eigen::VectorXd> states = true_states(trace);
-  // A period that broke has no result.
-  std::size_t periods = states.empty() ? 0 : states.size() - 1;
-  if (trace.outcome == Outcome::kFault && periods == trace.steps.size() && periods > 0) --periods;
-  Eigen::MatrixXd residuals(dim, static_cast<Eigen::Index>(periods));
-  StateBatch predicted(dim, 1);
-  for (std::size_t k = 0; k < periods; ++k) {
-    const StateBatch state = states[k];
-    const StateBatch input = trace.steps[k].input;
-    model->step(state, input, predicted);
-    residuals.col(static_cast<Eigen::Index>(k)) =
-        states[k + 1] - trace.steps[k].disturbance - predicted.col(0);
-  }
+  const Eigen::MatrixXd residuals = one_step_residuals(trace, *model);
   summary.mismatch_mean = Eigen::VectorXd::Zero(dim);
   summary.mismatch_rmse = Eigen::VectorXd::Zero(dim);
   summary.mismatch_covariance = Eigen::MatrixXd::Zero(dim, dim);
-  if (periods == 0) return;
-  const auto count = static_cast<double>(periods);
+  if (residuals.cols() == 0) return;
+  const auto count = static_cast<double>(residuals.cols());
   summary.mismatch_mean = residuals.rowwise().mean();
   summary.mismatch_rmse = (residuals.array().square().rowwise().sum() / count).sqrt();
   const Eigen::MatrixXd centred = residuals.colwise() - summary.mismatch_mean;

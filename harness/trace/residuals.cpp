@@ -1,0 +1,39 @@
+#include "harness/trace/residuals.hpp"
+
+#include <cstddef>
+
+namespace qsmpc {
+
+Eigen::MatrixXd true_states(const Trace& trace) {
+  const bool ended = trace.final_state.size() > 0;
+  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
+  const Eigen::Index dim = ended       ? trace.final_state.size()
+                           : steps > 0 ? trace.steps.front().state.size()
+                                       : 0;
+  Eigen::MatrixXd states(dim, steps + (ended ? 1 : 0));
+  for (Eigen::Index k = 0; k < steps; ++k) {
+    states.col(k) = trace.steps[static_cast<std::size_t>(k)].state;
+  }
+  if (ended) states.col(steps) = trace.final_state;
+  return states;
+}
+
+Eigen::MatrixXd one_step_residuals(const Trace& trace, const Dynamics& model) {
+  const Eigen::MatrixXd states = true_states(trace);
+  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
+  Eigen::Index periods = states.cols() > 0 ? states.cols() - 1 : 0;
+  // A period that broke has no result.
+  if (trace.outcome == Outcome::kFault && periods == steps && periods > 0) --periods;
+  Eigen::MatrixXd residuals(model.state_dim(), periods);
+  StateBatch predicted(model.state_dim(), 1);
+  for (Eigen::Index k = 0; k < periods; ++k) {
+    const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
+    const StateBatch state = states.col(k);
+    const StateBatch input = step.input;
+    model.step(state, input, predicted);
+    residuals.col(k) = states.col(k + 1) - step.disturbance - predicted.col(0);
+  }
+  return residuals;
+}
+
+}  // namespace qsmpc
