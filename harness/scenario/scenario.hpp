@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "controller/planning/safe_set.hpp"
+#include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
@@ -25,6 +26,9 @@ struct Scenario {
   struct Plant {
     std::string kind = "mujoco";  ///< a name from `qsmpc list plants`: "analytic" or "mujoco"
     std::string mjcf;             ///< absolute path of the XML; also drawn for an analytic plant
+    std::optional<double> time_step;  ///< the simulator's, s; else the one in the XML
+    /// How the system appears in the MuJoCo model; else what the XML says of itself.
+    std::optional<PlantMapping> mapping;
   };
   struct GaussianValue {
     Eigen::VectorXd mean;        ///< state_dim

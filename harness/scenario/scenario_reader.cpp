@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/value_checks.hpp"
 
@@ -23,6 +24,7 @@ constexpr std::size_t kLongestPath = 1024;        // bytes
 constexpr std::size_t kMostObstacles = 1000;      // every particle is held against each of them
 constexpr double kShortestPeriod = 1e-4;          // s, a simulator's step at its finest
 constexpr double kLongestPeriod = 10.0;           // s
+constexpr double kShortestSimulatorStep = 1e-6;   // s
 constexpr double kLongestDeadline = 1e6;          // s; well within what a clock can count
 constexpr WholeRange kHorizonRange{1, kMostStages};
 constexpr WholeRange kPointsRange{1, 100000};
@@ -102,6 +104,7 @@ class ScenarioReader {
   void read_model();
   void check_parameters(Section& model, const SystemEntry& entry);
   void read_plant();
+  void read_mapping(Section& plant);
   void read_initial_state();
   void read_disturbance();
   void read_safe_set();
@@ -190,7 +193,20 @@ void ScenarioReader::read_plant() {
                "a file beside the scenario, or " + expected_names(name, shipped_mjcf_names()),
                "no file " + name);
   }
+  read_mapping(plant);
   plant.refuse_unread();
+}
+
+void ScenarioReader::read_mapping(Section& plant) {
+  if (plant.has("time_step")) {
+    scenario_.plant.time_step = plant.number("time_step", kShortestSimulatorStep,
+                                             {kShortestSimulatorStep, scenario_.time_step});
+  } else {
+    (void)plant.number("time_step", kShortestSimulatorStep);
+  }
+  if (dynamics_ == nullptr) return;
+  scenario_.plant.mapping = read_plant_mapping(
+      plant, {.description = system(), .parameters = scenario_.model.parameters});
 }
 
 Eigen::MatrixXd ScenarioReader::semidefinite(Section& section, const std::string& key,

@@ -1,37 +1,22 @@
 // to_yaml: the writing side of scenario_file.hpp.
 #include <cmath>
-#include <string_view>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
+#include "harness/scenario/yaml_text.hpp"
 
 namespace qsmpc {
 namespace {
-
-// The shortest text that reads back as the same double.
-std::string number(double value) {
-  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
-  return fmt::format("{}", value);
-}
-
-// Always quoted: no text can then be taken for a number, a null or the syntax around it.
-std::string quoted(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
-}
 
 template <class Values>
 std::string list(const Values& values) {
   std::string out = "[";
   for (Eigen::Index i = 0; i < values.size(); ++i) {
-    out += (i == 0 ? "" : ", ") + number(values[i]);
+    out += (i == 0 ? "" : ", ") + yaml_number(values[i]);
   }
   return out + "]";
 }
@@ -59,7 +44,7 @@ std::string box(const Box& box, const std::vector<Coordinate>& states) {
   for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
     out +=
         fmt::format("{}{}: [{}, {}]", i == 0 ? "" : ", ", states[static_cast<std::size_t>(i)].name,
-                    number(box.lower[i]), number(box.upper[i]));
+                    yaml_number(box.lower[i]), yaml_number(box.upper[i]));
   }
   return out + "}";
 }
@@ -67,8 +52,16 @@ std::string box(const Box& box, const std::vector<Coordinate>& states) {
 std::string model_text(const Scenario& scenario) {
   std::string out = "model: {system: " + scenario.model.system;
   for (const auto& [name, value] : scenario.model.parameters) {
-    out += fmt::format(", {}: {}", name, number(value));
+    out += fmt::format(", {}: {}", name, yaml_number(value));
   }
+  return out + "}\n";
+}
+
+std::string plant_text(const Scenario::Plant& plant) {
+  std::string out =
+      fmt::format("plant: {{kind: {}, mjcf: {}", plant.kind, quoted_yaml(mjcf_name(plant.mjcf)));
+  if (plant.time_step) out += ", time_step: " + yaml_number(*plant.time_step);
+  if (plant.mapping) out += ", " + plant_mapping_text(*plant.mapping);
   return out + "}\n";
 }
 
@@ -106,10 +99,11 @@ std::string controller_text(const Scenario::Controller& controller,
                      square(controller.cost.state), square(controller.cost.input),
                      square(controller.cost.terminal));
   out += fmt::format("  penalty: {{shape: {}, box: {}, obstacle: {}, length: {}}}\n", penalty.shape,
-                     number(penalty.box), number(penalty.obstacle), number(penalty.length));
+                     yaml_number(penalty.box), yaml_number(penalty.obstacle),
+                     yaml_number(penalty.length));
   out += fmt::format("  input_bounds: {}\n", input_bounds(controller, inputs));
   if (std::isfinite(controller.deadline)) {
-    out += fmt::format("  deadline: {}\n", number(controller.deadline));
+    out += fmt::format("  deadline: {}\n", yaml_number(controller.deadline));
   }
   return out + fmt::format("  max_iterations: {}\n  threads: {}\n", controller.max_iterations,
                            controller.threads);
@@ -123,18 +117,17 @@ std::string to_yaml(const Scenario& scenario) {
   const SystemDescription& system = dynamics->description();
   const Scenario::Video& video = scenario.video;
   std::string out;
-  out += fmt::format("name: {}\ndescription: {}\nseed: {}\n", quoted(scenario.name),
-                     quoted(scenario.description), scenario.seed);
+  out += fmt::format("name: {}\ndescription: {}\nseed: {}\n", quoted_yaml(scenario.name),
+                     quoted_yaml(scenario.description), scenario.seed);
   out += model_text(scenario);
-  out += fmt::format("plant: {{kind: {}, mjcf: {}}}\n", scenario.plant.kind,
-                     quoted(mjcf_name(scenario.plant.mjcf)));
-  out += fmt::format("time_step: {}\n", number(scenario.time_step));
+  out += plant_text(scenario.plant);
+  out += fmt::format("time_step: {}\n", yaml_number(scenario.time_step));
   out += fmt::format("initial_state:\n  mean: {}\n  covariance: {}\n",
                      list(scenario.initial_state.mean), square(scenario.initial_state.covariance));
   out += fmt::format("disturbance:\n  covariance: {}\n", square(scenario.disturbance.covariance));
   out += safe_set_text(scenario.safe_set, system.states);
   out += fmt::format("target:\n  state: {}\n  radius: {}\n", list(scenario.target.state),
-                     number(scenario.target.radius));
+                     yaml_number(scenario.target.radius));
   out += controller_text(scenario.controller, system.inputs);
   out += fmt::format("limit: {{steps: {}, stop_when_unsafe: {}}}\n", scenario.step_limit,
                      scenario.stop_when_unsafe);

@@ -206,6 +206,22 @@ std::string Section::text(const std::string& key, const std::string& fallback,
   return text;
 }
 
+std::vector<std::string> Section::texts(const std::string& key, std::size_t longest) {
+  std::vector<std::string> texts;
+  const std::size_t size = list_size(key);
+  for (std::size_t i = 0; i < size; ++i) {
+    const YamlNode& item = get(key)->items[i];
+    const bool is_text = item.kind == YamlNode::Kind::kText;
+    if (is_text && item.text.size() <= longest && !find_text_problem(item.text)) {
+      texts.push_back(item.text);
+    } else {
+      problems_->add(item, fmt::format("{}.{}", path_of(key), i), qsmpc::describe(item),
+                     fmt::format("text of at most {} bytes without control characters", longest));
+    }
+  }
+  return texts;
+}
+
 std::string Section::name(const std::string& key, const std::string& fallback,
                           const std::vector<std::string>& known) {
   const YamlNode* node = take(key);

@@ -88,6 +88,8 @@ class Section {
   /// A scalar as it is written, of at most `longest` bytes and without control characters.
   [[nodiscard]] std::string text(const std::string& key, const std::string& fallback,
                                  std::size_t longest);
+  /// A list of scalars, each as `text` takes them; empty without one.
+  [[nodiscard]] std::vector<std::string> texts(const std::string& key, std::size_t longest);
   /// A scalar that is one of `known`.
   [[nodiscard]] std::string name(const std::string& key, const std::string& fallback,
                                  const std::vector<std::string>& known);

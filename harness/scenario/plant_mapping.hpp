@@ -1,0 +1,126 @@
+// How a system's states and inputs appear in a MuJoCo model, as plain values: elements by name, and
+// what the model's file does not hold itself. A scenario may give it (`plant.state`, `plant.input`,
+// …), and so may a MuJoCo file, in a text of its own; both are read by plant_mapping_reader.hpp.
+// Keys and their meaning: docs/plants.md.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace qsmpc {
+
+/// Where in a MuJoCo model a number stands.
+enum class QuantitySource { kJoint, kBody, kSensor };
+
+/// A state = gain · quantity + offset.
+struct PlantQuantity {
+  QuantitySource source = QuantitySource::kJoint;
+  std::string element;   ///< name of the joint, body or sensor
+  std::string quantity;  ///< one of `joint_quantities` or `body_quantities`; empty for a sensor
+  int component = 0;     ///< which of a sensor's numbers
+  double gain = 1.0;     ///< not 0
+  double offset = 0.0;
+};
+
+/// "position" (m or rad) and "velocity" (m/s or rad/s) of a slide or hinge joint.
+[[nodiscard]] const std::vector<std::string>& joint_quantities();
+
+/// Of a body: "x", "y", "z" (m, of its origin in the world), "roll", "pitch", "yaw" (rad, the last
+/// counted on over turns), "velocity_x", "velocity_y" (m/s, in the world's axes), "forward_speed",
+/// "lateral_speed" (m/s, of its origin along its own level x and y axes), "yaw_rate" (rad/s, about
+/// the world's z axis).
+[[nodiscard]] const std::vector<std::string>& body_quantities();
+
+/// What an input adds to the control of an actuator: gain · input + offset.
+struct ControlTerm {
+  std::string actuator;
+  double gain = 1.0;
+  double offset = 0.0;
+};
+
+/// A number: a constant of the system by its name, times gain, or, without a name, the gain itself.
+struct PlantConstant {
+  std::string parameter;
+  double gain = 1.0;
+};
+
+/// A constant that is added to the control of an actuator.
+struct HoldTerm {
+  std::string actuator;
+  PlantConstant constant;
+};
+
+/// A wheel that is steered about a joint by a servo whose control is the angle (rad).
+struct SteeredWheel {
+  std::string joint;
+  std::string actuator;
+};
+
+/// Low-level loop: the input becomes the angle of each steered wheel at which it rolls without slip
+/// while the vehicle turns about a point in line with its fixed axle. The input is a yaw rate
+/// (rad/s), which takes a speed, or else the steering angle (rad) of a wheel in the middle.
+struct AckermannLoop {
+  std::string input;
+  std::optional<PlantConstant> speed;   ///< m/s, > 0
+  std::vector<SteeredWheel> wheels;     ///< at least one
+  std::vector<std::string> fixed_axle;  ///< joints of the unsteered wheels, at least one
+};
+
+/// Low-level loop: the velocity servo `actuator` (rad/s) holds the driven wheels at the angular
+/// velocity of `speed`.
+struct SpeedHoldLoop {
+  PlantConstant speed;  ///< m/s, > 0
+  std::string actuator;
+  std::string wheel;  ///< joint of a driven wheel
+};
+
+/// Forces on a body that moves in the plane, those of Eq. 5-4 of the reference thesis: linear tyres
+/// at two axles, and the force that brings the forward acceleration.
+struct AxleForces {
+  std::string body;
+  std::string acceleration;      ///< input, m/s²
+  std::string steering;          ///< input, rad
+  std::string front_axle;        ///< site
+  std::string rear_axle;         ///< site
+  double front_stiffness = 0.0;  ///< N/rad, > 0
+  double rear_stiffness = 0.0;   ///< N/rad, > 0
+  double slowest = 0.0;          ///< m/s, > 0: slip is taken at this speed at least
+};
+
+struct TyreWheel {
+  std::string joint;                 ///< that the wheel spins about
+  double cornering_stiffness = 0.0;  ///< N/rad, > 0
+};
+
+/// Forces where wheels touch the ground: tyres that slip along and across, both limited by friction
+/// times load.
+struct TyreForces {
+  std::vector<TyreWheel> wheels;        ///< at least one
+  double longitudinal_stiffness = 0.0;  ///< N by unit of slip, > 0
+  double friction = 0.0;                ///< > 0
+  double slowest = 0.0;                 ///< m/s, > 0: slip is taken at this speed at least
+};
+
+using PlantLoop = std::variant<AckermannLoop, SpeedHoldLoop, AxleForces, TyreForces>;
+
+/// The simulator's time steps that a model was made for, s.
+struct TimeStepRange {
+  double least = 0.0;
+  double most = 0.0;
+};
+
+struct PlantMapping {
+  std::map<std::string, PlantQuantity> states;             ///< one for each state of the system
+  std::map<std::string, std::vector<ControlTerm>> inputs;  ///< those that act by themselves
+  std::vector<HoldTerm> holds;
+  std::vector<PlantLoop> loops;
+  std::vector<std::string> rolling;  ///< joints of wheels that spin as the vehicle moves, on reset
+  std::map<std::string, double> rate_limits;  ///< of controls, by actuator, unit/s
+  double input_delay = 0.0;                   ///< s until an input acts
+  std::optional<TimeStepRange> time_steps;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,291 @@
+#include "harness/scenario/plant_mapping_reader.hpp"
+
+#include <algorithm>
+#include <array>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/yaml_tree.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr std::size_t kLongestElement = 200;  // bytes of a name in a MuJoCo model
+constexpr std::size_t kMostItems = 100;       // of a list in a mapping
+constexpr int kMostComponents = 1000;         // numbers of one sensor
+constexpr double kLongestDelay = 10.0;        // s
+constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
+constexpr std::array kMappingKeys = {"state",   "input",      "hold",        "loops",
+                                     "rolling", "rate_limit", "input_delay", "time_steps"};
+
+std::vector<std::string> names_of(const std::vector<Coordinate>& coordinates) {
+  std::vector<std::string> names;
+  for (const Coordinate& coordinate : coordinates) names.push_back(coordinate.name);
+  return names;
+}
+
+class MappingReader {
+ public:
+  MappingReader(Section& section, const MappedSystem& system)
+      : section_(section), system_(system) {}
+
+  PlantMapping read() {
+    read_states();
+    read_inputs();
+    const std::size_t holds = count(section_, "hold");
+    for (std::size_t i = 0; i < holds; ++i) {
+      Section item = section_.item("hold", i);
+      mapping_.holds.push_back({.actuator = element(item, "actuator"), .constant = constant(item)});
+      item.refuse_unread();
+    }
+    const std::size_t loops = count(section_, "loops");
+    for (std::size_t i = 0; i < loops; ++i) read_loop(i);
+    mapping_.rolling = section_.texts("rolling", kLongestElement);
+    read_timing();
+    require_inputs();
+    return std::move(mapping_);
+  }
+
+ private:
+  std::string element(Section& section, const std::string& key) {
+    section.require(key, "the name of an element of the MuJoCo model");
+    return section.text(key, "", kLongestElement);
+  }
+
+  double not_zero(Section& section, const std::string& key) {
+    const double value = section.number(key, 1.0);
+    if (value == 0.0) section.note(key, "a number other than 0");
+    return value;
+  }
+
+  static double positive(Section& section, const std::string& key) {
+    section.require(key, "a number above 0");
+    return section.number(key, 1.0, kPositive);
+  }
+
+  static std::size_t count(Section& section, const std::string& key) {
+    const std::size_t size = section.list_size(key);
+    if (size > kMostItems) section.note(key, fmt::format("at most {} items", kMostItems));
+    return std::min(size, kMostItems);
+  }
+
+  PlantConstant constant(Section& section) {
+    PlantConstant result;
+    std::vector<std::string> known;
+    for (const auto& [name, value] : system_.parameters) known.push_back(name);
+    if (section.has("parameter")) {
+      result.parameter = section.name("parameter", "", known);
+    } else {
+      section.require("gain", "a number, or a `parameter` of the system");
+    }
+    result.gain = section.number("gain", 1.0);
+    return result;
+  }
+
+  PlantConstant constant_under(Section& section, const std::string& key) {
+    section.require(key, "a mapping with `parameter` or `gain`");
+    Section inner = section.section(key);
+    PlantConstant result = constant(inner);
+    inner.refuse_unread();
+    return result;
+  }
+
+  std::string input_name(Section& section, const std::string& key) {
+    section.require(key, "an input of the system");
+    const std::string name = section.name(key, "", names_of(system_.description.inputs));
+    used_.insert(name);
+    return name;
+  }
+
+  void read_states() {
+    Section states = section_.section("state");
+    for (const std::string& name : names_of(system_.description.states)) {
+      states.require(name, "where the MuJoCo model has it: a joint, body or sensor");
+      if (!states.has(name)) continue;
+      Section item = states.section(name);
+      if (item.present()) mapping_.states[name] = quantity(item);
+    }
+    states.refuse_unread();
+  }
+
+  PlantQuantity quantity(Section& item) {
+    PlantQuantity result;
+    const int sources = item.has("joint") + item.has("body") + item.has("sensor");
+    if (sources != 1) {
+      item.note_here("exactly one of joint, body and sensor",
+                     sources == 0 ? "none" : "more than one");
+    }
+    if (item.has("sensor")) {
+      result.source = QuantitySource::kSensor;
+      result.element = element(item, "sensor");
+      result.component = item.whole("component", 0, {0, kMostComponents});
+    } else if (item.has("body")) {
+      result.source = QuantitySource::kBody;
+      result.element = element(item, "body");
+      item.require("quantity", expected_names("", body_quantities()));
+      result.quantity = item.name("quantity", "x", body_quantities());
+    } else {
+      result.element = element(item, "joint");
+      result.quantity = item.name("quantity", "position", joint_quantities());
+    }
+    result.gain = not_zero(item, "gain");
+    result.offset = item.number("offset", 0.0);
+    item.refuse_unread();
+    return result;
+  }
+
+  void read_inputs() {
+    Section inputs = section_.section("input");
+    for (const std::string& name : names_of(system_.description.inputs)) {
+      const std::size_t terms = count(inputs, name);
+      for (std::size_t i = 0; i < terms; ++i) {
+        Section item = inputs.item(name, i);
+        mapping_.inputs[name].push_back({.actuator = element(item, "actuator"),
+                                         .gain = not_zero(item, "gain"),
+                                         .offset = item.number("offset", 0.0)});
+        item.refuse_unread();
+        used_.insert(name);
+      }
+    }
+    inputs.refuse_unread();
+  }
+
+  void read_loop(std::size_t index) {
+    Section loop = section_.item("loops", index);
+    if (!loop.present()) return;
+    const std::vector<std::string> kinds = {"ackermann", "speed_hold", "axle_forces",
+                                            "tyre_forces"};
+    loop.require("kind", expected_names("", kinds));
+    const std::string kind = loop.name("kind", "", kinds);
+    if (kind == "ackermann") mapping_.loops.emplace_back(ackermann(loop));
+    if (kind == "speed_hold") {
+      mapping_.loops.emplace_back(SpeedHoldLoop{.speed = constant_under(loop, "speed"),
+                                                .actuator = element(loop, "actuator"),
+                                                .wheel = element(loop, "wheel")});
+    }
+    if (kind == "axle_forces") mapping_.loops.emplace_back(axle_forces(loop));
+    if (kind == "tyre_forces") mapping_.loops.emplace_back(tyre_forces(loop));
+    if (!kind.empty()) loop.refuse_unread();
+  }
+
+  AckermannLoop ackermann(Section& loop) {
+    AckermannLoop result{.input = input_name(loop, "input"),
+                         .speed = {},
+                         .wheels = {},
+                         .fixed_axle = loop.texts("fixed_axle", kLongestElement)};
+    if (loop.has("speed")) result.speed = constant_under(loop, "speed");
+    const std::size_t wheels = count(loop, "wheels");
+    for (std::size_t i = 0; i < wheels; ++i) {
+      Section wheel = loop.item("wheels", i);
+      result.wheels.push_back(
+          {.joint = element(wheel, "joint"), .actuator = element(wheel, "actuator")});
+      wheel.refuse_unread();
+    }
+    if (wheels == 0) loop.note("wheels", "a list of at least one wheel");
+    if (result.fixed_axle.empty()) loop.note("fixed_axle", "a list of at least one joint");
+    return result;
+  }
+
+  AxleForces axle_forces(Section& loop) {
+    return {.body = element(loop, "body"),
+            .acceleration = input_name(loop, "acceleration"),
+            .steering = input_name(loop, "steering"),
+            .front_axle = element(loop, "front_axle"),
+            .rear_axle = element(loop, "rear_axle"),
+            .front_stiffness = positive(loop, "front_stiffness"),
+            .rear_stiffness = positive(loop, "rear_stiffness"),
+            .slowest = positive(loop, "slowest")};
+  }
+
+  TyreForces tyre_forces(Section& loop) {
+    TyreForces result{.wheels = {},
+                      .longitudinal_stiffness = positive(loop, "longitudinal_stiffness"),
+                      .friction = positive(loop, "friction"),
+                      .slowest = positive(loop, "slowest")};
+    const std::size_t wheels = count(loop, "wheels");
+    for (std::size_t i = 0; i < wheels; ++i) {
+      Section wheel = loop.item("wheels", i);
+      result.wheels.push_back({.joint = element(wheel, "joint"),
+                               .cornering_stiffness = positive(wheel, "cornering_stiffness")});
+      wheel.refuse_unread();
+    }
+    if (wheels == 0) loop.note("wheels", "a list of at least one wheel");
+    return result;
+  }
+
+  void read_timing() {
+    Section limits = section_.section("rate_limit");
+    for (const std::string& actuator : limits.keys()) {
+      mapping_.rate_limits[actuator] = limits.number(actuator, 1.0, kPositive);
+    }
+    mapping_.input_delay =
+        section_.number("input_delay", 0.0, {.least = 0.0, .most = kLongestDelay});
+    if (const auto range = section_.vector("time_steps", 2)) {
+      mapping_.time_steps = {.least = (*range)[0], .most = (*range)[1]};
+      if (!((*range)[0] > 0.0 && (*range)[0] <= (*range)[1])) {
+        section_.note("time_steps", "[least, most], 0 < least <= most");
+      }
+    }
+  }
+
+  void require_inputs() {
+    for (const std::string& name : names_of(system_.description.inputs)) {
+      if (used_.contains(name)) continue;
+      section_.note("input", fmt::format("what the input {} does: a list of actuators, each with "
+                                         "gain and offset",
+                                         name));
+    }
+  }
+
+  Section& section_;
+  const MappedSystem& system_;
+  PlantMapping mapping_;
+  std::set<std::string> used_;  // inputs that act on something
+};
+
+}  // namespace
+
+const std::vector<std::string>& joint_quantities() {
+  static const std::vector<std::string> names{"position", "velocity"};
+  return names;
+}
+
+const std::vector<std::string>& body_quantities() {
+  static const std::vector<std::string> names{
+      "x",       "y",          "z",          "roll",          "pitch",
+      "yaw",     "velocity_x", "velocity_y", "forward_speed", "lateral_speed",
+      "yaw_rate"};
+  return names;
+}
+
+std::optional<PlantMapping> read_plant_mapping(Section& plant, const MappedSystem& system) {
+  const bool any =
+      std::ranges::any_of(kMappingKeys, [&](const char* key) { return plant.has(key); });
+  if (!any) {
+    for (const char* key : kMappingKeys) (void)plant.section(key);  // known, though absent
+    return std::nullopt;
+  }
+  return MappingReader(plant, system).read();
+}
+
+PlantMapping parse_plant_mapping(const std::string& text, const std::string& file,
+                                 const MappedSystem& system) {
+  const YamlNode tree = parse_yaml(text, file);
+  Problems problems(file);
+  Section section(tree, problems);
+  PlantMapping mapping = MappingReader(section, system).read();
+  section.refuse_unread();
+  if (!problems.empty()) {
+    InputError::Where where = problems.sorted().front();
+    where.line = 0;  // counted within the text, not in the file
+    throw InputError(where);
+  }
+  return mapping;
+}
+
+}  // namespace qsmpc

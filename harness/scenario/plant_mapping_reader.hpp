@@ -1,0 +1,33 @@
+// Reading and writing how a system appears in a MuJoCo model: the keys `state`, `input`, `hold`,
+// `loops`, `rolling`, `rate_limit`, `input_delay` and `time_steps` of `plant`, or the same keys in
+// a text within a MuJoCo file.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "harness/scenario/plant_mapping.hpp"
+#include "harness/scenario/yaml_section.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// What the mapping's names refer to besides the MuJoCo model.
+struct MappedSystem {
+  const SystemDescription& description;
+  const ParameterMap& parameters;  ///< all of them
+};
+
+/// The mapping in `plant`, or nothing where none of its keys are there. Problems are noted, also a
+/// state without a quantity and an input that nothing uses.
+[[nodiscard]] std::optional<PlantMapping> read_plant_mapping(Section& plant,
+                                                             const MappedSystem& system);
+
+/// The mapping that `text` is. Throws InputError with `file` on anything that is wrong.
+[[nodiscard]] PlantMapping parse_plant_mapping(const std::string& text, const std::string& file,
+                                               const MappedSystem& system);
+
+/// `mapping` as what stands between the braces of a mapping in YAML: "state: {…}, input: {…}".
+[[nodiscard]] std::string plant_mapping_text(const PlantMapping& mapping);
+
+}  // namespace qsmpc

@@ -1,0 +1,124 @@
+// plant_mapping_text: the writing side of plant_mapping_reader.hpp.
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/scenario/plant_mapping_reader.hpp"
+#include "harness/scenario/yaml_text.hpp"
+
+namespace qsmpc {
+namespace {
+
+/// "[a, b]" of what `text` makes of each item.
+template <class Items, class Text>
+std::string list_of(const Items& items, Text text) {
+  std::string out = "[";
+  for (const auto& item : items) out += (out.size() == 1 ? "" : ", ") + text(item);
+  return out + "]";
+}
+
+std::string quantity_text(const PlantQuantity& quantity) {
+  std::string out;
+  switch (quantity.source) {
+    case QuantitySource::kSensor:
+      out = fmt::format("sensor: {}, component: {}", quoted_yaml(quantity.element),
+                        quantity.component);
+      break;
+    case QuantitySource::kBody:
+    case QuantitySource::kJoint:
+      out = fmt::format("{}: {}, quantity: {}",
+                        quantity.source == QuantitySource::kBody ? "body" : "joint",
+                        quoted_yaml(quantity.element), quantity.quantity);
+      break;
+  }
+  return fmt::format("{{{}, gain: {}, offset: {}}}", out, yaml_number(quantity.gain),
+                     yaml_number(quantity.offset));
+}
+
+std::string constant_text(const PlantConstant& constant) {
+  const std::string parameter =
+      constant.parameter.empty() ? "" : fmt::format("parameter: {}, ", constant.parameter);
+  return fmt::format("{}gain: {}", parameter, yaml_number(constant.gain));
+}
+
+struct LoopText {
+  std::string operator()(const AckermannLoop& loop) const {
+    const std::string speed =
+        loop.speed ? fmt::format("speed: {{{}}}, ", constant_text(*loop.speed)) : "";
+    const auto wheel = [](const SteeredWheel& one) {
+      return fmt::format("{{joint: {}, actuator: {}}}", quoted_yaml(one.joint),
+                         quoted_yaml(one.actuator));
+    };
+    return fmt::format("{{kind: ackermann, input: {}, {}wheels: {}, fixed_axle: {}}}", loop.input,
+                       speed, list_of(loop.wheels, wheel), list_of(loop.fixed_axle, quoted_yaml));
+  }
+
+  std::string operator()(const SpeedHoldLoop& loop) const {
+    return fmt::format("{{kind: speed_hold, speed: {{{}}}, actuator: {}, wheel: {}}}",
+                       constant_text(loop.speed), quoted_yaml(loop.actuator),
+                       quoted_yaml(loop.wheel));
+  }
+
+  std::string operator()(const AxleForces& loop) const {
+    return fmt::format(
+        "{{kind: axle_forces, body: {}, acceleration: {}, steering: {}, front_axle: {}, "
+        "rear_axle: {}, front_stiffness: {}, rear_stiffness: {}, slowest: {}}}",
+        quoted_yaml(loop.body), loop.acceleration, loop.steering, quoted_yaml(loop.front_axle),
+        quoted_yaml(loop.rear_axle), yaml_number(loop.front_stiffness),
+        yaml_number(loop.rear_stiffness), yaml_number(loop.slowest));
+  }
+
+  std::string operator()(const TyreForces& loop) const {
+    const auto wheel = [](const TyreWheel& one) {
+      return fmt::format("{{joint: {}, cornering_stiffness: {}}}", quoted_yaml(one.joint),
+                         yaml_number(one.cornering_stiffness));
+    };
+    return fmt::format(
+        "{{kind: tyre_forces, wheels: {}, longitudinal_stiffness: {}, friction: {}, slowest: {}}}",
+        list_of(loop.wheels, wheel), yaml_number(loop.longitudinal_stiffness),
+        yaml_number(loop.friction), yaml_number(loop.slowest));
+  }
+};
+
+std::string inputs_text(const PlantMapping& mapping) {
+  const auto term = [](const ControlTerm& one) {
+    return fmt::format("{{actuator: {}, gain: {}, offset: {}}}", quoted_yaml(one.actuator),
+                       yaml_number(one.gain), yaml_number(one.offset));
+  };
+  std::string out;
+  for (const auto& [name, terms] : mapping.inputs) {
+    out += fmt::format("{}{}: {}", out.empty() ? "" : ", ", name, list_of(terms, term));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string plant_mapping_text(const PlantMapping& mapping) {
+  std::string states;
+  for (const auto& [name, quantity] : mapping.states) {
+    states += fmt::format("{}{}: {}", states.empty() ? "" : ", ", name, quantity_text(quantity));
+  }
+  const auto hold = [](const HoldTerm& term) {
+    return fmt::format("{{actuator: {}, {}}}", quoted_yaml(term.actuator),
+                       constant_text(term.constant));
+  };
+  const auto loop = [](const PlantLoop& one) { return std::visit(LoopText{}, one); };
+  std::string limits;
+  for (const auto& [actuator, rate] : mapping.rate_limits) {
+    limits += fmt::format("{}{}: {}", limits.empty() ? "" : ", ", quoted_yaml(actuator),
+                          yaml_number(rate));
+  }
+  std::string out = fmt::format(
+      "state: {{{}}}, input: {{{}}}, hold: {}, loops: {}, rolling: {}, rate_limit: {{{}}}, "
+      "input_delay: {}",
+      states, inputs_text(mapping), list_of(mapping.holds, hold), list_of(mapping.loops, loop),
+      list_of(mapping.rolling, quoted_yaml), limits, yaml_number(mapping.input_delay));
+  if (mapping.time_steps) {
+    out += fmt::format(", time_steps: [{}, {}]", yaml_number(mapping.time_steps->least),
+                       yaml_number(mapping.time_steps->most));
+  }
+  return out;
+}
+
+}  // namespace qsmpc
