@@ -54,6 +54,8 @@ void HorizonCost::hold(const Prediction& prediction, const Policy& policy) {
   resize_stages();
   noise_deviations_ = terms_.noise_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
   const QuadraticCost& cost = terms_.cost;
+  state_form_.centre = cost.target;
+  terminal_form_.centre = cost.target;
   const double noise = cost.state.cwiseProduct(terms_.noise_covariance).sum();
   Stage& first = stages_[0];
   first.points = prediction.stages[0].locations;

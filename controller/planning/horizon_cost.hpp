@@ -31,6 +31,9 @@ struct QuadraticCost {
   Eigen::MatrixXd input;     ///< R, input_dim x input_dim
   Eigen::MatrixXd terminal;  ///< Q_term, state_dim x state_dim
   Eigen::VectorXd target;    ///< r, state_dim
+  /// States whose target is meant modulo 2π. A planner shifts the target, for each plan, to what is
+  /// nearest to the belief's mean; HorizonCost takes it as it is.
+  std::vector<int> angles{};
 };
 
 /// The parts of the expected cost (Eq. 4-21).
@@ -62,8 +65,8 @@ class HorizonCost {
               const Policy& policy) = delete;
 
   /// From now on, holds the assignments of `prediction`, which must stay alive and unchanged, and
-  /// the gains, bounds and start of `policy`. The covariances are those of the terms, which may
-  /// have changed. Allocates only what the last prediction did not need.
+  /// the gains, bounds and start of `policy`. The covariances and the target are those of the
+  /// terms, which may have changed. Allocates only what the last prediction did not need.
   void hold(const Prediction& prediction, const Policy& policy);
   void hold(const Prediction&& prediction, const Policy& policy) = delete;
 

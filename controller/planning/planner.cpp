@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "controller/planning/angular_target.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -56,6 +58,7 @@ PropagatorSettings propagation(const PlannerSettings& settings) {
 Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
     : dynamics_(dynamics),
       settings_(checked(std::move(settings), dynamics)),
+      weights_(settings_.cost),
       constrained_(settings_.solver == "slsqp"),
       penalty_(settings_.penalty),
       predicted_noise_(settings_.propagator == "noise_free"
@@ -67,14 +70,14 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
       policies_(dynamics_, settings_),
       cost_({.dynamics = dynamics_,
              .safe_set = settings_.safe_set,
-             .cost = settings_.cost,
+             .cost = weights_,
              .penalty = constrained_ ? (penalty_.box = 0.0, penalty_) : penalty_,
              .noise_covariance = predicted_noise_,
              .within_covariance = within_},
             settings_.run),
       guess_(settings_, {.dynamics = dynamics_,
                          .safe_set = settings_.safe_set,
-                         .cost = settings_.cost,
+                         .cost = weights_,
                          .penalty = settings_.penalty,
                          .noise_covariance = no_noise_,
                          .within_covariance = within_}),
@@ -83,7 +86,7 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
   if (!settings_.safe_set.obstacles.empty()) {
     valleys_.emplace(settings_, HorizonCostTerms{.dynamics = dynamics_,
                                                  .safe_set = settings_.safe_set,
-                                                 .cost = settings_.cost,
+                                                 .cost = weights_,
                                                  .penalty = settings_.penalty,
                                                  .noise_covariance = no_noise_,
                                                  .within_covariance = no_noise_});
@@ -146,8 +149,7 @@ const Plan& Planner::plan(const Gaussian& belief) {
 /// it is.
 bool Planner::begin(const Gaussian& belief, Round& round) {
   Stopwatch stopwatch;
-  quantise_belief(belief, belief_);
-  within_ = belief_.within_covariance;
+  take_belief(belief);
   stopwatch.add_to(round.timing.quantise);
   const Plan* const previous = failed_ ? nullptr : last_;
   if (previous != nullptr) {
@@ -367,8 +369,7 @@ const Plan& Planner::prescribe(const Gaussian& belief,
           "the inputs must be within their bounds");
   Stopwatch stopwatch;
   prescribed_ = {};
-  quantise_belief(belief, belief_);
-  within_ = belief_.within_covariance;
+  take_belief(belief);
   prescribed_.belief = belief_;
   stopwatch.add_to(prescribed_.timing.quantise);
   prescribed_.gain_change.setZero(gain_change_.rows(), gain_change_.cols());
@@ -382,6 +383,14 @@ void Planner::prepare(const Eigen::MatrixXd& covariance) {
   GaussianQuantisation unused;
   quantise_belief({.mean = Eigen::VectorXd::Zero(dynamics_.state_dim()), .covariance = covariance},
                   unused);
+}
+
+/// Quantises the belief, and places the target that the cost is about: the same one for the whole
+/// plan, so that there is no kink between particles. The belief is checked before it is used.
+void Planner::take_belief(const Gaussian& belief) {
+  quantise_belief(belief, belief_);
+  within_ = belief_.within_covariance;
+  nearest_target(settings_.cost.target, settings_.cost.angles, belief.mean, weights_.target);
 }
 
 void Planner::quantise_belief(const Gaussian& belief, GaussianQuantisation& out) {

@@ -114,6 +114,7 @@ class Planner {
     Eigen::VectorXd z;
   };
 
+  void take_belief(const Gaussian& belief);
   void quantise_belief(const Gaussian& belief, GaussianQuantisation& out);
   [[nodiscard]] bool begin(const Gaussian& belief, Round& round);
   void make_search(Eigen::Index entries, Search& out);
@@ -132,6 +133,7 @@ class Planner {
 
   const Dynamics& dynamics_;
   PlannerSettings settings_;
+  QuadraticCost weights_;            // the cost about the target that is nearest to the belief
   bool constrained_;                 // whether the solver takes constraints
   Penalty penalty_;                  // what of the penalties is left to the cost
   Eigen::MatrixXd predicted_noise_;  // what of the noise the prediction carries

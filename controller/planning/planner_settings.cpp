@@ -1,5 +1,6 @@
 #include "controller/planning/planner_settings.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace qsmpc {
@@ -38,6 +39,9 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
   require_symmetric(settings.cost.input, "the input cost");
   require(settings.cost.target.size() == state_dim && settings.cost.target.allFinite(),
           "the target must be a finite state");
+  require(std::all_of(settings.cost.angles.begin(), settings.cost.angles.end(),
+                      [&](int index) { return index >= 0 && index < state_dim; }),
+          "the target's angles must be indices of states");
   require(settings.penalty.length > 0.0, "the penalty's length must be positive");
   require(settings.penalty.box >= 0.0 && settings.penalty.obstacle >= 0.0,
           "penalty weights must not be negative");

@@ -62,7 +62,8 @@ PlannerSettings settings_of(const Case& options, const Dynamics& dynamics) {
       .state = weights.asDiagonal(),
       .input = 0.1 * Eigen::MatrixXd::Identity(dynamics.input_dim(), dynamics.input_dim()),
       .terminal = weights.asDiagonal(),
-      .target = Eigen::VectorXd::Zero(dim)};
+      .target = Eigen::VectorXd::Zero(dim),
+      .angles = {dynamics.description().heading}};
   settings.cost.target.head<2>() << (car ? 5.0 : 40.0), 3.0;
   settings.safe_set = unbounded_safe_set(dim);
   settings.safe_set.bounds.lower.head<2>().setConstant(-1.0);
