@@ -30,7 +30,8 @@ PlannerSettings planner_settings(const Scenario& scenario) {
   settings.cost = {.state = controller.cost.state,
                    .input = controller.cost.input,
                    .terminal = controller.cost.terminal,
-                   .target = scenario.target.state};
+                   .target = scenario.target.state,
+                   .angles = scenario.target.angles};
   settings.penalty = {
       .shape = penalty.shape == "thesis" ? PenaltyShape::kThesis : PenaltyShape::kSmooth,
       .box = penalty.box,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "controller/certification/certificate.hpp"
+#include "controller/planning/angular_target.hpp"
 #include "controller/planning/planner.hpp"
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
@@ -32,7 +33,8 @@ double milliseconds_since(Clock::time_point start) {
 
 bool at_target(const Scenario& scenario, const SystemDescription& description,
                const Eigen::VectorXd& state) {
-  const Eigen::VectorXd offset = state - scenario.target.state;
+  const Eigen::VectorXd offset =
+      target_offset(scenario.target.state, scenario.target.angles, state);
   const int x = description.position_x;
   const int y = description.position_y;
   const double distance = x >= 0 && y >= 0 ? std::hypot(offset[x], offset[y]) : offset.norm();

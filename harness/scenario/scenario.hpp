@@ -38,8 +38,9 @@ struct Scenario {
     Eigen::MatrixXd covariance;  ///< of the noise in the model, state_dim x state_dim, per period
   };
   struct Target {
-    Eigen::VectorXd state;  ///< state_dim
-    double radius = 0.5;    ///< m, in the plane of position (or over all states without one)
+    Eigen::VectorXd state;      ///< state_dim
+    double radius = 0.5;        ///< m, in the plane of position (or over all states without one)
+    std::vector<int> angles{};  ///< indices of states whose target is meant modulo 2π
   };
   struct Quantisation {
     int state = 100;                    ///< points of the belief

@@ -110,6 +110,7 @@ class ScenarioReader {
   void read_safe_set();
   Box read_box(Section& section, bool& any);
   void read_target();
+  void read_angles(Section& target);
   void read_controller();
   void read_gain(Section& controller);
   void read_solver(Section& controller);
@@ -292,7 +293,29 @@ void ScenarioReader::read_target() {
   scenario_.target.state = state.value_or(Eigen::VectorXd::Zero(state_dim()));
   if (state) check_safe(section, "state", *state);
   scenario_.target.radius = section.number("radius", scenario_.target.radius, kPositive);
+  read_angles(section);
   section.refuse_unread();
+}
+
+void ScenarioReader::read_angles(Section& section) {
+  std::vector<std::string> known;
+  for (const Coordinate& state : system().states) {
+    if (state.is_angle) known.push_back(state.name);
+  }
+  std::vector<int>& angles = scenario_.target.angles;
+  for (const std::string& name : section.texts("angles", kLongestName)) {
+    const int index = system().state_index(name);
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      section.note("angles",
+                   known.empty() ? "no names, since no state of the system is an angle"
+                                 : "states that are angles, " + expected_names(name, known),
+                   name);
+    } else if (std::find(angles.begin(), angles.end(), index) != angles.end()) {
+      section.note("angles", "each state once", name + " a second time");
+    } else {
+      angles.push_back(index);
+    }
+  }
 }
 
 void ScenarioReader::read_controller() {

@@ -75,6 +75,16 @@ std::string safe_set_text(const SafeSet& safe_set, const std::vector<Coordinate>
   return out;
 }
 
+std::string target_text(const Scenario::Target& target, const std::vector<Coordinate>& states) {
+  std::vector<std::string> angles;
+  angles.reserve(target.angles.size());
+  for (const int index : target.angles) {
+    angles.push_back(states[static_cast<std::size_t>(index)].name);
+  }
+  return fmt::format("target:\n  state: {}\n  radius: {}\n  angles: [{}]\n", list(target.state),
+                     yaml_number(target.radius), fmt::join(angles, ", "));
+}
+
 std::string input_bounds(const Scenario::Controller& controller,
                          const std::vector<Coordinate>& inputs) {
   return box({controller.input_lower, controller.input_upper}, inputs);
@@ -126,8 +136,7 @@ std::string to_yaml(const Scenario& scenario) {
                      list(scenario.initial_state.mean), square(scenario.initial_state.covariance));
   out += fmt::format("disturbance:\n  covariance: {}\n", square(scenario.disturbance.covariance));
   out += safe_set_text(scenario.safe_set, system.states);
-  out += fmt::format("target:\n  state: {}\n  radius: {}\n", list(scenario.target.state),
-                     yaml_number(scenario.target.radius));
+  out += target_text(scenario.target, system.states);
   out += controller_text(scenario.controller, system.inputs);
   out += fmt::format("limit: {{steps: {}, stop_when_unsafe: {}}}\n", scenario.step_limit,
                      scenario.stop_when_unsafe);

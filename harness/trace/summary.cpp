@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "controller/planning/angular_target.hpp"
 #include "controller/planning/ocp_solver.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/trace/json_values.hpp"
@@ -63,7 +64,8 @@ void add_clearance(const Trace& trace, Summary& summary) {
 void add_cost(const Trace& trace, Summary& summary) {
   const Scenario::Cost& cost = trace.scenario.controller.cost;
   for (const StepRecord& step : trace.steps) {
-    const Eigen::VectorXd offset = step.state - trace.scenario.target.state;
+    const Eigen::VectorXd offset =
+        target_offset(trace.scenario.target.state, trace.scenario.target.angles, step.state);
     summary.closed_loop_cost +=
         0.5 * offset.dot(cost.state * offset) + step.input.dot(cost.input * step.input);
   }

@@ -122,6 +122,18 @@ TEST(Episode, ends_at_the_target) {
   }
 }
 
+// A pole that stands upright after a whole turn.
+TEST(Episode, a_target_angle_is_reached_whole_turns_away_where_it_is_meant_modulo_a_turn) {
+  const std::string text =
+      "name: pole\nmodel: {system: cart_pole}\nplant: {kind: analytic, mjcf: \"\"}\n"
+      "time_step: 0.05\ninitial_state: {mean: [0, 0, 6.3, 0]}\nlimit: {steps: 1}\n"
+      "controller: {horizon: 3, quantisation: {state: 10, noise: 10, compressed: 10}}\n";
+  const std::string target = "target: {state: [0, 0, 0, 0], radius: 0.1, angles: [";
+  EXPECT_EQ(run_episode(parse_scenario(text + target + "]}\n"), {}).outcome, Outcome::kTimeout);
+  EXPECT_EQ(run_episode(parse_scenario(text + target + "pole_angle]}\n"), {}).outcome,
+            Outcome::kReached);
+}
+
 TEST(Episode, ends_when_the_true_state_is_unsafe_unless_told_to_go_on) {
   // Without a penalty the way to the target leads through the obstacle.
   const std::vector<std::string> blind = {
@@ -216,6 +228,9 @@ TEST(Episode, what_the_scenario_says_of_the_controller_reaches_the_planner) {
   EXPECT_EQ(chosen.propagator, "soft");
   EXPECT_EQ(chosen.deadline, 0.02);
   EXPECT_EQ(planner_settings(small_scenario({"controller.solver=slsqp"})).solver, "slsqp");
+  EXPECT_TRUE(usual.cost.angles.empty());
+  EXPECT_EQ(planner_settings(small_scenario({"target.angles=[heading]"})).cost.angles,
+            std::vector<int>{2});
   EXPECT_EQ(planner_settings(small_scenario({"controller.propagate_noise=false"})).propagator,
             "noise_free");
 }

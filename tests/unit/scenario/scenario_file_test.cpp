@@ -45,6 +45,7 @@ void expect_equal(const Scenario& a, const Scenario& b) {
   }
   EXPECT_EQ(a.target.state, b.target.state);
   EXPECT_EQ(a.target.radius, b.target.radius);
+  EXPECT_EQ(a.target.angles, b.target.angles);
   EXPECT_EQ(a.step_limit, b.step_limit);
   EXPECT_EQ(a.stop_when_unsafe, b.stop_when_unsafe);
   EXPECT_EQ(a.video.camera, b.video.camera);
@@ -99,6 +100,7 @@ TEST(ScenarioFile, what_is_left_out_gets_its_documented_default) {
   EXPECT_EQ(scenario.safe_set.bounds.upper[0], kInfinity);
   EXPECT_TRUE(scenario.safe_set.obstacles.empty());
   EXPECT_EQ(scenario.target.radius, 0.5);
+  EXPECT_TRUE(scenario.target.angles.empty());
   EXPECT_EQ(scenario.controller.horizon, 8);
   EXPECT_EQ(scenario.controller.quantisation.quantiser, "product");
   EXPECT_EQ(scenario.controller.propagator, "mixture");
@@ -131,7 +133,7 @@ disturbance: {covariance: [4, 5, 6]}
 safe_set:
   bounds: {x: [-10, 11], heading: [-.inf, 9]}
   obstacles: [{y: [-4, -3]}]
-target: {state: [4, 5, 6], radius: 0.25}
+target: {state: [4, 5, 6], radius: 0.25, angles: [heading]}
 controller:
   horizon: 9
   policy: open_loop
@@ -170,6 +172,7 @@ TEST(ScenarioFile, every_key_reaches_its_value) {
   EXPECT_EQ(scenario.safe_set.obstacles[0].lower, Eigen::Vector3d(-kInfinity, -4, -kInfinity));
   EXPECT_EQ(scenario.target.state, Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(scenario.target.radius, 0.25);
+  EXPECT_EQ(scenario.target.angles, std::vector<int>{2});
   EXPECT_EQ(scenario.step_limit, 32);
   EXPECT_FALSE(scenario.stop_when_unsafe);
   EXPECT_EQ(scenario.video.camera, "fixed");

@@ -1,6 +1,7 @@
 #include "harness/trace/summary.hpp"
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include <gtest/gtest.h>
@@ -47,6 +48,16 @@ TEST(Summary, adds_the_stage_costs_of_the_true_states) {
   trace.steps[1].input[0] = -2.0;
   // ½ (2·5²) + 0, and ½ (2·1² + 4·1² + 0) + 3·2².
   EXPECT_DOUBLE_EQ(summarise(trace).closed_loop_cost, 25.0 + 3.0 + 12.0);
+}
+
+TEST(Summary, headings_a_turn_apart_cost_the_same_where_the_target_is_meant_modulo_a_turn) {
+  Trace trace = straight_trace(1);
+  trace.scenario.controller.cost.state(2, 2) = 6.0;
+  trace.steps[0].state[2] = 0.1 + 2.0 * std::numbers::pi;
+  EXPECT_GT(summarise(trace).closed_loop_cost, 100.0);
+  trace.scenario.target.angles = {2};
+  // ½ (2·5² + 6·0.1²), but for the rounding of the heading.
+  EXPECT_NEAR(summarise(trace).closed_loop_cost, 25.03, 1e-13);
 }
 
 TEST(Summary, clearance_and_collision_are_those_of_all_true_states) {
