@@ -7,6 +7,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "controller/certification/error_cut.hpp"
 #include "controller/certification/stage_fit.hpp"
 #include "controller/certification/unicycle_residual.hpp"
 
@@ -41,16 +42,37 @@ StageError lesser(const StageError& one, const StageError& other) {
   });
 }
 
+/// sizes · bounds, where a coordinate of which nothing is known is infinite and does not matter to
+/// those that do not depend on it (0 · ∞ = 0).
+Eigen::VectorXd product(const Eigen::MatrixXd& sizes, const Eigen::VectorXd& bounds) {
+  if (bounds.allFinite()) return sizes * bounds;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(sizes.rows());
+  for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
+    for (Eigen::Index a = 0; a < sizes.cols(); ++a) {
+      if (sizes(i, a) != 0.0 && bounds[a] != 0.0) result[i] += sizes(i, a) * bounds[a];
+    }
+  }
+  return result;
+}
+
 /// Bounds of an error after a map whose entries are at most `sizes` in size.
 StageError moved(const Eigen::MatrixXd& sizes, const StageError& error) {
   return combined(error, error, [&](const Eigen::VectorXd& a, const Eigen::VectorXd&) {
-    return Eigen::VectorXd(sizes * a);
+    return product(sizes, a);
   });
 }
 
+/// `error` in the event in which it is at most `largest`: this bounds norms that are unknown.
+StageError where_limited(StageError error) {
+  for (Eigen::VectorXd& norms : error.higher) {
+    norms = norms.array().isFinite().select(norms, error.largest);
+  }
+  return error;
+}
+
 /// The recursion from stage to stage: the law, and the error
-///     x − z = Σ_j Φ_{k,j+1} r_j(x_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
-/// with Φ the products of the affine maps' linear parts.
+///     x − z = Σ_j Φ_{k,j+1} (r_j(x_j) + e_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
+/// with Φ the products of the affine maps' linear parts and e_j the model error, if there is one.
 class SurrogateRecursion {
  public:
   SurrogateRecursion(const PredictedMotion& motion, double core)
@@ -67,6 +89,10 @@ class SurrogateRecursion {
       residual_.emplace(*unicycle, law_.mean.size());
       fits_everywhere_ = true;
     }
+    const Eigen::Index count =
+        motion.policy.horizon() + static_cast<Eigen::Index>(motion.belief_error != nullptr);
+    if (motion.model_error != nullptr) added_ = cut_error(*motion.model_error, count, core);
+    if (motion.belief_error != nullptr) start_from(cut_error(*motion.belief_error, count, core));
   }
 
   /// The surrogate of the present stage, with `region` as far as the next step tells.
@@ -85,16 +111,18 @@ class SurrogateRecursion {
   /// Takes the step of stage `stage` and completes `before`, the surrogate before it. False once
   /// nothing finite is known.
   bool step(Eigen::Index stage, SurrogateStage& before) {
-    const std::vector<InputFit> inputs = fit_inputs(motion_, stage, law_, error_);
+    // All that rests on what this leaves is in the event that is inside at the next stage.
+    const StageError before_step = where_limited(error_);
+    const std::vector<InputFit> inputs = fit_inputs(motion_, stage, law_, before_step);
     // A plan that was lost has no boxes to fit anything over.
     if (!std::all_of(inputs.begin(), inputs.end(), [](const InputFit& input) {
           return std::isfinite(input.mean) && std::isfinite(input.deviation);
         })) {
       return false;
     }
-    const StageFit fit = fit_stage(motion_, stage, law_, error_, inputs, core_);
+    const StageFit fit = fit_stage(motion_, stage, law_, before_step, inputs, core_);
     before.transition = fit.transition;
-    const StageError difference = residual_difference(fit, inputs);
+    const StageError difference = residual_difference(before_step, fit, inputs);
     outside_ += fit.outside;
     const bool uses_core = !fits_everywhere_ || !difference.mean_square.isZero(0.0);
     if (uses_core) {
@@ -102,8 +130,8 @@ class SurrogateRecursion {
       before.region = fit.region;
     }
     if (residual_) residual_->add_stage(law_, fit.transition);
-    const StageError own{.mean_square = fit.residual, .higher = fit.higher, .largest = fit.largest};
-    const StageError before_step = error_;
+    StageError own{.mean_square = fit.residual, .higher = fit.higher, .largest = fit.largest};
+    if (added_) own = added(own, added_->bound);
     carry(fit.transition, added(own, difference));
     // Where feedback is clamped and large, the step's own slopes may grow less than the products'.
     if (uses_core) {
@@ -115,15 +143,25 @@ class SurrogateRecursion {
         fit.transition * law_.covariance * fit.transition.transpose() + motion_.noise_covariance;
     law_.covariance = 0.5 * (law_.covariance + law_.covariance.transpose()).eval();
     law_.mean = fit.next_mean;
+    if (added_) outside_ += added_->outside;
     return law_.mean.allFinite() && law_.covariance.allFinite() && error_.mean_square.allFinite() &&
            error_.largest.allFinite();
   }
 
  private:
-  /// Bounds of r(x) − r(z); over the region `largest` holds of r(x) itself.
-  [[nodiscard]] StageError residual_difference(const StageFit& fit,
-                                               const std::vector<InputFit>& inputs) const {
-    StageError difference = moved(fit.stretch, error_);
+  /// The state has `error` beside the surrogate at stage 0.
+  void start_from(const CutError& error) {
+    const Eigen::Index dim = law_.mean.size();
+    error_ = error.bound;
+    outside_ = error.outside;
+    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim), .bound = error.bound});
+  }
+
+  /// Bounds of r(x) − r(z) where x − z has the bounds `error`; over the region `largest` holds of
+  /// r(x) itself.
+  [[nodiscard]] static StageError residual_difference(const StageError& error, const StageFit& fit,
+                                                      const std::vector<InputFit>& inputs) {
+    StageError difference = moved(fit.stretch, error);
     difference.largest.setZero();
     for (std::size_t b = 0; b < inputs.size(); ++b) {
       const Eigen::VectorXd gain = fit.input_gain.col(static_cast<Eigen::Index>(b));
@@ -159,7 +197,8 @@ class SurrogateRecursion {
   Gaussian law_;
   StageError error_;
   bool fits_everywhere_ = false;
-  double outside_ = 0.0;  ///< Σ P(z_j not in its core)
+  std::optional<CutError> added_;  ///< the model error of a period
+  double outside_ = 0.0;           ///< Σ P(z_j not in its core) + P(an error beyond its cut)
   double leaving_ = 0.0;
   std::optional<UnicycleResidual> residual_;
   std::vector<Past> past_;
@@ -204,6 +243,10 @@ std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion, dou
 
 Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index stage,
                                      const std::vector<Eigen::Index>& axes) {
+  // What a model error does of the past is not known.
+  if (motion.model_error != nullptr || motion.belief_error != nullptr) {
+    return motion.noise_covariance;
+  }
   const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle();
   const bool always_open = open_loop(motion.policy);
   const bool heading =

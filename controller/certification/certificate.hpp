@@ -1,13 +1,13 @@
-// Upper bounds of the probability that the model's state is unsafe, stage by stage of a plan.
+// Upper bounds of the probability that the state is unsafe, stage by stage of a plan.
 //
-// Each bound holds for the law of the model under the plan's policy from the plan's belief:
+// Each bound holds for the law of the model under the plan's policy from the plan's belief, and of
+// every plant whose error is within the motion's model error, where it has one:
 //   C1  worst case over the W2 ball about the particles,
 //   C2  the same before the last noise, which stays Gaussian,
 //   C3  a Gaussian surrogate of the state, with a bound of what separates the two,
 //   C4  the same, smoothed by noise that is independent of this error.
-// Proofs: docs/theory/certificates.md and surrogate.md. A bound says nothing of a plant that is not
-// the model, and one of a later stage speaks of the plan as planned, not of what is planned anew in
-// between.
+// Proofs: docs/theory/certificates.md and surrogate.md. A bound says nothing of any other plant, and
+// one of a later stage speaks of the plan as planned, not of what is planned anew in between.
 #pragma once
 
 #include <string>

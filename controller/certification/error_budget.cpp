@@ -20,6 +20,9 @@ double carried(double lipschitz, double error) {
   return std::isnan(product) ? kInfinity : product;
 }
 
+/// What a model error adds in W2, none where there is none.
+double radius_of(const ModelError* error) { return error == nullptr ? 0.0 : error->radius(); }
+
 /// √Σ ρ_i |f(c_i, u(c_i)) − f(c'_i, u(c'_i))|², c' the particles moved into `region`.
 double projection_w2(const PredictedMotion& motion, Eigen::Index stage, const Box& region) {
   const DiscreteMeasure& particles = motion.prediction.stages[stage];
@@ -73,9 +76,11 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
   const std::vector<SurrogateStage> surrogates =
       global ? std::vector<SurrogateStage>{} : affine_surrogates(motion);
   std::vector<StageBudget> budgets(horizon + 1);
+  const double model_w2 = radius_of(motion.model_error);
   budgets[0].belief = motion.belief_w2;
-  budgets[0].total = motion.belief_w2;
-  double unstretched = motion.belief_w2;  // the total as it would be with L_k ≤ 1
+  budgets[0].model = radius_of(motion.belief_error);
+  budgets[0].total = motion.belief_w2 + budgets[0].model;
+  double unstretched = budgets[0].total;  // the total as it would be with L_k ≤ 1
   for (Eigen::Index k = 0; k < horizon; ++k) {
     StageLipschitz lipschitz =
         global ? StageLipschitz{.constant = motion.dynamics.lipschitz(motion.policy.gains[k])}
@@ -94,13 +99,15 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
     StageBudget& next = budgets[k + 1];
     budgets[k].lipschitz = lipschitz.constant;
     next.leaving = lipschitz.leaving;
-    next.before_noise = stepped(budgets[k].total) + lipschitz.projection;
+    const double apart = lipschitz.projection + model_w2;
+    next.before_noise = stepped(budgets[k].total) + apart;
     next.belief = stepped(budgets[k].belief);
     next.noise = std::hypot(stepped(budgets[k].noise), motion.noise_w2);
     next.compression = stepped(budgets[k].compression) + lipschitz.projection + lost;
+    next.model = stepped(budgets[k].model) + model_w2;
     next.total = std::hypot(next.before_noise, motion.noise_w2) + lost;
     const double kept = carried(std::min(1.0, lipschitz.constant), unstretched);
-    unstretched = std::hypot(kept + lipschitz.projection, motion.noise_w2) + lost;
+    unstretched = std::hypot(kept + apart, motion.noise_w2) + lost;
     // Infinite errors are blamed on the dynamics, unless the particles are lost anyway.
     next.dynamics = std::isinf(unstretched) ? 0.0 : next.total - unstretched;
   }

@@ -1,5 +1,6 @@
-// How far the particles can be from the true law of the model: the 2-Wasserstein error along the
-// horizon, split by its sources. Derivation: docs/theory/certificates.md, section 1.
+// How far the particles can be from the true law of the state, the model's or, where a model error
+// is given, the plant's: the 2-Wasserstein error along the horizon, split by its sources.
+// Derivation: docs/theory/certificates.md, section 1.
 #pragma once
 
 #include <vector>
@@ -9,12 +10,13 @@
 namespace qsmpc {
 
 /// W2 error of one stage. `total` bounds the distance between the law of the state and the
-/// particles; belief, noise and compression say what each source alone would give (their sum is at
-/// least the total), and dynamics what would be saved if every L_k above 1 were 1.
+/// particles; belief, noise, compression and model say what each source alone would give (their
+/// sum is at least the total), and dynamics what would be saved if every L_k above 1 were 1.
 struct StageBudget {
   double belief = 0.0;
   double noise = 0.0;
   double compression = 0.0;
+  double model = 0.0;     ///< what the plant adds to the model; 0 without a model error
   double dynamics = 0.0;  ///< how much of the total is due to the dynamics stretching distances
   double total = 0.0;
   double lipschitz = 1.0;  ///< of the closed loop from this stage to the next; 1 at the last stage
@@ -28,10 +30,12 @@ struct StageBudget {
 
 /// The budgets of stages 0 … horizon of `motion`. With L_k the Lipschitz constant of the closed
 /// loop, global or, where there is none, on the region that `affine_surrogates` gives,
-///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k + W_projection)² + W_noise²) + W_compression,k+1:
-/// the noise is independent of the state and its quantiser centroidal, so that the cross term
-/// vanishes; the compression is a triangle inequality. W_projection is what particles outside of
-/// their region cost, zero as a rule.
+///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k + W_projection + W_model)² + W_noise²) +
+///     W_compression,
+/// with W_model the model error's radius, which stands in ζ_0, too, where the belief has one. The
+/// noise is independent of the state and of the model error, and its quantiser centroidal, so that
+/// the cross term vanishes; the compression is a triangle inequality. W_projection is what
+/// particles outside of their region cost, zero as a rule.
 [[nodiscard]] std::vector<StageBudget> error_budget(const PredictedMotion& motion);
 
 }  // namespace qsmpc

@@ -35,7 +35,7 @@ struct StageFit {
 struct StageError {
   Eigen::VectorXd mean_square;  ///< n, bounds √E[(x_i − z_i)²; inside]
   HigherNorms higher;           ///< n each, bounds ‖x − z‖_p inside
-  Eigen::VectorXd largest;      ///< n, bounds |x_i − z_i| inside
+  Eigen::VectorXd largest;      ///< n, bounds |x_i − z_i| in the event of the next stage
 };
 
 /// One input's feedback under the law of a stage.

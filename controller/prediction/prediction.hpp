@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controller/measure/measures.hpp"
+#include "controller/prediction/model_error.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -45,6 +46,11 @@ struct PredictedMotion {
   double belief_w2 = 0.0;                   ///< W2 between the belief and prediction.stages[0]
   const Policy& policy;
   const Prediction& prediction;
+  /// What the plant adds to the model in every period; null where the plant is the model.
+  const ModelError* model_error = nullptr;
+  /// What the state at stage 0 has beside a variable with the law `belief`, where that is itself
+  /// the model's prediction for a plant; null where the belief is the state's law.
+  const ModelError* belief_error = nullptr;
 };
 
 }  // namespace qsmpc

@@ -12,6 +12,7 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
+#include "tests/property/marginal_w2.hpp"
 #include "tests/property/random_problem.hpp"
 
 namespace qsmpc::testing {
@@ -21,9 +22,6 @@ constexpr int kPaths = 100000;
 constexpr int kShards = 8;  // so that the test runner can use several cores
 // Paths whose states are compared with the particles: each coordinate's are sorted.
 constexpr int kSorted = 10000;
-// W2 between n draws and their law is about σ√(2.5/n) in one dimension, for normal laws; that it
-// is three times as much does not happen in some thousand comparisons, heavier tails included.
-constexpr double kSamplingFactor = 3.0 * 1.6;
 
 /// 500 problems by default, 10,000 where scripts/test is called with --slow.
 int problem_count() { return std::getenv("QSMPC_SLOW_TESTS") == nullptr ? 504 : 10000; }
@@ -61,47 +59,13 @@ void compare(const StageCertificate& certificate, int unsafe_paths, const std::s
   if (certificate.thesis < least) ++tally.thesis_below;
 }
 
-/// W2 between the particles and the draws in one coordinate: a lower bound of the W2 of all.
-double marginal_w2(const DiscreteMeasure& particles, const Points& draws, Eigen::Index axis) {
-  std::vector<double> sorted(draws.row(axis).begin(), draws.row(axis).end());
-  std::sort(sorted.begin(), sorted.end());
-  std::vector<Eigen::Index> order(particles.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<Eigen::Index>(i);
-  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return particles.locations(axis, a) < particles.locations(axis, b);
-  });
-  // The monotone coupling: particles in order take the draws in order, by their weights.
-  const double each = 1.0 / static_cast<double>(sorted.size());
-  double squares = 0.0;
-  double left = each;
-  std::size_t draw = 0;
-  for (const Eigen::Index i : order) {
-    double weight = particles.weights[i];
-    while (weight > 0.0 && draw < sorted.size()) {
-      const double moved = std::min(weight, left);
-      const double distance = particles.locations(axis, i) - sorted[draw];
-      squares += moved * distance * distance;
-      weight -= moved;
-      left -= moved;
-      if (left <= 0.0) {
-        ++draw;
-        left = each;
-      }
-    }
-  }
-  return std::sqrt(squares);
-}
-
 void compare_w2(const StageBudget& budget, const DiscreteMeasure& particles, const Points& states,
                 const std::string& where, Tally& tally) {
   if (!std::isfinite(budget.total)) return;
   ++tally.finite_w2;
   const Points draws = states.leftCols(kSorted);
   for (Eigen::Index axis = 0; axis < particles.dim(); ++axis) {
-    const double mean = draws.row(axis).mean();
-    const double deviation = std::sqrt((draws.row(axis).array() - mean).square().mean());
-    const double sampling = kSamplingFactor * deviation / std::sqrt(static_cast<double>(kSorted));
-    EXPECT_GE(budget.total + sampling, marginal_w2(particles, draws, axis))
+    EXPECT_GE(budget.total + sampling_w2(draws, axis), marginal_w2(particles, draws, axis))
         << "W2 " << where << ", coordinate " << axis;
   }
 }

@@ -42,10 +42,14 @@ class NormalDraws {
 }  // namespace
 
 UnsafeCounts simulate(const PredictedMotion& motion, const SafeSet& safe_set, int paths,
-                      Generator& generator, std::vector<Points>* states) {
+                      Generator& generator, std::vector<Points>* states, const PlantError& error) {
   NormalDraws belief(motion.belief.covariance);
   NormalDraws noise(motion.noise_covariance);
   Points current = belief(paths, generator).colwise() + motion.belief.mean;
+  Points drawn = Points::Zero(current.rows(), paths);
+  if (error && motion.belief_error != nullptr) {
+    current += error({.stage = -1, .stepped = current, .last_noise = drawn});
+  }
   Points inputs(motion.policy.inputs.rows(), paths);
   Points next(current.rows(), paths);
   UnsafeCounts counts;
@@ -53,7 +57,9 @@ UnsafeCounts simulate(const PredictedMotion& motion, const SafeSet& safe_set, in
   for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
     policy_inputs(motion.policy, k, current, inputs);
     motion.dynamics.step(current, inputs, next);
-    current = next + noise(paths, generator);
+    if (error) next += error({.stage = k, .stepped = next, .last_noise = drawn});
+    drawn = noise(paths, generator);
+    current = next + drawn;
     counts.stages.push_back(0);
     for (int i = 0; i < paths; ++i) {
       if (!unsafe(safe_set, current, i)) continue;
