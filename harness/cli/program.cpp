@@ -27,6 +27,7 @@ int parse_and_run(int argc, char** argv) {
   int exit_code = kDone;
   add_run_command(app, exit_code);
   add_predict_command(app, exit_code);
+  add_compare_command(app, exit_code);
   add_render_command(app, exit_code);
   add_report_command(app, exit_code);
   add_list_command(app, exit_code);

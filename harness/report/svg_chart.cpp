@@ -14,8 +14,8 @@ namespace qsmpc {
 namespace {
 
 // Units of the view box; the page scales it to the width that there is.
-constexpr double kWidth = 480.0;
-constexpr double kHeight = 290.0;
+constexpr double kWidth = kChartWidth;
+constexpr double kHeight = kChartHeight;
 constexpr double kLeft = 66.0;
 constexpr double kRight = 14.0;
 constexpr double kTop = 10.0;
@@ -96,11 +96,6 @@ PathData path_data(const Series& series, const Frame& frame) {
 
 int palette_index(const Series& series) { return std::clamp(series.colour, 0, kPaletteSize - 1); }
 
-std::string line_classes(const Series& series) {
-  return fmt::format("{} c{}{}", series.mark == Mark::kPoints ? "points" : "line",
-                     palette_index(series), series.dashed ? " dash" : "");
-}
-
 Frame frame_of(const Chart& chart) {
   std::vector<double> across = chart.x_includes;
   std::vector<double> up = chart.y_includes;
@@ -117,6 +112,15 @@ Frame frame_of(const Chart& chart) {
                                             : rounded_axis(up, kTicksUp)};
 }
 
+std::vector<Tick> ticks_across(const Chart& chart, const Frame& frame) {
+  if (chart.x_names.empty()) return ticks_of(frame.x, kTicksAcross);
+  std::vector<Tick> ticks;
+  for (const std::string& name : chart.x_names) {
+    ticks.push_back({static_cast<double>(ticks.size() + 1), name});
+  }
+  return ticks;
+}
+
 std::string axes_svg(const Chart& chart, const Frame& frame) {
   const double right = kWidth - kRight;
   const double foot = kHeight - kBottom;
@@ -127,7 +131,7 @@ std::string axes_svg(const Chart& chart, const Frame& frame) {
     svg += fmt::format("<text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", kLeft - 7.0,
                        y + 4.0, escape_html(tick.label));
   }
-  for (const Tick& tick : ticks_of(frame.x, kTicksAcross)) {
+  for (const Tick& tick : ticks_across(chart, frame)) {
     const double x = frame.across(tick.value);
     svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}v5\"/>", x, foot);
     svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, foot + 18.0,
@@ -174,6 +178,13 @@ std::string omissions(const Chart& chart) {
                      broken == 1 ? " is" : "s are");
 }
 
+}  // namespace
+
+std::string line_classes(const Series& series) {
+  return fmt::format("{} c{}{}", series.mark == Mark::kPoints ? "points" : "line",
+                     palette_index(series), series.dashed ? " dash" : "");
+}
+
 bool has_points(const Chart& chart) {
   return std::any_of(chart.series.begin(), chart.series.end(), [](const Series& series) {
     const std::size_t count = std::min(series.x.size(), series.y.size());
@@ -184,10 +195,16 @@ bool has_points(const Chart& chart) {
   });
 }
 
-std::string drawing(const Chart& chart) {
+std::string chart_drawing(const Chart& chart, double x, double y) {
   const Frame frame = frame_of(chart);
-  std::string svg = fmt::format("<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">",
-                                kWidth, kHeight, escape_html(chart.title + ": " + chart.y_label));
+  // Only where it is put into another drawing; a page leaves place and size to its style.
+  const std::string place =
+      x == 0.0 && y == 0.0 ? ""
+                           : fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\"", x,
+                                         y, kWidth, kHeight);
+  std::string svg =
+      fmt::format("<svg{} viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", place, kWidth,
+                  kHeight, escape_html(chart.title + ": " + chart.y_label));
   svg += axes_svg(chart, frame);
   for (const Rule& rule : chart.rules) {
     if (!is_drawable(rule.value)) continue;
@@ -206,14 +223,12 @@ std::string drawing(const Chart& chart) {
   return svg + "</svg>\n";
 }
 
-}  // namespace
-
 std::string chart_figure(const Chart& chart) {
   std::string html =
       "<figure class=\"card\">\n<figcaption>" + escape_html(chart.title) + "</figcaption>\n";
   if (!chart.note.empty()) html += "<p class=\"note\">" + escape_html(chart.note) + "</p>\n";
   if (has_points(chart)) {
-    html += legend_html(chart) + drawing(chart);
+    html += legend_html(chart) + chart_drawing(chart);
   } else {
     html += "<p class=\"empty\">No finite values to draw.</p>\n";
   }

@@ -36,8 +36,9 @@ struct Chart {
   std::string x_label;
   std::string y_label;
   Scale y_scale = Scale::kLinear;
-  double least_shown = 1e-12;        ///< on a logarithmic axis: what is below is drawn at its foot
-  std::vector<double> x_includes{};  ///< values that the axes must show
+  double least_shown = 1e-12;  ///< on a logarithmic axis: what is below is drawn at its foot
+  std::vector<std::string> x_names{};  ///< what stands at x = 1, 2, … in place of numbers
+  std::vector<double> x_includes{};    ///< values that the axes must show
   std::vector<double> y_includes{};
   std::vector<Series> series{};
   std::vector<Rule> rules{};
@@ -46,5 +47,18 @@ struct Chart {
 /// The chart as a <figure>. Its size does not grow with the number of points beyond some
 /// thousands: of longer lines, the extremes of short stretches are drawn. Texts are escaped.
 [[nodiscard]] std::string chart_figure(const Chart& chart);
+
+/// The drawing of `chart_figure` alone, as an <svg>, kChartWidth x kChartHeight units large and
+/// placed at `x`, `y` of what it is put into: axes and lines, without title and legend.
+[[nodiscard]] std::string chart_drawing(const Chart& chart, double x = 0.0, double y = 0.0);
+
+/// Whether there is a finite value to draw.
+[[nodiscard]] bool has_points(const Chart& chart);
+
+/// Classes of the drawing's style for a line or points.
+[[nodiscard]] std::string line_classes(const Series& series);
+
+inline constexpr double kChartWidth = 480.0;
+inline constexpr double kChartHeight = 290.0;
 
 }  // namespace qsmpc

@@ -1,0 +1,122 @@
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/exit_codes.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/output.hpp"
+#include "harness/cli/progress.hpp"
+#include "harness/mismatch/comparison.hpp"
+#include "harness/mismatch/comparison_file.hpp"
+#include "harness/mismatch/comparison_json.hpp"
+#include "harness/mismatch/comparison_table.hpp"
+#include "harness/report/comparison_charts.hpp"
+#include "harness/report/svg_figure.hpp"
+#include "harness/scenario/scenario_file.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kHelp =
+    "Measures how far plants are from the planner's model, in closed loop, in every period and "
+    "along\n"
+    "a plan, and what that does to the certificates; writes comparison.json, comparison.h5,\n"
+    "scenario.yaml and figures.";
+constexpr const char* kExample =
+    "Example: qsmpc compare dubins_corridor --plant analytic --plant mujoco_car --episodes 50\n"
+    "A plant is \"analytic\", \"mujoco\" (the scenario's own vehicle), the name of a shipped one, "
+    "or the\n"
+    "path of an MJCF file. Without --plant: analytic, and the scenario's own if it is not that.";
+constexpr int kMostEpisodes = 100'000;
+constexpr std::int64_t kMostPaths = 100'000;  // all their states are kept
+constexpr int kMostThreads = 1024;
+
+struct CompareArguments {
+  std::string scenario;
+  std::vector<std::string> overrides;
+  std::optional<std::uint64_t> seed;
+  std::string out;
+  bool quiet = false;
+  bool json = false;
+  ComparisonOptions options;
+};
+
+std::vector<TextFile> figure_files(const Comparison& comparison, const std::string& folder) {
+  std::vector<TextFile> files;
+  for (const ComparisonFigure& figure : comparison_figures(comparison)) {
+    files.push_back({.path = folder + "/" + figure.file, .text = svg_figure(figure.charts)});
+  }
+  return files;
+}
+
+std::string files_table(const std::string& folder, const std::vector<TextFile>& more) {
+  std::string text = fmt::format("  numbers  {}/{}\n  data     {}/{}\n", folder,
+                                 kComparisonNumbersFile, folder, kComparisonFile);
+  for (const TextFile& file : more) text += fmt::format("  file     {}\n", file.path);
+  return text;
+}
+
+int compare(CompareArguments& arguments) {
+  Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
+  scenario.seed = arguments.seed.value_or(scenario.seed);
+  const std::string folder =
+      arguments.out.empty() ? default_folder(scenario, "compare") : arguments.out;
+
+  Progress progress("comparing", arguments.quiet);
+  ComparisonOptions& options = arguments.options;
+  options.should_stop = [] { return interrupts() > 0; };
+  options.on_progress = [&](std::int64_t done, std::int64_t total, const std::string& what) {
+    progress.update(static_cast<int>(done), static_cast<int>(total), what);
+  };
+  options.on_plants_ready = [&folder] { make_output_folder(folder); };
+  const std::optional<Comparison> comparison = compare_plants(scenario, options);
+  if (!comparison) {
+    std::cerr << "qsmpc: interrupted; nothing was written\n";
+    return kInterruptedExit;
+  }
+  const std::vector<TextFile> more = figure_files(*comparison, folder);
+  write_comparison(*comparison, more, folder);
+  print_result(arguments.json ? comparison_json(*comparison)
+                              : comparison_table(*comparison) + files_table(folder, more));
+  return kDone;
+}
+
+}  // namespace
+
+void add_compare_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("compare", kHelp);
+  command->footer(kExample);
+  const auto arguments = std::make_shared<CompareArguments>();
+  ComparisonOptions& options = arguments->options;
+  command
+      ->add_option("scenario", arguments->scenario, "a scenario file, or the name of a shipped one")
+      ->required();
+  command->add_option("--plant", options.plants, "NAME: a plant to compare, as often as wanted")
+      ->allow_extra_args(false);
+  command->add_option("--episodes", options.episodes, "of each plant; default: 50")
+      ->check(CLI::Range(1, kMostEpisodes));
+  command->add_option("--paths", options.paths, "of each plant under one plan; default: 1000")
+      ->check(CLI::Range(std::int64_t{1}, kMostPaths));
+  command
+      ->add_option("--threads", options.threads,
+                   "that the work is divided among; default: all; changes no result")
+      ->check(CLI::Range(1, kMostThreads));
+  command->add_option("--set", arguments->overrides, "KEY=VALUE: replaces a key of the scenario")
+      ->allow_extra_args(false);
+  command->add_option("--seed", arguments->seed,
+                      "of the first episode and of the paths; default: the scenario's");
+  command->add_option("--out", arguments->out, "output folder; default: out/NAME-compare");
+  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--json", arguments->json, "print comparison.json instead of the table");
+  command->callback([arguments, &exit_code] { exit_code = compare(*arguments); });
+}
+
+}  // namespace qsmpc

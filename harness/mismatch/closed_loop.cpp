@@ -1,0 +1,100 @@
+#include "harness/mismatch/closed_loop.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "harness/episode/episode.hpp"
+#include "harness/mismatch/exceedance.hpp"
+#include "harness/mismatch/horizon_comparison.hpp"
+#include "harness/trace/residuals.hpp"
+#include "harness/trace/summary.hpp"
+
+namespace qsmpc {
+namespace {
+
+/// The events and certificates of the periods of even and of odd number.
+std::vector<EventTally> tallies_of(const std::vector<EpisodeResult>& episodes) {
+  std::vector<EventTally> tallies(2);
+  for (const EpisodeResult& episode : episodes) {
+    const std::size_t periods = episode.certified.size();
+    for (std::size_t k = 0; k < periods; ++k) {
+      tallies[k % 2].events += episode.unsafe_next[k] != 0 ? 1 : 0;
+      tallies[k % 2].certified += episode.certified[k];
+    }
+    if (periods > 0) tallies[periods % 2].certified += episode.certified.back();
+  }
+  return tallies;
+}
+
+void add_cost(const std::vector<EpisodeResult>& episodes, ClosedLoop& loop) {
+  const auto count = static_cast<double>(episodes.size());
+  for (const EpisodeResult& episode : episodes) loop.cost += episode.cost / count;
+  double squares = 0.0;
+  for (const EpisodeResult& episode : episodes) {
+    squares += (episode.cost - loop.cost) * (episode.cost - loop.cost);
+  }
+  loop.cost_deviation = episodes.size() > 1 ? std::sqrt(squares / (count - 1.0) / count)
+                                            : std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+
+EpisodeResult episode_result(const Trace& trace, const Dynamics& model) {
+  const Summary summary = summarise(trace);
+  EpisodeResult result{.seed = trace.seed,
+                       .outcome = summary.outcome,
+                       .fault = trace.fault,
+                       .steps = summary.steps,
+                       .unsafe = summary.collision,
+                       .min_clearance = summary.min_clearance,
+                       .cost = summary.closed_loop_cost,
+                       .residuals = one_step_residuals(trace, model),
+                       .magnitude = Eigen::VectorXd::Zero(model.state_dim())};
+  const Eigen::MatrixXd states = true_states(trace);
+  if (states.cols() > 0) result.magnitude = states.cwiseAbs().rowwise().maxCoeff();
+  for (Eigen::Index k = 0; k < result.residuals.cols(); ++k) {
+    const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
+    if (step.certificates.empty()) continue;
+    result.certified.push_back(step.certificates.front().value);
+    result.unsafe_next.push_back(clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0);
+  }
+  return result;
+}
+
+std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count, const Executor& run,
+                                        SharedWork& work) {
+  const auto model =
+      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  std::vector<EpisodeResult> results(static_cast<std::size_t>(count));
+  run(count, [&](int n) {
+    if (work.stopped()) return;
+    EpisodeOptions options;
+    options.seed = scenario.seed + static_cast<std::uint64_t>(n);
+    options.should_stop = [&work] { return work.stopped(); };
+    results[static_cast<std::size_t>(n)] = episode_result(run_episode(scenario, options), *model);
+    work.advance();
+  });
+  return results;
+}
+
+ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes) {
+  if (episodes.empty()) throw std::invalid_argument("closed loop: no episode");
+  ClosedLoop loop{.episodes = std::ssize(episodes),
+                  .min_clearance = std::numeric_limits<double>::infinity()};
+  for (const EpisodeResult& episode : episodes) {
+    ++loop.outcomes[episode.outcome];
+    loop.min_clearance = std::min(loop.min_clearance, episode.min_clearance);
+    loop.unsafe += episode.unsafe ? 1 : 0;
+    loop.periods += std::ssize(episode.certified);
+    loop.unsafe_periods += std::ranges::count(episode.unsafe_next, 1);
+    for (const double probability : episode.certified) loop.certified_periods += probability;
+  }
+  add_cost(episodes, loop);
+  loop.unsafe_limits = clopper_pearson(loop.unsafe, loop.episodes, kIntervalTail);
+  loop.p_value = exceedance_p_value(tallies_of(episodes));
+  return loop;
+}
+
+}  // namespace qsmpc

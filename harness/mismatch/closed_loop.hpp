@@ -1,0 +1,69 @@
+// Episodes of one plant in closed loop, and what they say together.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/parallel.hpp"
+#include "harness/binomial_interval.hpp"
+#include "harness/mismatch/shared_work.hpp"
+#include "harness/scenario/scenario.hpp"
+#include "harness/trace/trace.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// What is kept of an episode.
+struct EpisodeResult {
+  std::uint64_t seed = 0;
+  std::string outcome;
+  std::string fault;  ///< the simulator's words; empty without a fault
+  int steps = 0;
+  bool unsafe = false;         ///< the true state entered the unsafe set
+  double min_clearance = 0.0;  ///< m
+  double cost = 0.0;           ///< Σ ½ |x − r|²_Q + |u|²_R
+  Eigen::MatrixXd residuals;   ///< one_step_residuals, state_dim x periods
+  Eigen::VectorXd magnitude;   ///< largest |state|, state_dim
+  /// Of the periods that the plant came through: the certified probability that their end is
+  /// unsafe, and whether it was.
+  std::vector<double> certified{};
+  std::vector<char> unsafe_next{};
+};
+
+/// `model` is the planner's.
+[[nodiscard]] EpisodeResult episode_result(const Trace& trace, const Dynamics& model);
+
+/// Episodes of `scenario` with the seeds seed, seed + 1, …, one a unit of `work`, the same for
+/// whatever `run`. Throws as run_episode. Not complete if `work` was stopped.
+[[nodiscard]] std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count,
+                                                      const Executor& run, SharedWork& work);
+
+/// What episodes say together.
+struct ClosedLoop {
+  std::int64_t episodes = 0;
+  std::map<std::string, std::int64_t> outcomes{};  ///< how many ended how
+  double cost = 0.0;                               ///< mean
+  double cost_deviation = 0.0;   ///< its standard error; not a number for one episode
+  double min_clearance = 0.0;    ///< the least of all, m
+  std::int64_t unsafe = 0;       ///< episodes that entered the unsafe set
+  RateInterval unsafe_limits{};  ///< Clopper–Pearson, 99 %
+  std::int64_t periods = 0;
+  std::int64_t unsafe_periods = 0;  ///< periods that ended in the unsafe set
+  double certified_periods = 0.0;   ///< sum of what was certified for them
+  /// Of `exceedance_p_value`: small where more periods ended unsafe than the certificates allow.
+  double p_value = 1.0;
+};
+
+/// episodes: at least one; throws std::invalid_argument else.
+///
+/// The certificate of period k is made before x_k is seen, so that events of neighbouring periods
+/// overlap in what is known of them: periods of even and of odd number are two sequences. An
+/// episode ends before the certificate of the period that would follow is made; that of its last
+/// period stands for it in the sums of the test.
+[[nodiscard]] ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes);
+
+}  // namespace qsmpc

@@ -1,0 +1,194 @@
+#include "harness/mismatch/comparison.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include "controller/certification/error_budget.hpp"
+#include "controller/planning/planner.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/errors.hpp"
+#include "harness/mismatch/measured_error.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/plant_choice.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/threads/executor.hpp"
+#include "harness/version.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr int kTimedPaths = 15;  // their median is not moved by a few interruptions
+
+std::vector<std::string> without_repeats(const std::vector<std::string>& names) {
+  std::vector<std::string> kept;
+  for (const std::string& name : names) {
+    if (std::ranges::find(kept, name) == kept.end()) kept.push_back(name);
+  }
+  return kept;
+}
+
+/// A plant that is to be compared.
+struct Candidate {
+  std::string name;
+  Scenario scenario;
+  std::unique_ptr<PlantPool> pool{};
+};
+
+/// The comparison in the making: what all plants share.
+class Comparing {
+ public:
+  Comparing(const Scenario& scenario, const ComparisonOptions& options)
+      : options_(options), run_(executor_of(threads(options))), scenario_(scenario) {
+    // One thread an episode, and nothing that depends on how fast it is.
+    scenario_.controller.threads = 1;
+    scenario_.controller.deadline = std::numeric_limits<double>::infinity();
+    model_ = model_of(scenario_);
+    belief_ = {.mean = scenario.initial_state.mean,
+               .covariance = scenario.initial_state.covariance};
+    result_.scenario = scenario;
+    result_.scenario_text = to_yaml(scenario);
+    result_.version = kVersion;
+    result_.paths = options.paths;
+    result_.error_plant = options.error_plant;
+    choose_plants();
+  }
+
+  std::optional<Comparison> run() {
+    const std::int64_t units = options_.episodes + path_batches(options_.paths);
+    SharedWork work(units * std::ssize(candidates_), options_.should_stop, options_.on_progress);
+    if (options_.on_plants_ready) options_.on_plants_ready();
+    if (work.stopped()) return std::nullopt;
+    make_plan();
+    for (Candidate& candidate : candidates_) {
+      compare(candidate, work);
+      if (work.stopped()) return std::nullopt;
+    }
+    measure_error();
+    return std::move(result_);
+  }
+
+ private:
+  static int threads(const ComparisonOptions& options) {
+    const auto available = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    return options.threads > 0 ? options.threads : available;
+  }
+
+  [[nodiscard]] PathNumbers path_numbers() const { return {.seed = scenario_.seed, .first = 0}; }
+
+  void choose_plants() {
+    const std::vector<std::string> names =
+        without_repeats(options_.plants.empty() ? default_plants(scenario_) : options_.plants);
+    if (!options_.error_plant.empty() &&
+        std::ranges::find(names, options_.error_plant) == names.end()) {
+      throw InputError({.key = "--model-error-plant",
+                        .found = options_.error_plant,
+                        .expected = expected_names(options_.error_plant, names)});
+    }
+    // All names before the first file: a wrong name is said first.
+    for (const std::string& name : names) {
+      candidates_.push_back({.name = name, .scenario = with_plant(scenario_, name)});
+    }
+    for (Candidate& candidate : candidates_) {
+      candidate.pool = std::make_unique<PlantPool>(
+          [&scenario = candidate.scenario] { return make_plant(scenario); });
+    }
+  }
+
+  /// Plans once from the initial belief, certifies the plan, and simulates the model under it.
+  void make_plan() {
+    Planner planner(*model_, planner_settings(scenario_));
+    const Plan& plan = planner.plan(belief_);
+    result_.policy = plan.policy;
+    result_.particles = plan.prediction.stages;
+    const PredictedMotion motion = motion_of(planner, belief_, plan);
+    result_.certificates =
+        certify(motion, scenario_.safe_set, error_budget(motion), CertificateEffort::kEvery, run_);
+    result_.w2_paths = w2_paths(result_.particles, options_.paths);
+    source_.emplace(result_.policy, belief_, scenario_.disturbance.covariance, path_numbers());
+    result_.model_paths = model_paths(*model_, *source_, options_.paths, run_);
+    result_.floors = w2_floors(
+        result_.particles, *model_, result_.policy, belief_, scenario_.disturbance.covariance,
+        {.numbers = path_numbers(), .paths = options_.paths, .count = result_.w2_paths}, run_);
+  }
+
+  void compare(Candidate& candidate, SharedWork& work) {
+    PlantComparison plant{.name = candidate.name};
+    std::unique_ptr<Plant> timed = candidate.pool->take();
+    plant.speed = simulation_speed(*timed, *source_, scenario_.time_step, kTimedPaths);
+    candidate.pool->give_back(std::move(timed));
+
+    work.begin(candidate.name + ", episodes");
+    plant.episodes = run_episodes(candidate.scenario, options_.episodes, run_, work);
+    work.begin(candidate.name + ", paths of the plan");
+    plant.paths = plant_paths(*candidate.pool, *model_, *source_, options_.paths, run_, work);
+    if (work.stopped()) return;
+
+    plant.closed_loop = closed_loop_of(plant.episodes);
+    plant.one_step = one_step_statistics(plant.episodes);
+    plant.horizon = compare_along_horizon(plant.paths, result_.model_paths, result_.particles,
+                                          scenario_.safe_set, {.w2_paths = result_.w2_paths}, run_);
+    for (std::size_t k = 0; k < plant.horizon.size(); ++k) {
+      // Written so that a certificate that is not a number is one that does not hold.
+      if (!(result_.in_force()[k].value >= plant.horizon[k].unsafe_limits.lower)) {
+        plant.exceeded_stages.push_back(plant.horizon[k].stage);
+      }
+    }
+    result_.plants.push_back(std::move(plant));
+  }
+
+  [[nodiscard]] ResidualStatistics one_step_statistics(
+      const std::vector<EpisodeResult>& episodes) const {
+    std::vector<Eigen::MatrixXd> residuals;
+    Eigen::VectorXd magnitude = Eigen::VectorXd::Zero(model_->state_dim());
+    for (const EpisodeResult& episode : episodes) {
+      residuals.push_back(episode.residuals);
+      magnitude = magnitude.cwiseMax(episode.magnitude);
+    }
+    return residual_statistics(residuals, magnitude);
+  }
+
+  void measure_error() {
+    for (const PlantComparison& plant : result_.plants) {
+      if (plant.name != options_.error_plant) continue;
+      ResidualSample loop;
+      for (const EpisodeResult& episode : plant.episodes) loop.units.push_back(episode.residuals);
+      ResidualSample planned{.by_period = true};
+      for (Eigen::Index i = 0; i < options_.paths; ++i) {
+        Eigen::MatrixXd path(model_->state_dim(), std::ssize(plant.paths.residuals));
+        for (Eigen::Index k = 0; k < path.cols(); ++k) {
+          path.col(k) = plant.paths.residuals[static_cast<std::size_t>(k)].col(i);
+        }
+        planned.units.push_back(std::move(path));
+      }
+      result_.measured_error = measured_model_error({loop, planned}, scenario_.seed);
+    }
+  }
+
+  const ComparisonOptions& options_;
+  Executor run_;
+  Scenario scenario_;  // as it is simulated
+  std::unique_ptr<const Dynamics> model_;
+  Gaussian belief_;
+  std::vector<Candidate> candidates_;
+  std::optional<PathSource> source_;
+  Comparison result_;
+};
+
+}  // namespace
+
+std::vector<std::string> default_plants(const Scenario& scenario) {
+  std::vector<std::string> names{"analytic"};
+  if (scenario.plant.kind == "mujoco") names.emplace_back("mujoco");
+  return names;
+}
+
+std::optional<Comparison> compare_plants(const Scenario& scenario,
+                                         const ComparisonOptions& options) {
+  return Comparing(scenario, options).run();
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,352 @@
+#include "harness/mismatch/comparison_file.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <memory>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/errors.hpp"
+#include "harness/mismatch/comparison_json.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/coordinate_labels.hpp"
+#include "harness/trace/rows.hpp"
+
+namespace qsmpc {
+namespace {
+
+using Layout = std::vector<DatasetSpec>;
+using Type = DatasetSpec::Type;
+
+constexpr const char* kStateNorm = "Euclidean norm of the state";
+
+struct Sizes {
+  CoordinateLabels states;
+  CoordinateLabels inputs;
+  std::size_t paths = 0;
+
+  [[nodiscard]] std::size_t state_dim() const { return states.names.size(); }
+};
+
+Sizes sizes_of(const Comparison& comparison) {
+  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
+  return {.states = labels_of(model->description().states),
+          .inputs = labels_of(model->description().inputs),
+          .paths = static_cast<std::size_t>(comparison.paths)};
+}
+
+/// One row a stage (or what `axis` says), one column a state.
+DatasetSpec by_state(const std::string& path, const std::string& axis, const Sizes& n,
+                     const std::string& comment) {
+  return {.path = path,
+          .row_shape = {n.state_dim()},
+          .axes = {axis, "state"},
+          .units = n.states.units,
+          .columns = n.states.names,
+          .comment = comment};
+}
+
+/// Paths at the stages: stage, path, state.
+DatasetSpec of_paths(const std::string& path, const Sizes& n, const std::string& comment) {
+  return {.path = path,
+          .row_shape = {n.paths, n.state_dim()},
+          .axes = {"stage", "path", "state"},
+          .units = n.states.units,
+          .columns = n.states.names,
+          .comment = comment,
+          .chunk_rows = 1,
+          .compress = true};
+}
+
+void add_plan(Layout& layout, const Sizes& n) {
+  layout.push_back({.path = "/plan/inputs",
+                    .row_shape = {n.inputs.names.size()},
+                    .axes = {"stage", "input"},
+                    .units = n.inputs.units,
+                    .columns = n.inputs.names,
+                    .comment = "nominal inputs v of the policy u(x) = clamp(v + K (x - nominal))"});
+  layout.push_back(by_state("/plan/states", "stage", n,
+                            "nominal states: under the nominal inputs, without noise"));
+  layout.push_back({.path = "/plan/gains",
+                    .row_shape = {n.inputs.names.size(), n.state_dim()},
+                    .axes = {"stage", "input", "state"},
+                    .units = {"unit of the input per unit of the state"},
+                    .comment = "K; zero for an open-loop policy"});
+}
+
+void add_model(Layout& layout, const Sizes& n, bool with_error) {
+  layout.push_back(of_paths("/model/states", n, "paths of the model; stage 0 is the present"));
+  layout.push_back({.path = "/model/w2_floor",
+                    .row_shape = {2},
+                    .axes = {"stage", "what"},
+                    .units = {kStateNorm},
+                    .columns = {"mean", "deviation"},
+                    .comment = "W2 between the particles and ensembles of the model's own paths, "
+                               "and its standard deviation; stage 0 is the present"});
+  layout.push_back({.path = "/certificate/without",
+                    .axes = {"stage"},
+                    .units = {"1"},
+                    .comment = "upper bound of the probability that the model is unsafe; the first "
+                               "is that of stage 1"});
+  if (!with_error) return;
+  layout.push_back({.path = "/certificate/with",
+                    .axes = {"stage"},
+                    .units = {"1"},
+                    .comment = "upper bound for plants within the scenario's model error"});
+}
+
+void add_closed_loop(Layout& layout, const std::string& group) {
+  const auto add = [&](const char* name, Type type, const char* unit, const char* comment) {
+    layout.push_back({.path = group + "/closed_loop/" + name,
+                      .type = type,
+                      .axes = {"episode"},
+                      .units = {unit},
+                      .comment = comment});
+  };
+  add("seed", Type::kInt64, "1", "of the episode, as a signed number of 64 bits");
+  add("outcome", Type::kText, "1", "how the episode ended");
+  add("steps", Type::kInt64, "periods", "");
+  add("cost", Type::kFloat64, "1", "closed-loop cost along the true states");
+  add("min_clearance", Type::kFloat64, "as the safe set",
+      "least distance of the true state to the unsafe set; negative inside");
+  add("unsafe", Type::kInt64, "1", "1 where the true state entered the unsafe set");
+  add("certified", Type::kFloat64, "1", "sum of the next-step certificates of its periods");
+  add("unsafe_periods", Type::kInt64, "periods", "that ended in the unsafe set");
+}
+
+void add_residuals(Layout& layout, const std::string& group, const Sizes& n) {
+  const std::string episode = "episode of the row of the same number, from 0";
+  layout.push_back(by_state(group + "/one_step/residuals", "period", n,
+                            "x+ - w - f(x, u), episode after episode"));
+  layout.push_back({.path = group + "/one_step/episode",
+                    .type = Type::kInt64,
+                    .axes = {"period"},
+                    .units = {"1"},
+                    .comment = episode});
+  for (const char* name : {"mean", "mean_deviation", "rmse", "rounding"}) {
+    layout.push_back({.path = group + "/one_step/" + name,
+                      .axes = {"state"},
+                      .units = n.states.units,
+                      .columns = n.states.names,
+                      .chunk_rows = n.state_dim()});
+  }
+  layout.push_back({.path = group + "/one_step/covariance",
+                    .row_shape = {n.state_dim()},
+                    .axes = {"state", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = "an entry has the unit of its row times that of its column",
+                    .chunk_rows = n.state_dim()});
+  for (const char* name : {"lag1", "ljung_box", "p_value"}) {
+    layout.push_back({.path = group + "/one_step/" + name,
+                      .axes = {"state"},
+                      .units = {"1"},
+                      .columns = n.states.names,
+                      .chunk_rows = n.state_dim()});
+  }
+}
+
+void add_horizon(Layout& layout, const std::string& group, const Sizes& n) {
+  layout.push_back(of_paths(group + "/paths/states", n,
+                            "paths of the plant under the plan; stage 0 is the present; not a "
+                            "number from the stage on at which the plant broke"));
+  layout.push_back(of_paths(group + "/paths/residuals", n,
+                            "x+ - w - f(x, u) of the period that begins at the stage"));
+  layout.push_back(by_state(group + "/horizon/divergence_rmse", "stage", n,
+                            "of the plant's paths from the model's with the same disturbances; the "
+                            "first is that of stage 1"));
+  layout.push_back({.path = group + "/horizon/w2",
+                    .axes = {"stage"},
+                    .units = {kStateNorm},
+                    .comment = "between the particles and the plant's paths, from stage 1"});
+  layout.push_back({.path = group + "/horizon/unsafe",
+                    .type = Type::kInt64,
+                    .axes = {"stage"},
+                    .units = {"paths"},
+                    .comment = "that are unsafe at the stage, from stage 1"});
+  layout.push_back({.path = group + "/horizon/rate",
+                    .row_shape = {3},
+                    .axes = {"stage", "limit"},
+                    .units = {"1"},
+                    .columns = {"rate", "lower", "upper"},
+                    .comment = "share of unsafe paths, and its Clopper-Pearson limits, each wrong "
+                               "with a probability of 0.005"});
+}
+
+void write_header(Hdf5File& file, const Comparison& comparison) {
+  file.set_text("/", "kind", "comparison");
+  file.set_integer("/", "schema", kComparisonSchema);
+  file.set_text("/", "version", comparison.version);
+  file.set_text("/", "scenario", comparison.scenario_text);
+  file.set_text("/", "scenario_name", comparison.scenario.name);
+  file.set_unsigned("/", "seed", comparison.scenario.seed);
+  std::vector<std::string> names;
+  for (const PlantComparison& plant : comparison.plants) names.push_back(plant.name);
+  file.set_texts("/plants", "names", names);
+  file.set_texts("/plants", "groups", plant_groups(comparison));
+}
+
+/// Stages as rows: path by path, its states one after the other.
+void append_paths(Hdf5File& file, const std::string& path, const std::vector<Points>& stages) {
+  for (const Points& stage : stages) file.append(path, by_rows(stage.transpose()));
+}
+
+void write_shared(Hdf5File& file, const Comparison& comparison) {
+  const Policy& policy = comparison.policy;
+  file.append("/plan/inputs", by_rows(policy.inputs.transpose()));
+  file.append("/plan/states", by_rows(policy.states.transpose()));
+  for (const Eigen::MatrixXd& gain : policy.gains) file.append("/plan/gains", by_rows(gain));
+  append_paths(file, "/model/states", comparison.model_paths);
+  for (const W2Floor& floor : comparison.floors) {
+    file.append("/model/w2_floor", std::vector<double>{floor.mean, floor.deviation});
+  }
+  file.append("/certificate/without", column_of(comparison.certificates, &StageCertificate::value));
+  if (comparison.with_error) {
+    file.append("/certificate/with", column_of(*comparison.with_error, &StageCertificate::value));
+  }
+}
+
+void write_closed_loop(Hdf5File& file, const std::string& group,
+                       const std::vector<EpisodeResult>& episodes) {
+  const auto append = [&]<class Value>(const char* name, const std::vector<Value>& values) {
+    file.append(group + "/closed_loop/" + name, values);
+  };
+  std::vector<std::int64_t> seeds;
+  std::vector<std::int64_t> steps;
+  std::vector<std::int64_t> unsafe;
+  std::vector<std::int64_t> unsafe_periods;
+  std::vector<double> certified;
+  for (const EpisodeResult& episode : episodes) {
+    seeds.push_back(static_cast<std::int64_t>(episode.seed));
+    steps.push_back(episode.steps);
+    unsafe.push_back(episode.unsafe ? 1 : 0);
+    unsafe_periods.push_back(std::ranges::count(episode.unsafe_next, 1));
+    double sum = 0.0;
+    for (const double probability : episode.certified) sum += probability;
+    certified.push_back(sum);
+  }
+  append("seed", seeds);
+  append("outcome", column_of(episodes, &EpisodeResult::outcome));
+  append("steps", steps);
+  append("cost", column_of(episodes, &EpisodeResult::cost));
+  append("min_clearance", column_of(episodes, &EpisodeResult::min_clearance));
+  append("unsafe", unsafe);
+  append("certified", certified);
+  append("unsafe_periods", unsafe_periods);
+}
+
+void write_residuals(Hdf5File& file, const std::string& group, const PlantComparison& plant) {
+  for (std::size_t n = 0; n < plant.episodes.size(); ++n) {
+    const Eigen::MatrixXd& residuals = plant.episodes[n].residuals;
+    file.append(group + "/one_step/residuals", by_rows(residuals.transpose()));
+    file.append(group + "/one_step/episode",
+                std::vector<std::int64_t>(static_cast<std::size_t>(residuals.cols()),
+                                          static_cast<std::int64_t>(n)));
+  }
+  const ResidualStatistics& one_step = plant.one_step;
+  file.append(group + "/one_step/mean", by_rows(one_step.mean));
+  file.append(group + "/one_step/mean_deviation", by_rows(one_step.mean_deviation));
+  file.append(group + "/one_step/rmse", by_rows(one_step.rmse));
+  file.append(group + "/one_step/rounding", by_rows(one_step.rounding));
+  file.append(group + "/one_step/covariance", by_rows(one_step.covariance));
+  file.append(group + "/one_step/lag1", by_rows(one_step.whiteness.lag1));
+  file.append(group + "/one_step/ljung_box", by_rows(one_step.whiteness.ljung_box));
+  file.append(group + "/one_step/p_value", by_rows(one_step.whiteness.p_value));
+}
+
+void write_horizon(Hdf5File& file, const std::string& group, const PlantComparison& plant,
+                   std::int64_t paths) {
+  append_paths(file, group + "/paths/states", plant.paths.states);
+  append_paths(file, group + "/paths/residuals", plant.paths.residuals);
+  file.set_integer(group + "/paths", "faults", plant.paths.faults);
+  for (const HorizonStage& stage : plant.horizon) {
+    file.append(group + "/horizon/divergence_rmse", by_rows(stage.divergence_rmse));
+    file.append(group + "/horizon/w2", std::vector<double>{stage.w2});
+    file.append(group + "/horizon/unsafe", std::vector<std::int64_t>{stage.unsafe});
+    file.append(group + "/horizon/rate",
+                std::vector<double>{static_cast<double>(stage.unsafe) / static_cast<double>(paths),
+                                    stage.unsafe_limits.lower, stage.unsafe_limits.upper});
+  }
+}
+
+void write_hdf5(const Comparison& comparison, const std::string& path) {
+  Hdf5File file = Hdf5File::create(path);
+  for (const DatasetSpec& spec : comparison_layout(comparison)) file.create_dataset(spec);
+  write_header(file, comparison);
+  write_shared(file, comparison);
+  const std::vector<std::string> groups = plant_groups(comparison);
+  for (std::size_t n = 0; n < groups.size(); ++n) {
+    const PlantComparison& plant = comparison.plants[n];
+    file.set_text(groups[n], "name", plant.name);
+    write_closed_loop(file, groups[n], plant.episodes);
+    write_residuals(file, groups[n], plant);
+    write_horizon(file, groups[n], plant, comparison.paths);
+  }
+  file.close();
+}
+
+void remove_file(const std::string& path) {
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (error) throw IoError(path + ": " + error.message());
+}
+
+}  // namespace
+
+std::vector<std::string> plant_groups(const Comparison& comparison) {
+  std::vector<std::string> groups;
+  for (const PlantComparison& plant : comparison.plants) {
+    std::string group = "/plants/";
+    for (const char c : plant.name) {
+      const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-' ||
+                         (c == '.' && group.back() != '/');
+      group += plain ? c : '_';
+    }
+    const std::string base = group;
+    for (int n = 2; std::ranges::find(groups, group) != groups.end(); ++n) {
+      group = fmt::format("{}_{}", base, n);
+    }
+    groups.push_back(group);
+  }
+  return groups;
+}
+
+std::vector<DatasetSpec> comparison_layout(const Comparison& comparison) {
+  const Sizes sizes = sizes_of(comparison);
+  Layout layout;
+  add_plan(layout, sizes);
+  add_model(layout, sizes, comparison.with_error.has_value());
+  for (const std::string& group : plant_groups(comparison)) {
+    add_closed_loop(layout, group);
+    add_residuals(layout, group, sizes);
+    add_horizon(layout, group, sizes);
+  }
+  return layout;
+}
+
+void write_comparison(const Comparison& comparison, const std::vector<TextFile>& more,
+                      const std::string& folder) {
+  std::vector<std::unique_ptr<PendingFile>> others;
+  for (const TextFile& file : more) {
+    others.push_back(std::make_unique<PendingFile>(file.path));
+    others.back()->write(file.text);
+  }
+  PendingFile data(folder + "/" + kComparisonFile);
+  PendingFile scenario(folder + "/" + kScenarioFile);
+  PendingFile numbers(folder + "/" + kComparisonNumbersFile);
+  write_hdf5(comparison, data.partial_path());
+  scenario.write(comparison.scenario_text);
+  numbers.write(comparison_json(comparison));
+  // Killed from here on, there is no comparison.json of an older one beside a new comparison.h5.
+  remove_file(numbers.path());
+  data.commit();
+  scenario.commit();
+  for (const std::unique_ptr<PendingFile>& file : others) file->commit();
+  numbers.commit();
+}
+
+}  // namespace qsmpc

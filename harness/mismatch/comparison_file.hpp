@@ -1,0 +1,41 @@
+// The files that a comparison leaves: comparison.h5, comparison.json, scenario.yaml, and those that
+// others have made of it.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/mismatch/comparison.hpp"
+#include "harness/trace/hdf5_file.hpp"
+
+namespace qsmpc {
+
+inline constexpr const char* kComparisonFile = "comparison.h5";
+inline constexpr const char* kComparisonNumbersFile = "comparison.json";
+
+/// Grows with every change that an older reader would misread.
+inline constexpr std::int64_t kComparisonSchema = 1;
+
+/// A file of text.
+struct TextFile {
+  std::string path;
+  std::string text;
+};
+
+/// The groups of the plants in comparison.h5, in their order: /plants/NAME, where what a name has
+/// besides letters, digits, '_', '-' and '.' is replaced, and a number is added where two would be
+/// the same.
+[[nodiscard]] std::vector<std::string> plant_groups(const Comparison& comparison);
+
+/// The datasets of comparison.h5. docs/compare.md describes them.
+[[nodiscard]] std::vector<DatasetSpec> comparison_layout(const Comparison& comparison);
+
+/// Writes the three files into `folder`, which exists, and `more` at their own paths. All are
+/// written aside before the first gets its name, and comparison.json gets it last: where that is,
+/// the others belong to it. Throws IoError; what stood under the names before is then there still,
+/// or is gone as well.
+void write_comparison(const Comparison& comparison, const std::vector<TextFile>& more,
+                      const std::string& folder);
+
+}  // namespace qsmpc

@@ -1,0 +1,186 @@
+#include "harness/mismatch/comparison_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/episode/assembly.hpp"
+#include "harness/errors.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr std::size_t kNameWidth = 20;   // of plants and of rows
+constexpr std::size_t kStateWidth = 12;  // of what is said by state; six fit a line
+constexpr std::size_t kStageWidth = 7;
+constexpr std::size_t kStageStateWidth = 10;
+constexpr std::size_t kNameLimit = 9;  // of a state among stages; a longer one is cut and marked
+constexpr double kSurprising = 0.01;   // a p-value below it is marked
+
+std::string plant_name(const std::string& name) {
+  return fmt::format("  {:<{}}", printable(name, kNameWidth - 3), kNameWidth - 2);
+}
+
+/// Three digits, at most 9 characters.
+std::string number(double value) {
+  if (std::isnan(value)) return "-";
+  const double size = std::abs(value);
+  const bool plain = size == 0.0 || (size >= 1e-2 && size < 1e4);
+  return plain ? fmt::format("{:.3f}", value) : fmt::format("{:.2e}", value);
+}
+
+std::string by_state(const std::string& name, const Eigen::VectorXd& values) {
+  std::string row = fmt::format("  {:<{}}", name, kNameWidth - 2);
+  for (const double value : values) row += fmt::format("{:>{}}", number(value), kStateWidth);
+  return row + "\n";
+}
+
+std::string closed_loop_section(const Comparison& comparison) {
+  std::string text =
+      fmt::format("\nClosed loop\n  {:<{}}{:>9}{:>9}{:>16}{:>22}{:>14}\n", "plant", kNameWidth - 2,
+                  "reached", "unsafe", "99 % interval", "cost", "clearance");
+  for (const PlantComparison& plant : comparison.plants) {
+    const ClosedLoop& loop = plant.closed_loop;
+    const auto reached = loop.outcomes.find("reached");
+    text += plant_name(plant.name);
+    text += fmt::format(
+        "{:>9}{:>9}{:>16}{:>22}{:>14}\n",
+        fmt::format("{}/{}", reached == loop.outcomes.end() ? 0 : reached->second, loop.episodes),
+        loop.unsafe,
+        fmt::format("[{:.3f}, {:.3f}]", loop.unsafe_limits.lower, loop.unsafe_limits.upper),
+        std::isnan(loop.cost_deviation)
+            ? fmt::format("{:.5g}", loop.cost)
+            : fmt::format("{:.5g} +- {:.2g}", loop.cost, loop.cost_deviation),
+        number(loop.min_clearance));
+  }
+  return text;
+}
+
+/// Names and units of `states` in columns of `width`, after `left` characters; the names' line goes
+/// on with `right`.
+std::string state_head(const std::vector<Coordinate>& states, std::size_t left, std::size_t width,
+                       const std::string& right = "") {
+  std::string names;
+  std::string units;
+  for (const Coordinate& state : states) {
+    names += fmt::format("{:>{}}", printable(state.name, kNameLimit), width);
+    units += fmt::format("{:>{}}", state.unit, width);
+  }
+  return fmt::format("{:<{}}{}{}\n{:<{}}{}\n", "", left, names, right, "", left, units);
+}
+
+std::string one_step_section(const Comparison& comparison, const SystemDescription& system) {
+  std::string text = "\nOne period: what the plant adds to the model and the disturbance\n" +
+                     state_head(system.states, kNameWidth, kStateWidth);
+  text += by_state("disturbance, rms",
+                   comparison.scenario.disturbance.covariance.diagonal().cwiseSqrt());
+  for (const PlantComparison& plant : comparison.plants) {
+    const ResidualStatistics& one_step = plant.one_step;
+    const bool exact = (one_step.rmse.array() <= one_step.rounding.array()).all();
+    text += fmt::format("  {}{}\n", printable(plant.name, 60),
+                        exact ? ": the model, but for rounding" : "");
+    text += by_state("  rms", one_step.rmse);
+    if (exact) continue;
+    text += by_state("  mean", one_step.mean);
+    text += by_state("  +- (one sigma)", one_step.mean_deviation);
+    text += by_state("  lag-1 correlation", one_step.whiteness.lag1);
+    text += by_state(fmt::format("  p (white, {} lags)", one_step.whiteness.lags),
+                     one_step.whiteness.p_value);
+  }
+  return text;
+}
+
+/// Three states stand for all of them: the pose in the plane, else the first three.
+std::vector<int> shown_states(const SystemDescription& system) {
+  std::vector<int> shown;
+  for (const int state : {system.position_x, system.position_y, system.heading}) {
+    if (state >= 0) shown.push_back(state);
+  }
+  const int most = std::min(3, static_cast<int>(system.states.size()));
+  for (int state = 0; shown.empty() && state < most; ++state) shown.push_back(state);
+  if (shown.size() == 1 && most > 1) shown = {0, 1};
+  return shown;
+}
+
+std::string horizon_head(const SystemDescription& system, const std::vector<int>& states) {
+  std::vector<Coordinate> shown;
+  for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
+  std::string head = state_head(
+      shown, kStageWidth, kStageStateWidth,
+      fmt::format("{:>9}{:>16}{:>12}{:>22}", "W2", "floor", "P(unsafe)<=", "observed (99 %)"));
+  return head.replace(0, kStageWidth, fmt::format("{:>{}}", "stage", kStageWidth));
+}
+
+std::string stage_row(const Comparison& comparison, const HorizonStage& stage,
+                      const std::vector<int>& states) {
+  const auto k = static_cast<std::size_t>(stage.stage);
+  std::string row = fmt::format("{:>{}}", stage.stage, kStageWidth);
+  for (const int state : states) {
+    row += fmt::format("{:>{}}", number(stage.divergence_rmse[state]), kStageStateWidth);
+  }
+  const W2Floor& floor = comparison.floors[k];
+  row += fmt::format(
+      "{:>9}{:>16}{:>12.2e}{:>22}\n", number(stage.w2),
+      fmt::format("{} +- {:.3f}", number(floor.mean), floor.deviation),
+      comparison.in_force()[k - 1].value,
+      fmt::format("[{:.1e}, {:.1e}]", stage.unsafe_limits.lower, stage.unsafe_limits.upper));
+  return row;
+}
+
+std::string horizon_section(const Comparison& comparison, const SystemDescription& system) {
+  const std::vector<int> states = shown_states(system);
+  std::string text = fmt::format(
+      "\nAlong the plan from the initial belief: divergence from the model (rms, by state), {} "
+      "paths\n",
+      comparison.paths);
+  for (const PlantComparison& plant : comparison.plants) {
+    text += fmt::format("  {}{}\n", printable(plant.name, 60),
+                        plant.paths.faults > 0
+                            ? fmt::format(": {} paths on which it broke", plant.paths.faults)
+                            : "");
+    text += horizon_head(system, states);
+    for (const HorizonStage& stage : plant.horizon) {
+      text += stage_row(comparison, stage, states);
+    }
+  }
+  return text;
+}
+
+std::string certificate_section(const Comparison& comparison) {
+  std::string text = fmt::format(
+      "\nCertificates {} the scenario's model error, against the plant\n"
+      "  {:<{}}{:>16}{:>16}{:>15}{:>10}{:>14}\n",
+      comparison.with_error ? "with" : "without", "plant", kNameWidth - 2, "stages exceeded",
+      "unsafe periods", "certified", "p", "x real time");
+  for (const PlantComparison& plant : comparison.plants) {
+    const ClosedLoop& loop = plant.closed_loop;
+    text += plant_name(plant.name);
+    text += fmt::format(
+        "{:>16}{:>16}{:>15}{:>10}{:>14.3g}\n",
+        fmt::format("{} of {}", plant.exceeded_stages.size(), plant.horizon.size()),
+        fmt::format("{} of {}", loop.unsafe_periods, loop.periods),
+        fmt::format("{:.2g}", loop.certified_periods),
+        fmt::format("{:.2g}{}", loop.p_value, loop.p_value < kSurprising ? " !" : ""), plant.speed);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string comparison_table(const Comparison& comparison) {
+  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
+  const SystemDescription& system = model->description();
+  return fmt::format("{}: plants beside the model {}, seed {}\n",
+                     printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
+         closed_loop_section(comparison) + one_step_section(comparison, system) +
+         horizon_section(comparison, system) + certificate_section(comparison) +
+         "floor: W2 where the plant is the model, as there are few particles and paths.\n"
+         "stages exceeded: the observed rate is certainly (99.5 % each) above the certificate.\n"
+         "p: small where more periods end unsafe than certified for them.\n";
+}
+
+}  // namespace qsmpc

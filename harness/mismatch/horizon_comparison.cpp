@@ -1,0 +1,109 @@
+#include "harness/mismatch/horizon_comparison.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "controller/measure/wasserstein.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+
+/// The first `most` columns of `points` that are finite, each of the same weight.
+DiscreteMeasure empirical_measure(const Points& points, std::int64_t most) {
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index i = 0; i < points.cols() && std::ssize(kept) < most; ++i) {
+    if (points.col(i).allFinite()) kept.push_back(i);
+  }
+  const auto count = std::ssize(kept);
+  return {.locations = points(Eigen::all, kept),
+          .weights = Eigen::VectorXd::Constant(count, 1.0 / static_cast<double>(count))};
+}
+
+double w2_to(const DiscreteMeasure& particles, const Points& points, std::int64_t most) {
+  const DiscreteMeasure measure = empirical_measure(points, most);
+  return measure.size() == 0 ? kNotANumber : wasserstein2(particles, measure);
+}
+
+/// √ mean |column|² by row over the columns that are finite.
+Eigen::VectorXd rms_of_finite(const Points& values) {
+  Eigen::VectorXd squares = Eigen::VectorXd::Zero(values.rows());
+  double count = 0.0;
+  for (const auto& column : values.colwise()) {
+    if (!column.allFinite()) continue;
+    squares += column.cwiseAbs2();
+    count += 1.0;
+  }
+  return (squares / count).cwiseSqrt();  // 0/0 without any: not a number
+}
+
+std::int64_t count_unsafe(const Points& states, const SafeSet& safe_set) {
+  return std::ranges::count_if(states.colwise(), [&](const auto& column) {
+    const Eigen::VectorXd state = column;
+    return !state.allFinite() || distance_to_unsafe(state, safe_set) <= 0.0;
+  });
+}
+
+W2Floor floor_of(const std::vector<double>& distances) {
+  const auto count = static_cast<double>(distances.size());
+  W2Floor floor;
+  for (const double distance : distances) floor.mean += distance / count;
+  for (const double distance : distances) {
+    floor.deviation += (distance - floor.mean) * (distance - floor.mean) / (count - 1.0);
+  }
+  floor.deviation = std::sqrt(floor.deviation);
+  return floor;
+}
+
+}  // namespace
+
+std::int64_t w2_paths(const std::vector<DiscreteMeasure>& stages, std::int64_t paths) {
+  Eigen::Index largest = 1;
+  for (const DiscreteMeasure& stage : stages) largest = std::max(largest, stage.size());
+  return std::clamp<std::int64_t>(kPairsForW2 / largest, 1, paths);
+}
+
+std::vector<W2Floor> w2_floors(const std::vector<DiscreteMeasure>& stages, const Dynamics& model,
+                               const Policy& policy, const Gaussian& belief,
+                               const Eigen::MatrixXd& noise_covariance,
+                               const FloorSettings& settings, const Executor& run) {
+  std::vector<std::vector<double>> distances(stages.size(), std::vector<double>(kFloorEnsembles));
+  for (int n = 0; n < kFloorEnsembles; ++n) {
+    PathNumbers numbers = settings.numbers;
+    numbers.first += static_cast<std::uint64_t>(settings.paths + n * settings.count);
+    const PathSource source(policy, belief, noise_covariance, numbers);
+    const std::vector<Points> paths = model_paths(model, source, settings.count, run);
+    run(static_cast<int>(stages.size()), [&](int k) {
+      const auto stage = static_cast<std::size_t>(k);
+      distances[stage][static_cast<std::size_t>(n)] =
+          w2_to(stages[stage], paths[stage], settings.count);
+    });
+  }
+  std::vector<W2Floor> floors;
+  for (const std::vector<double>& of_stage : distances) floors.push_back(floor_of(of_stage));
+  return floors;
+}
+
+std::vector<HorizonStage> compare_along_horizon(const PlantPaths& plant,
+                                                const std::vector<Points>& model,
+                                                const std::vector<DiscreteMeasure>& stages,
+                                                const SafeSet& safe_set,
+                                                const HorizonSettings& settings,
+                                                const Executor& run) {
+  std::vector<HorizonStage> compared(stages.size() - 1);
+  run(static_cast<int>(compared.size()), [&](int n) {
+    const std::size_t k = static_cast<std::size_t>(n) + 1;
+    HorizonStage& stage = compared[k - 1];
+    stage.stage = static_cast<int>(k);
+    stage.divergence_rmse = rms_of_finite(plant.states[k] - model[k]);
+    stage.residual_rmse = rms_of_finite(plant.residuals[k - 1]);
+    stage.w2 = w2_to(stages[k], plant.states[k], settings.w2_paths);
+    stage.unsafe = count_unsafe(plant.states[k], safe_set);
+    stage.unsafe_limits = clopper_pearson(stage.unsafe, plant.states[k].cols(), kIntervalTail);
+  });
+  return compared;
+}
+
+}  // namespace qsmpc

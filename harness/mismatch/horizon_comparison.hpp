@@ -1,0 +1,74 @@
+// Where a plant is at the stages of a plan, beside where the planner's model and its particles say.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/parallel.hpp"
+#include "controller/planning/safe_set.hpp"
+#include "harness/binomial_interval.hpp"
+#include "harness/mismatch/path_ensemble.hpp"
+
+namespace qsmpc {
+
+/// Probability with which either limit of an observed rate is wrong: together they are an interval
+/// of 99 %.
+inline constexpr double kIntervalTail = 0.005;
+
+/// W2 between the particles of a stage and ensembles of the model's own paths: what W2 is where the
+/// plant is the model, for as many paths. It is not zero: particles are few, and so are paths.
+struct W2Floor {
+  double mean = 0.0;
+  double deviation = 0.0;  ///< standard deviation over the ensembles
+};
+
+/// Ensembles of the model that a floor is the mean of.
+inline constexpr int kFloorEnsembles = 8;
+
+/// Most pairs of particles and paths that a distance is computed for: about 20 ms.
+inline constexpr std::int64_t kPairsForW2 = 200'000;
+
+/// Of `paths`, how many enter a distance to the largest of `stages`: fewer where there are many
+/// particles.
+[[nodiscard]] std::int64_t w2_paths(const std::vector<DiscreteMeasure>& stages, std::int64_t paths);
+
+/// The floors of stages 0 … horizon, from kFloorEnsembles ensembles of `count` paths each, with the
+/// numbers that follow those of the first `paths` paths of `numbers`. Nothing depends on `run`.
+struct FloorSettings {
+  PathNumbers numbers;
+  std::int64_t paths = 0;
+  std::int64_t count = 0;
+};
+[[nodiscard]] std::vector<W2Floor> w2_floors(const std::vector<DiscreteMeasure>& stages,
+                                             const Dynamics& model, const Policy& policy,
+                                             const Gaussian& belief,
+                                             const Eigen::MatrixXd& noise_covariance,
+                                             const FloorSettings& settings, const Executor& run);
+
+/// One stage of the horizon. n: state_dim.
+struct HorizonStage {
+  int stage = 0;
+  Eigen::VectorXd divergence_rmse;  ///< √ mean (plant − model)², by state, path by path
+  double w2 = 0.0;                  ///< between the particles and the plant's paths
+  Eigen::VectorXd residual_rmse;    ///< of the period that leads to this stage
+  std::int64_t unsafe = 0;          ///< paths whose plant is unsafe, or broken, at this stage
+  RateInterval unsafe_limits;       ///< Clopper–Pearson, 99 %
+};
+
+struct HorizonSettings {
+  std::int64_t w2_paths = 0;  ///< of the plant's paths, the first so many enter W2
+};
+
+/// Stages 1 … horizon. Paths whose plant broke are unsafe from then on, and have no part in
+/// divergence, residuals and W2; where none is left these are not a number. Nothing depends on
+/// `run`. stages: the particles of stages 0 … horizon; model: the states of `model_paths` of the
+/// same source.
+[[nodiscard]] std::vector<HorizonStage> compare_along_horizon(
+    const PlantPaths& plant, const std::vector<Points>& model,
+    const std::vector<DiscreteMeasure>& stages, const SafeSet& safe_set,
+    const HorizonSettings& settings, const Executor& run);
+
+}  // namespace qsmpc

@@ -1,0 +1,85 @@
+// Many paths of a plant under one policy, beside those of the model with the same initial states
+// and the same disturbances.
+//
+//   const PathSource source(policy, belief, noise_covariance, {.seed = 1});
+//   const std::vector<Points> model = model_paths(*model, source, 1000, run);
+//   const PlantPaths plant = plant_paths(pool, *model, source, 1000, run, work);
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/parallel.hpp"
+#include "controller/prediction/policy.hpp"
+#include "harness/mismatch/plant_pool.hpp"
+#include "harness/mismatch/shared_work.hpp"
+#include "harness/plant/disturbance.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// Which paths of all that a seed stands for. Those of other numbers are independent of them.
+struct PathNumbers {
+  std::uint64_t seed = 0;
+  std::uint64_t first = 0;  ///< number of the first path
+};
+
+/// Where paths come from: x_0 ~ belief, x_{k+1} = plant(x_k, u_k(x_k)) + w_k, w_k ~ N(0, Σ).
+/// Path i depends on the seed and its number alone, and is the one of that number that
+/// `qsmpc predict --monte-carlo` simulates.
+class PathSource {
+ public:
+  /// `policy` must outlive it. Throws std::invalid_argument on a covariance that is none.
+  PathSource(const Policy& policy, const Gaussian& belief, const Eigen::MatrixXd& noise_covariance,
+             const PathNumbers& numbers);
+
+  [[nodiscard]] const Policy& policy() const { return policy_; }
+  [[nodiscard]] Eigen::Index stages() const { return policy_.horizon(); }
+  /// x_0 of path `path`, counted from the first (state_dim).
+  [[nodiscard]] Eigen::VectorXd initial_state(std::int64_t path) const;
+  /// w of that path in the period from `stage` (≥ 0) to the next (state_dim).
+  [[nodiscard]] Eigen::VectorXd disturbance(std::int64_t path, Eigen::Index stage) const;
+
+ private:
+  [[nodiscard]] RandomKey key(std::int64_t path, Eigen::Index step) const;
+
+  const Policy& policy_;
+  PathNumbers numbers_;
+  GaussianSampler initial_;
+  GaussianSampler noise_;
+};
+
+/// The states of `count` paths of the model at stages 0 … horizon, each state_dim x count.
+[[nodiscard]] std::vector<Points> model_paths(const Dynamics& model, const PathSource& source,
+                                              std::int64_t count, const Executor& run);
+
+/// Paths of a plant. Of one whose plant broke, what follows is not a number.
+struct PlantPaths {
+  std::vector<Points> states;     ///< stages 0 … horizon, state_dim x count
+  std::vector<Points> residuals;  ///< x_{k+1} − w_k − f(x_k, u_k), horizon, state_dim x count
+  std::int64_t faults = 0;        ///< paths whose plant broke
+};
+
+/// Paths a unit of `SharedWork`.
+inline constexpr std::int64_t kPathBatch = 20;
+
+/// Units of work of `plant_paths`.
+[[nodiscard]] inline std::int64_t path_batches(std::int64_t count) {
+  return (count + kPathBatch - 1) / kPathBatch;
+}
+
+/// Drives plants of `plants` along `count` paths; the policy is evaluated at the plant's own state.
+/// The same for whatever `run`. Not complete if `work` was stopped.
+[[nodiscard]] PlantPaths plant_paths(PlantPool& plants, const Dynamics& model,
+                                     const PathSource& source, std::int64_t count,
+                                     const Executor& run, SharedWork& work);
+
+/// Simulated seconds a second of one plant in this thread: the median over `count` ≥ 1 paths.
+/// Depends on the machine and on what else it does.
+[[nodiscard]] double simulation_speed(Plant& plant, const PathSource& source, double time_step,
+                                      int count);
+
+}  // namespace qsmpc

@@ -1,0 +1,170 @@
+#include "harness/report/comparison_charts.hpp"
+
+#include <cstddef>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "harness/episode/assembly.hpp"
+#include "harness/report/page_style.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kStageLabel = "stage";
+constexpr double kLeastResidual = 1e-9;      // what is below is drawn at the foot of the axis
+constexpr double kLeastProbability = 1e-10;  // the same
+
+/// Colours of the plants, blue left to what they are compared with.
+int plant_colour(std::size_t plant) { return 1 + static_cast<int>(plant) % (kPaletteSize - 1); }
+
+std::string with_unit(const Coordinate& coordinate) {
+  return coordinate.unit.empty() ? coordinate.name : coordinate.name + " (" + coordinate.unit + ")";
+}
+
+Series by_coordinate(const std::string& name, int colour, const Eigen::VectorXd& values) {
+  Series series{.name = name, .colour = colour, .mark = Mark::kPoints};
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    series.x.push_back(static_cast<double>(i + 1));
+    series.y.push_back(values[i]);
+  }
+  return series;
+}
+
+ComparisonFigure residual_figure(const Comparison& comparison, const SystemDescription& system) {
+  Chart chart{.title = "One-step residual: what the plant adds to model and disturbance",
+              .note =
+                  "Root mean square over all periods of all episodes. What the model does not "
+                  "explain of the plant's next state, the disturbance taken away. What is below "
+                  "10⁻⁹, as rounding is, is at the foot.",
+              .x_label = "state",
+              .y_label = "root mean square (unit of the state)",
+              .y_scale = Scale::kLog,
+              .least_shown = kLeastResidual};
+  for (const Coordinate& state : system.states) chart.x_names.push_back(with_unit(state));
+  chart.x_includes = {0.5, static_cast<double>(system.states.size()) + 0.5};
+  chart.series.push_back(
+      by_coordinate("disturbance, for scale", kBlue,
+                    comparison.scenario.disturbance.covariance.diagonal().cwiseSqrt()));
+  for (std::size_t n = 0; n < comparison.plants.size(); ++n) {
+    const PlantComparison& plant = comparison.plants[n];
+    chart.series.push_back(by_coordinate(plant.name, plant_colour(n), plant.one_step.rmse));
+  }
+  return {.file = "residuals.svg", .charts = {std::move(chart)}};
+}
+
+/// A line through `value` of each stage of `plant`.
+template <class Value>
+Series by_stage(const PlantComparison& plant, const std::string& name, int colour,
+                const Value& value) {
+  Series series{.name = name, .colour = colour};
+  for (const HorizonStage& stage : plant.horizon) {
+    series.x.push_back(stage.stage);
+    series.y.push_back(value(stage));
+  }
+  return series;
+}
+
+ComparisonFigure divergence_figure(const Comparison& comparison, const SystemDescription& system) {
+  ComparisonFigure figure{.file = "divergence.svg", .charts = {}};
+  for (Eigen::Index i = 0; i < std::ssize(system.states); ++i) {
+    const Coordinate& state = system.states[static_cast<std::size_t>(i)];
+    Chart chart{.title = "Divergence from the model: " + state.name,
+                .note = "Root mean square over paths with the same disturbances.",
+                .x_label = kStageLabel,
+                .y_label = with_unit(state),
+                .x_includes = {0.0},
+                .y_includes = {0.0}};
+    for (std::size_t n = 0; n < comparison.plants.size(); ++n) {
+      const PlantComparison& plant = comparison.plants[n];
+      chart.series.push_back(
+          by_stage(plant, plant.name, plant_colour(n),
+                   [i](const HorizonStage& stage) { return stage.divergence_rmse[i]; }));
+    }
+    figure.charts.push_back(std::move(chart));
+  }
+  return figure;
+}
+
+ComparisonFigure w2_figure(const Comparison& comparison) {
+  Chart chart{.title = "W₂ between the predicted measure and the plant",
+              .note = fmt::format(
+                  "Floor: the same for {} paths of the model itself, mean and two standard "
+                  "deviations of {} ensembles. A plant within it cannot be told from the model.",
+                  comparison.w2_paths, kFloorEnsembles),
+              .x_label = kStageLabel,
+              .y_label = "W₂ distance (state units)",
+              .x_includes = {0.0},
+              .y_includes = {0.0}};
+  Series floor{.name = "floor: the model", .colour = kBlue};
+  Series lower{.name = "floor − 2σ", .colour = kBlue, .dashed = true};
+  Series upper{.name = "floor + 2σ", .colour = kBlue, .dashed = true};
+  for (std::size_t k = 1; k < comparison.floors.size(); ++k) {
+    const W2Floor& of_stage = comparison.floors[k];
+    for (Series* series : {&floor, &lower, &upper}) series->x.push_back(static_cast<double>(k));
+    floor.y.push_back(of_stage.mean);
+    lower.y.push_back(of_stage.mean - 2.0 * of_stage.deviation);
+    upper.y.push_back(of_stage.mean + 2.0 * of_stage.deviation);
+  }
+  chart.series = {floor, lower, upper};
+  for (std::size_t n = 0; n < comparison.plants.size(); ++n) {
+    chart.series.push_back(by_stage(comparison.plants[n], comparison.plants[n].name,
+                                    plant_colour(n),
+                                    [](const HorizonStage& stage) { return stage.w2; }));
+  }
+  return {.file = "w2.svg", .charts = {std::move(chart)}};
+}
+
+Chart certificate_chart(const Comparison& comparison, const PlantComparison& plant) {
+  const auto of = [](const std::vector<StageCertificate>& certificates) {
+    return [&certificates](const HorizonStage& stage) {
+      return certificates[static_cast<std::size_t>(stage.stage) - 1].value;
+    };
+  };
+  const auto paths = static_cast<double>(comparison.paths);
+  Chart chart{.title = "Certificates: " + plant.name,
+              .note =
+                  "Bounds of the probability of being unsafe under the plan, and the share of "
+                  "the plant's paths that are. What is below the axis, 0 included, is at its "
+                  "foot.",
+              .x_label = kStageLabel,
+              .y_label = "probability (–)",
+              .y_scale = Scale::kLog,
+              .least_shown = kLeastProbability,
+              .x_includes = {0.0},
+              .y_includes = {1.0}};
+  chart.series.push_back(
+      by_stage(plant, "certificate without model error", kBlue, of(comparison.certificates)));
+  if (comparison.with_error) {
+    chart.series.push_back(
+        by_stage(plant, "certificate with model error", kGreen, of(*comparison.with_error)));
+  }
+  chart.series.push_back(by_stage(
+      plant, "observed", kVermilion,
+      [paths](const HorizonStage& stage) { return static_cast<double>(stage.unsafe) / paths; }));
+  chart.series.back().mark = Mark::kPoints;
+  chart.series.push_back(
+      by_stage(plant, "observed: lower limit (99 %)", kPurple,
+               [](const HorizonStage& stage) { return stage.unsafe_limits.lower; }));
+  chart.series.back().dashed = true;
+  chart.series.push_back(
+      by_stage(plant, "observed: upper limit (99 %)", kVermilion,
+               [](const HorizonStage& stage) { return stage.unsafe_limits.upper; }));
+  chart.series.back().dashed = true;
+  return chart;
+}
+
+}  // namespace
+
+std::vector<ComparisonFigure> comparison_figures(const Comparison& comparison) {
+  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
+  const SystemDescription& system = model->description();
+  ComparisonFigure certificates{.file = "certificates.svg", .charts = {}};
+  for (const PlantComparison& plant : comparison.plants) {
+    certificates.charts.push_back(certificate_chart(comparison, plant));
+  }
+  return {residual_figure(comparison, system), divergence_figure(comparison, system),
+          w2_figure(comparison), std::move(certificates)};
+}
+
+}  // namespace qsmpc

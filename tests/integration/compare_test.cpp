@@ -1,0 +1,163 @@
+// `qsmpc compare` from the outside: exit codes, what it prints, files left behind.
+
+#include <algorithm>
+#include <csignal>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/trace/hdf5_file.hpp"
+#include "tests/integration/process.hpp"
+
+namespace qsmpc::testing {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+// Few particles, periods, episodes and paths, so that a test is quick.
+const std::vector<std::string> kSmall = {
+    "--set", "controller.quantisation={state: 27, noise: 16, compressed: 27}", "--set",
+    "limit.steps=15"};
+
+void add_unless_given(std::vector<std::string>& arguments, const std::string& option,
+                      const std::string& value) {
+  if (std::ranges::find(arguments, option) != arguments.end()) return;
+  arguments.push_back(option);
+  arguments.push_back(value);
+}
+
+ProcessResult compare(const std::string& scenario, const std::string& out,
+                      const std::vector<std::string>& more, const ProcessOptions& options = {}) {
+  std::vector<std::string> arguments = {"compare", scenario};
+  if (!out.empty()) arguments.insert(arguments.end(), {"--out", out});
+  arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  add_unless_given(arguments, "--episodes", "2");
+  add_unless_given(arguments, "--paths", "40");
+  return run_qsmpc(arguments, options);
+}
+
+std::set<std::string> files_in(const std::string& folder) {
+  std::set<std::string> names;
+  if (!fs::exists(folder)) return names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    names.insert(entry.path().filename().string());
+  }
+  return names;
+}
+
+TEST(Compare, leaves_numbers_data_scenario_and_figures) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      compare("dubins_corridor", folder.path(),
+              {"--plant", "analytic", "--plant", "mujoco_car", "--json", "--quiet"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.errors, "");
+  EXPECT_EQ(result.output, read_text(folder.path() + "/comparison.json"));
+  EXPECT_THAT(files_in(folder.path()),
+              ElementsAre("certificates.svg", "comparison.h5", "comparison.json", "divergence.svg",
+                          "residuals.svg", "scenario.yaml", "w2.svg"));
+  const auto json = nlohmann::json::parse(result.output);
+  ASSERT_EQ(json["plants"].size(), 2U);
+  const auto& model = json["plants"]["analytic"];
+  const auto& car = json["plants"]["mujoco_car"];
+  EXPECT_EQ(car["episodes"], 2);
+  EXPECT_EQ(car["horizon"].size(), 8U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_LE(model["one_step"]["rmse"][i], model["one_step"]["rounding"][i]);
+    EXPECT_GT(car["one_step"]["rmse"][i], car["one_step"]["rounding"][i]);
+  }
+  EXPECT_EQ(model["closed_loop"]["certificate_exceeded"], 0);
+  EXPECT_GE(car["closed_loop"]["unsafe_interval"][1], car["closed_loop"]["unsafe_rate"]);
+  EXPECT_EQ(Hdf5File::open(folder.path() + "/comparison.h5").text("/", "kind"), "comparison");
+  EXPECT_THAT(read_text(folder.path() + "/w2.svg"), HasSubstr("mujoco_car"));
+}
+
+TEST(Compare, prints_a_table_and_uses_the_named_folder_by_default) {
+  const TemporaryFolder folder;
+  const ProcessResult result = compare("dubins_corridor", "", {}, {.folder = folder.path()});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("analytic: the model, but for rounding"));
+  EXPECT_THAT(result.output, HasSubstr("out/dubins_corridor-compare/comparison.json"));
+  EXPECT_THAT(result.errors, HasSubstr("comparing: "));
+}
+
+TEST(Compare, the_scenarios_own_vehicle_is_compared_by_default) {
+  const TemporaryFolder folder;
+  const ProcessResult result = compare("dubins_obstacles", folder.path(), {"--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto json = nlohmann::json::parse(result.output);
+  EXPECT_EQ(json["plants"].size(), 2U);
+  EXPECT_TRUE(json["plants"].contains("analytic"));
+  EXPECT_TRUE(json["plants"].contains("mujoco"));
+}
+
+TEST(Compare, threads_and_a_second_run_change_nothing_but_the_speed) {
+  const TemporaryFolder folder;
+  const auto numbers = [&](const char* name, const char* threads) {
+    const ProcessResult result =
+        compare("dubins_corridor", folder.path() + "/" + name,
+                {"--plant", "analytic", "--plant", "mujoco_car", "--threads", threads, "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.errors;
+    auto json = nlohmann::json::parse(result.output);
+    for (auto& plant : json["plants"]) plant.erase("speed");
+    return json.dump();
+  };
+  EXPECT_EQ(numbers("one", "1"), numbers("three", "3"));
+}
+
+TEST(Compare, refuses_bad_input_in_one_line_and_writes_nothing) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() + "/out";
+  const std::string broken = folder.file("broken.xml", "<mujoco><worldbody></mujoco>");
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"--plant", "mujoco_cra"}, "mujoco_car"},
+      {{"--plant", "submarine"}, "analytic, mujoco, "},
+      {{"--plant", "analytic", "--plant", folder.path() + "/none.xml"}, "none.xml"},
+      {{"--plant", broken}, "broken.xml"},
+      {{"--episodes", "0"}, "--episodes"},
+      {{"--paths", "0"}, "--paths"},
+      {{"--threads", "0"}, "--threads"},
+  };
+  for (const auto& [arguments, message] : cases) {
+    const ProcessResult result = compare("dubins_corridor", out, arguments);
+    EXPECT_EQ(result.exit_code, 2) << message;
+    EXPECT_EQ(result.output, "");
+    EXPECT_EQ(std::ranges::count(result.errors, '\n'), 1) << result.errors;
+    EXPECT_THAT(result.errors, HasSubstr(message));
+  }
+  EXPECT_FALSE(fs::exists(out));
+}
+
+TEST(Compare, a_full_disk_is_exit_code_3_and_leaves_nothing) {
+  const TemporaryFolder folder;
+  const ProcessResult result =
+      compare("dubins_corridor", folder.path(), {}, {.file_size_limit = 3000});
+  EXPECT_EQ(result.exit_code, 3) << result.errors;
+  EXPECT_THAT(files_in(folder.path()), IsEmpty());
+}
+
+TEST(Compare, an_interrupt_leaves_nothing_under_a_final_name) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() + "/out";
+  const ProcessResult result = compare("dubins_corridor", out, {"--episodes", "100000", "--quiet"},
+                                       {.meanwhile = [&](pid_t process) {
+                                         if (!fs::exists(out)) return false;
+                                         kill(process, SIGINT);
+                                         return true;
+                                       }});
+  EXPECT_EQ(result.exit_code, 130) << result.errors;
+  EXPECT_THAT(result.errors, HasSubstr("interrupted"));
+  EXPECT_THAT(files_in(out), IsEmpty());
+}
+
+}  // namespace
+}  // namespace qsmpc::testing

@@ -1,0 +1,65 @@
+// Scenarios and plants of the tests of comparisons.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "harness/mismatch/plant_pool.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/scenario/scenario_file.hpp"
+
+namespace qsmpc::testing {
+
+/// A car that is at its target soon, of few particles.
+inline Scenario short_scenario(const std::vector<std::string>& overrides = {}) {
+  return parse_scenario(
+      "name: short\n"
+      "model: {system: dubins, speed: 1.5}\n"
+      "plant: {kind: analytic, mjcf: dubins_car.xml}\n"
+      "seed: 5\n"
+      "initial_state: {mean: [0, 0, 0.5], covariance: [0.01, 0.01, 0.01]}\n"
+      "disturbance: {covariance: [0.01, 0.01, 0.001]}\n"
+      "safe_set: {bounds: {x: [-1, 6], y: [-0.6, 3]}}\n"
+      "target: {state: [1.5, 0.5, 0], radius: 0.5}\n"
+      "controller:\n"
+      "  horizon: 3\n"
+      "  quantisation: {state: 27, noise: 8, compressed: 30}\n"
+      "  input_bounds: {yaw_rate: [-2, 2]}\n"
+      "  cost: {state: [60, 60, 1], input: [2], terminal: [60, 60, 5]}\n"
+      "limit: {steps: 30}\n",
+      {.overrides = overrides});
+}
+
+/// Moves as the plant in it and is then off by `bias`; breaks where x is beyond `breaks_at`.
+class AlteredPlant final : public Plant {
+ public:
+  AlteredPlant(std::unique_ptr<Plant> plant, Eigen::VectorXd bias, double breaks_at)
+      : plant_(std::move(plant)), bias_(std::move(bias)), breaks_at_(breaks_at) {}
+
+  MotionSample reset(const Eigen::VectorXd& state) override { return plant_->reset(state); }
+
+  PlantStep advance(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance) override {
+    PlantStep step = plant_->advance(input, disturbance + bias_);
+    if (step.state[0] > breaks_at_) step.fault = "beyond the edge";
+    return step;
+  }
+
+  [[nodiscard]] Eigen::VectorXd state() const override { return plant_->state(); }
+
+ private:
+  std::unique_ptr<Plant> plant_;
+  Eigen::VectorXd bias_;
+  double breaks_at_;
+};
+
+/// The scenario's plant, altered.
+inline PlantPool altered_plants(const Scenario& scenario, const Eigen::VectorXd& bias,
+                                double breaks_at = 1e9) {
+  return PlantPool([scenario, bias, breaks_at]() -> std::unique_ptr<Plant> {
+    return std::make_unique<AlteredPlant>(make_plant(scenario), bias, breaks_at);
+  });
+}
+
+}  // namespace qsmpc::testing

@@ -1,0 +1,216 @@
+#include "harness/mismatch/path_ensemble.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include <gtest/gtest.h>
+
+#include "harness/episode/assembly.hpp"
+#include "harness/mismatch/horizon_comparison.hpp"
+#include "harness/threads/executor.hpp"
+#include "tests/support/executors.hpp"
+#include "tests/unit/mismatch/mismatch_fixture.hpp"
+
+namespace qsmpc {
+namespace {
+
+using testing::altered_plants;
+using testing::short_scenario;
+
+constexpr std::int64_t kPaths = 130;  // no multiple of a batch
+
+/// A plan of a scenario, and paths under it.
+struct Planned {
+  explicit Planned(const Scenario& planned_scenario) : scenario(planned_scenario) {
+    model = model_of(scenario);
+    belief = {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance};
+    Planner planner(*model, planner_settings(scenario));
+    const Plan& plan = planner.plan(belief);
+    policy = plan.policy;
+    particles = plan.prediction.stages;
+  }
+
+  [[nodiscard]] PathSource source(std::uint64_t first = 0) const {
+    return {policy, belief, scenario.disturbance.covariance, {.seed = 5, .first = first}};
+  }
+
+  Scenario scenario;
+  std::unique_ptr<const Dynamics> model;
+  Gaussian belief;
+  Policy policy;
+  std::vector<DiscreteMeasure> particles;
+};
+
+PlantPaths paths_of(PlantPool& pool, const Planned& planned, const Executor& run = run_in_turn) {
+  SharedWork work(path_batches(kPaths), {}, {});
+  return plant_paths(pool, *planned.model, planned.source(), kPaths, run, work);
+}
+
+TEST(PlantPaths, of_the_model_itself_are_the_models_but_for_rounding) {
+  const Planned planned(short_scenario());
+  PlantPool pool = altered_plants(planned.scenario, Eigen::Vector3d::Zero());
+  const PlantPaths plant = paths_of(pool, planned);
+  const std::vector<Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  ASSERT_EQ(plant.states.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_LT((plant.states[k] - model[k]).cwiseAbs().maxCoeff(), 1e-14) << k;
+  }
+  for (const Points& residuals : plant.residuals) {
+    EXPECT_LT(residuals.cwiseAbs().maxCoeff(), 1e-14);
+  }
+}
+
+TEST(PlantPaths, a_bias_of_the_plant_is_its_residual) {
+  const Planned planned(short_scenario());
+  const Eigen::Vector3d bias(0.02, -0.01, 0.003);
+  PlantPool pool = altered_plants(planned.scenario, bias);
+  for (const Points& residuals : paths_of(pool, planned).residuals) {
+    for (const auto& residual : residuals.colwise()) {
+      EXPECT_LT((residual - bias).cwiseAbs().maxCoeff(), 1e-14);  // rounding of states of size 1
+    }
+  }
+}
+
+// A double integrator in open loop: what is added to position and velocity in every period stays,
+// and the velocity's moves the position, by the model's own equations.
+TEST(PlantPaths, a_bias_adds_up_along_the_horizon_by_the_models_equations) {
+  const Planned planned(parse_scenario(
+      "name: mass\nmodel: {system: double_integrator}\nplant: {kind: analytic}\n"
+      "initial_state: {mean: [0, 0], covariance: [0.05, 0.05]}\n"
+      "disturbance: {covariance: [0.001, 0.001]}\n"
+      "safe_set: {bounds: {position: [-5, 5]}}\ntarget: {state: [2, 0], radius: 0.2}\n"
+      "controller: {horizon: 4, policy: open_loop,\n"
+      "  cost: {state: [30, 5], input: [20], terminal: [40, 10]}}\n"));
+  const Eigen::Vector2d bias(0.002, 0.03);
+  PlantPool pool = altered_plants(planned.scenario, bias);
+  const PlantPaths plant = paths_of(pool, planned);
+  const std::vector<Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  const auto horizon =
+      compare_along_horizon(plant, model, planned.particles, planned.scenario.safe_set,
+                            {.w2_paths = kPaths}, run_in_turn);
+  Eigen::Vector2d expected = Eigen::Vector2d::Zero();
+  for (const HorizonStage& stage : horizon) {
+    expected[0] += planned.scenario.time_step * expected[1];
+    expected += bias;
+    EXPECT_TRUE(stage.divergence_rmse.isApprox(expected, 1e-10)) << stage.stage;
+    EXPECT_TRUE(stage.residual_rmse.isApprox(bias, 1e-10));
+  }
+}
+
+TEST(PlantPaths, are_the_same_bit_for_bit_in_any_order_and_on_any_number_of_threads) {
+  const Planned planned(short_scenario({"plant.kind=mujoco", "controller.horizon=2"}));
+  PlantPool pool([&] { return make_plant(planned.scenario); });
+  const PlantPaths reference = paths_of(pool, planned);
+  for (const Executor& run :
+       {Executor(testing::run_backwards), Executor(testing::run_on_threads), executor_of(2)}) {
+    const PlantPaths paths = paths_of(pool, planned, run);
+    for (std::size_t k = 0; k < reference.states.size(); ++k) {
+      EXPECT_EQ(paths.states[k], reference.states[k]) << k;
+    }
+  }
+  const std::vector<Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  EXPECT_EQ(model_paths(*planned.model, planned.source(), kPaths, testing::run_on_threads), model);
+}
+
+TEST(PlantPaths, a_path_depends_on_its_number_alone) {
+  const Planned planned(short_scenario());
+  const std::vector<Points> all =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  const std::vector<Points> some =
+      model_paths(*planned.model, planned.source(/*first=*/100), 30, run_in_turn);
+  EXPECT_EQ(some.back(), all.back().middleCols(100, 30));
+}
+
+TEST(PlantPaths, one_that_breaks_is_unsafe_from_then_on_and_in_no_average) {
+  const Planned planned(short_scenario());
+  PlantPool pool = altered_plants(planned.scenario, Eigen::Vector3d::Zero(), /*breaks_at=*/0.3);
+  const PlantPaths plant = paths_of(pool, planned);
+  const std::vector<Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  const auto horizon =
+      compare_along_horizon(plant, model, planned.particles, planned.scenario.safe_set,
+                            {.w2_paths = kPaths}, run_in_turn);
+  EXPECT_GT(plant.faults, 0);
+  EXPECT_LT(plant.faults, kPaths);
+  EXPECT_GE(horizon.back().unsafe, plant.faults);
+  EXPECT_LE(horizon.front().unsafe, horizon.back().unsafe);
+  for (const HorizonStage& stage : horizon) {
+    EXPECT_LT(stage.divergence_rmse.maxCoeff(), 1e-14);
+    EXPECT_TRUE(std::isfinite(stage.w2));
+  }
+}
+
+TEST(PlantPaths, are_given_up_when_asked) {
+  const Planned planned(short_scenario());
+  PlantPool pool = altered_plants(planned.scenario, Eigen::Vector3d::Zero());
+  SharedWork work(path_batches(kPaths), [] { return true; }, {});
+  const PlantPaths plant =
+      plant_paths(pool, *planned.model, planned.source(), kPaths, run_in_turn, work);
+  EXPECT_TRUE(plant.states.front().hasNaN());
+}
+
+TEST(HorizonComparison, unsafe_paths_are_counted_with_their_limits) {
+  const Planned planned(short_scenario());
+  PlantPaths plant;
+  plant.states.assign(4, Points::Zero(3, 10));
+  plant.residuals.assign(3, Points::Zero(3, 10));
+  plant.states[2].row(1).head(4).setConstant(-0.7);  // beyond the wall at −0.6
+  const auto horizon =
+      compare_along_horizon(plant, plant.states, planned.particles, planned.scenario.safe_set,
+                            {.w2_paths = 10}, run_in_turn);
+  EXPECT_EQ(horizon[0].unsafe, 0);
+  EXPECT_EQ(horizon[1].unsafe, 4);
+  const RateInterval limits = clopper_pearson(4, 10, 0.005);
+  EXPECT_EQ(horizon[1].unsafe_limits.lower, limits.lower);
+  EXPECT_EQ(horizon[1].unsafe_limits.upper, limits.upper);
+}
+
+TEST(W2Floors, of_independent_ensembles_spread_about_what_one_more_has) {
+  const Planned planned(short_scenario());
+  const FloorSettings settings{.numbers = {.seed = 5}, .paths = kPaths, .count = kPaths};
+  const auto floors = w2_floors(planned.particles, *planned.model, planned.policy, planned.belief,
+                                planned.scenario.disturbance.covariance, settings, run_in_turn);
+  PlantPool pool = altered_plants(planned.scenario, Eigen::Vector3d::Zero());
+  const auto horizon = compare_along_horizon(
+      paths_of(pool, planned), model_paths(*planned.model, planned.source(), kPaths, run_in_turn),
+      planned.particles, planned.scenario.safe_set, {.w2_paths = kPaths}, run_in_turn);
+  // Student's t with seven degrees of freedom, widened for one draw more: 1 in 1000.
+  const double limit = 5.41 * std::sqrt(1.0 + 1.0 / kFloorEnsembles);
+  for (const HorizonStage& stage : horizon) {
+    const W2Floor& floor = floors[static_cast<std::size_t>(stage.stage)];
+    EXPECT_GT(floor.deviation, 0.0);
+    EXPECT_LT(std::abs(stage.w2 - floor.mean), limit * floor.deviation) << stage.stage;
+  }
+}
+
+TEST(W2Floors, a_plant_that_is_off_stands_out_from_them) {
+  const Planned planned(short_scenario());
+  const FloorSettings settings{.numbers = {.seed = 5}, .paths = kPaths, .count = kPaths};
+  const auto floors = w2_floors(planned.particles, *planned.model, planned.policy, planned.belief,
+                                planned.scenario.disturbance.covariance, settings, run_in_turn);
+  PlantPool pool = altered_plants(planned.scenario, Eigen::Vector3d(0.1, 0.0, 0.0));
+  const auto horizon = compare_along_horizon(
+      paths_of(pool, planned), model_paths(*planned.model, planned.source(), kPaths, run_in_turn),
+      planned.particles, planned.scenario.safe_set, {.w2_paths = kPaths}, run_in_turn);
+  EXPECT_GT(horizon.back().w2, floors.back().mean + 5.41 * 1.07 * floors.back().deviation);
+}
+
+TEST(W2Paths, are_fewer_where_there_are_many_particles) {
+  DiscreteMeasure measure{.locations = Points::Zero(2, 1000),
+                          .weights = Eigen::VectorXd::Constant(1000, 1e-3)};
+  EXPECT_EQ(w2_paths({measure}, 1000), 200);
+  measure = {.locations = Points::Zero(2, 10), .weights = Eigen::VectorXd::Constant(10, 0.1)};
+  EXPECT_EQ(w2_paths({measure}, 1000), 1000);
+}
+
+TEST(SimulationSpeed, is_a_positive_number) {
+  const Planned planned(short_scenario());
+  const std::unique_ptr<Plant> plant = make_plant(planned.scenario);
+  EXPECT_GT(simulation_speed(*plant, planned.source(), planned.scenario.time_step, 3), 0.0);
+}
+
+}  // namespace
+}  // namespace qsmpc
