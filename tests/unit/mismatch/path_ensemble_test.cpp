@@ -7,6 +7,7 @@
 
 #include "harness/episode/assembly.hpp"
 #include "harness/mismatch/horizon_comparison.hpp"
+#include "harness/prediction/prediction_report.hpp"
 #include "harness/threads/executor.hpp"
 #include "tests/support/executors.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
@@ -18,6 +19,18 @@ using testing::altered_plants;
 using testing::short_scenario;
 
 constexpr std::int64_t kPaths = 130;  // no multiple of a batch
+
+/// A unit mass far from the bounds of its input.
+Scenario mass_scenario(const std::string& policy) {
+  return parse_scenario(
+      "name: mass\nmodel: {system: double_integrator}\nplant: {kind: analytic}\n"
+      "initial_state: {mean: [0, 0], covariance: [0.05, 0.05]}\n"
+      "disturbance: {covariance: [0.001, 0.001]}\n"
+      "safe_set: {bounds: {position: [-5, 5]}}\ntarget: {state: [2, 0], radius: 0.2}\n"
+      "controller:\n  horizon: 4\n  input_bounds: {acceleration: [-1000, 1000]}\n"
+      "  cost: {state: [30, 5], input: [20], terminal: [40, 10]}\n  policy: " +
+      policy + "\n");
+}
 
 /// A plan of a scenario, and paths under it.
 struct Planned {
@@ -75,13 +88,7 @@ TEST(PlantPaths, a_bias_of_the_plant_is_its_residual) {
 // A double integrator in open loop: what is added to position and velocity in every period stays,
 // and the velocity's moves the position, by the model's own equations.
 TEST(PlantPaths, a_bias_adds_up_along_the_horizon_by_the_models_equations) {
-  const Planned planned(parse_scenario(
-      "name: mass\nmodel: {system: double_integrator}\nplant: {kind: analytic}\n"
-      "initial_state: {mean: [0, 0], covariance: [0.05, 0.05]}\n"
-      "disturbance: {covariance: [0.001, 0.001]}\n"
-      "safe_set: {bounds: {position: [-5, 5]}}\ntarget: {state: [2, 0], radius: 0.2}\n"
-      "controller: {horizon: 4, policy: open_loop,\n"
-      "  cost: {state: [30, 5], input: [20], terminal: [40, 10]}}\n"));
+  const Planned planned(mass_scenario("open_loop"));
   const Eigen::Vector2d bias(0.002, 0.03);
   PlantPool pool = altered_plants(planned.scenario, bias);
   const PlantPaths plant = paths_of(pool, planned);
@@ -97,6 +104,47 @@ TEST(PlantPaths, a_bias_adds_up_along_the_horizon_by_the_models_equations) {
     EXPECT_TRUE(stage.divergence_rmse.isApprox(expected, 1e-10)) << stage.stage;
     EXPECT_TRUE(stage.residual_rmse.isApprox(bias, 1e-10));
   }
+}
+
+// In closed loop the difference e of plant and model obeys e⁺ = (A + B K) e + bias while no input
+// is at its bounds: each of the two is fed back its own state.
+TEST(PlantPaths, plant_and_model_are_each_fed_back_their_own_state) {
+  const Planned planned(mass_scenario("closed_loop"));
+  const Eigen::Vector2d bias(0.002, 0.03);
+  PlantPool pool = altered_plants(planned.scenario, bias);
+  const PlantPaths plant = paths_of(pool, planned);
+  const std::vector<Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  Eigen::MatrixXd a(2, 2);
+  Eigen::MatrixXd b(2, 1);
+  Eigen::Vector2d expected = Eigen::Vector2d::Zero();
+  for (std::size_t k = 0; k < planned.policy.gains.size(); ++k) {
+    planned.model->jacobians(Eigen::Vector2d::Zero(), Eigen::VectorXd::Zero(1), a, b);
+    ASSERT_GT(planned.policy.gains[k].norm(), 1e-3);
+    expected = (a + b * planned.policy.gains[k]) * expected + bias;
+    const Points difference = plant.states[k + 1] - model[k + 1];
+    for (const auto& column : difference.colwise()) {
+      EXPECT_LT((column - expected).norm(), 1e-12) << k;
+    }
+  }
+}
+
+TEST(ModelPaths, are_those_that_a_prediction_simulates) {
+  const Planned planned(short_scenario({"safe_set.bounds.x=[-0.15, 6]"}));
+  const std::vector<Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  const PredictionReport report = predict_scenario(
+      planned.scenario, {.monte_carlo = {.samples = kPaths, .should_stop = {}, .on_progress = {}}});
+  std::int64_t events = 0;
+  for (std::size_t k = 1; k < model.size(); ++k) {
+    std::int64_t unsafe = 0;
+    for (const auto& state : model[k].colwise()) {
+      unsafe += distance_to_unsafe(state, planned.scenario.safe_set) <= 0.0 ? 1 : 0;
+    }
+    EXPECT_EQ(unsafe, report.monte_carlo->stages[k - 1]) << k;
+    events += unsafe;
+  }
+  EXPECT_GT(events, 0);
 }
 
 TEST(PlantPaths, are_the_same_bit_for_bit_in_any_order_and_on_any_number_of_threads) {
@@ -184,6 +232,19 @@ TEST(W2Floors, of_independent_ensembles_spread_about_what_one_more_has) {
     EXPECT_GT(floor.deviation, 0.0);
     EXPECT_LT(std::abs(stage.w2 - floor.mean), limit * floor.deviation) << stage.stage;
   }
+}
+
+TEST(W2Floors, take_other_random_numbers_than_the_paths_that_they_are_held_against) {
+  const Planned planned(short_scenario());
+  const auto floors = [&](std::uint64_t first, std::int64_t paths) {
+    return w2_floors(planned.particles, *planned.model, planned.policy, planned.belief,
+                     planned.scenario.disturbance.covariance,
+                     {.numbers = {.seed = 5, .first = first}, .paths = paths, .count = 20},
+                     testing::run_on_threads)
+        .back();
+  };
+  EXPECT_EQ(floors(0, 130).mean, floors(130, 0).mean);
+  EXPECT_NE(floors(0, 130).mean, floors(0, 0).mean);
 }
 
 TEST(W2Floors, a_plant_that_is_off_stands_out_from_them) {
