@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "controller/planning/safe_set.hpp"
+#include "controller/prediction/model_error.hpp"
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -94,6 +95,8 @@ struct Scenario {
   double time_step = 0.1;  ///< s, the control period
   GaussianValue initial_state;
   Disturbance disturbance;
+  /// How far the plant is from the model, where that is known: certificates then hold for it.
+  std::optional<ModelError> model_error;
   SafeSet safe_set;
   Target target;
   Controller controller;

@@ -11,6 +11,7 @@
 #include <fmt/ranges.h>
 
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/value_checks.hpp"
@@ -74,7 +75,7 @@ std::unique_ptr<const Dynamics> try_dynamics(const Scenario::Model& model, doubl
 class ScenarioReader {
  public:
   ScenarioReader(const YamlNode& tree, const FileLookup& lookup, Problems& problems)
-      : root_(tree, problems), lookup_(lookup) {}
+      : root_(tree, problems), problems_(problems), lookup_(lookup) {}
 
   Scenario read() {
     if (!root_.present()) return {};
@@ -87,6 +88,9 @@ class ScenarioReader {
       read_safe_set();
       read_initial_state();
       read_disturbance();
+      scenario_.model_error = read_model_error(
+          root_, problems_,
+          {.system = scenario_.model.system, .dim = state_dim(), .folder = lookup_.folder});
       read_target();
       read_controller();
     } else {
@@ -94,6 +98,7 @@ class ScenarioReader {
       for (const char* key : {"initial_state", "disturbance", "safe_set", "target", "controller"}) {
         (void)root_.section(key);
       }
+      if (!root_.holds_text("model_error")) (void)root_.section("model_error");
     }
     root_.refuse_unread();
     return std::move(scenario_);
@@ -129,6 +134,7 @@ class ScenarioReader {
   [[nodiscard]] Eigen::Index input_dim() const { return dynamics_->input_dim(); }
 
   Section root_;
+  Problems& problems_;
   const FileLookup& lookup_;
   Scenario scenario_;
   std::unique_ptr<const Dynamics> dynamics_;  // nullptr while the system is not known

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
@@ -11,33 +12,6 @@
 
 namespace qsmpc {
 namespace {
-
-template <class Values>
-std::string list(const Values& values) {
-  std::string out = "[";
-  for (Eigen::Index i = 0; i < values.size(); ++i) {
-    out += (i == 0 ? "" : ", ") + yaml_number(values[i]);
-  }
-  return out + "]";
-}
-
-std::string rows(const Eigen::MatrixXd& matrix) {
-  std::string out = "[";
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    out += (i == 0 ? "" : ", ") + list(Eigen::VectorXd(matrix.row(i)));
-  }
-  return out + "]";
-}
-
-// As a diagonal where that loses nothing, not even the sign of a zero.
-std::string square(const Eigen::MatrixXd& matrix) {
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
-      if (i != j && (matrix(i, j) != 0.0 || std::signbit(matrix(i, j)))) return rows(matrix);
-    }
-  }
-  return list(Eigen::VectorXd(matrix.diagonal()));
-}
 
 std::string box(const Box& box, const std::vector<Coordinate>& states) {
   std::string out = "{";
@@ -81,8 +55,8 @@ std::string target_text(const Scenario::Target& target, const std::vector<Coordi
   for (const int index : target.angles) {
     angles.push_back(states[static_cast<std::size_t>(index)].name);
   }
-  return fmt::format("target:\n  state: {}\n  radius: {}\n  angles: [{}]\n", list(target.state),
-                     yaml_number(target.radius), fmt::join(angles, ", "));
+  return fmt::format("target:\n  state: {}\n  radius: {}\n  angles: [{}]\n",
+                     yaml_list(target.state), yaml_number(target.radius), fmt::join(angles, ", "));
 }
 
 std::string input_bounds(const Scenario::Controller& controller,
@@ -95,7 +69,7 @@ std::string controller_text(const Scenario::Controller& controller,
   std::string out = "controller:\n";
   out += fmt::format("  horizon: {}\n  policy: {}\n", controller.horizon, controller.policy);
   if (controller.feedback_gain) {
-    out += fmt::format("  feedback_gain: {}\n", rows(*controller.feedback_gain));
+    out += fmt::format("  feedback_gain: {}\n", yaml_rows(*controller.feedback_gain));
   }
   const Scenario::Quantisation& points = controller.quantisation;
   const Scenario::Penalty& penalty = controller.penalty;
@@ -106,8 +80,8 @@ std::string controller_text(const Scenario::Controller& controller,
   out += fmt::format("  propagate_noise: {}\n  propagator: {}\n", controller.propagate_noise,
                      controller.propagator);
   out += fmt::format("  cost:\n    state: {}\n    input: {}\n    terminal: {}\n",
-                     square(controller.cost.state), square(controller.cost.input),
-                     square(controller.cost.terminal));
+                     yaml_square(controller.cost.state), yaml_square(controller.cost.input),
+                     yaml_square(controller.cost.terminal));
   out += fmt::format("  penalty: {{shape: {}, box: {}, obstacle: {}, length: {}}}\n", penalty.shape,
                      yaml_number(penalty.box), yaml_number(penalty.obstacle),
                      yaml_number(penalty.length));
@@ -133,8 +107,11 @@ std::string to_yaml(const Scenario& scenario) {
   out += plant_text(scenario.plant);
   out += fmt::format("time_step: {}\n", yaml_number(scenario.time_step));
   out += fmt::format("initial_state:\n  mean: {}\n  covariance: {}\n",
-                     list(scenario.initial_state.mean), square(scenario.initial_state.covariance));
-  out += fmt::format("disturbance:\n  covariance: {}\n", square(scenario.disturbance.covariance));
+                     yaml_list(scenario.initial_state.mean),
+                     yaml_square(scenario.initial_state.covariance));
+  out +=
+      fmt::format("disturbance:\n  covariance: {}\n", yaml_square(scenario.disturbance.covariance));
+  if (scenario.model_error) out += "model_error:\n" + model_error_text(*scenario.model_error, "  ");
   out += safe_set_text(scenario.safe_set, system.states);
   out += target_text(scenario.target, system.states);
   out += controller_text(scenario.controller, system.inputs);

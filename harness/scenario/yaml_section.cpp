@@ -67,6 +67,10 @@ void Problems::add(const YamlNode& node, std::string key, std::string found, std
                    .expected = std::move(expected)});
 }
 
+void Problems::add(InputError::Where where) {
+  if (list_.size() < kMostProblems) list_.push_back(std::move(where));
+}
+
 std::vector<InputError::Where> Problems::sorted() const {
   std::vector<InputError::Where> sorted = list_;
   std::stable_sort(sorted.begin(), sorted.end(),
@@ -95,6 +99,11 @@ const YamlNode* Section::get(const std::string& key) const {
 const YamlNode* Section::take(const std::string& key) {
   if (std::find(asked_.begin(), asked_.end(), key) == asked_.end()) asked_.push_back(key);
   return get(key);
+}
+
+bool Section::holds_text(const std::string& key) {
+  const YamlNode* node = take(key);
+  return node != nullptr && node->kind == YamlNode::Kind::kText;
 }
 
 std::vector<std::string> Section::keys() const {

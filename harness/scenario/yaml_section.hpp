@@ -30,6 +30,8 @@ class Problems {
 
   /// Notes a problem with the value `node` of `key`.
   void add(const YamlNode& node, std::string key, std::string found, std::string expected);
+  /// Notes a problem that was found in another file.
+  void add(InputError::Where where);
 
   [[nodiscard]] bool empty() const { return list_.empty(); }
   [[nodiscard]] std::size_t size() const { return list_.size(); }
@@ -74,6 +76,8 @@ class Section {
   [[nodiscard]] std::size_t list_size(const std::string& key);
 
   [[nodiscard]] bool has(const std::string& key) const { return get(key) != nullptr; }
+  /// Whether `key` holds a scalar.
+  [[nodiscard]] bool holds_text(const std::string& key);
   /// Whether the section is in the tree, as a mapping.
   [[nodiscard]] bool present() const { return node_ != nullptr; }
   [[nodiscard]] std::vector<std::string> keys() const;

@@ -20,4 +20,29 @@ std::string quoted_yaml(std::string_view text) {
   return out + '"';
 }
 
+std::string yaml_list(const Eigen::VectorXd& values) {
+  std::string out = "[";
+  for (Eigen::Index i = 0; i < values.size(); ++i) {
+    out += (i == 0 ? "" : ", ") + yaml_number(values[i]);
+  }
+  return out + "]";
+}
+
+std::string yaml_rows(const Eigen::MatrixXd& matrix) {
+  std::string out = "[";
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    out += (i == 0 ? "" : ", ") + yaml_list(matrix.row(i).transpose());
+  }
+  return out + "]";
+}
+
+std::string yaml_square(const Eigen::MatrixXd& matrix) {
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+      if (i != j && (matrix(i, j) != 0.0 || std::signbit(matrix(i, j)))) return yaml_rows(matrix);
+    }
+  }
+  return yaml_list(matrix.diagonal());
+}
+
 }  // namespace qsmpc

@@ -1,0 +1,152 @@
+#include "harness/scenario/model_error_reader.hpp"
+
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+#include "harness/scenario/text_file.hpp"
+#include "harness/scenario/value_checks.hpp"
+#include "harness/scenario/yaml_text.hpp"
+#include "harness/scenario/yaml_tree.hpp"
+
+namespace qsmpc {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kKey = "model_error";
+constexpr std::size_t kLongestPath = 1024;  // bytes
+constexpr std::size_t kLongestName = 100;   // bytes
+// Of a norm that is to be at least another one: what printing with ten digits may take away.
+constexpr double kRounding = 1e-9;
+constexpr std::array<const char*, kHigherOrders.size()> kNormKeys = {"norm4", "norm8"};
+
+/// Norms of the error's coordinates, none less than `least` but by rounding; nothing, and a noted
+/// problem, if they are something else.
+std::optional<Eigen::VectorXd> read_norms(Section& section, const std::string& key,
+                                          const Eigen::VectorXd& least,
+                                          const std::string& expected) {
+  std::optional<Eigen::VectorXd> norms = section.vector(key, least.size());
+  if (!norms) return std::nullopt;
+  for (Eigen::Index i = 0; i < least.size(); ++i) {
+    if ((*norms)[i] >= (1.0 - kRounding) * least[i]) continue;
+    section.note(key, expected, fmt::format("{} as number {}", (*norms)[i], i + 1));
+    return std::nullopt;
+  }
+  return norms;
+}
+
+void read_moments(Section& section, Eigen::Index dim, ModelError& error) {
+  error.mean = section.vector("mean", dim).value_or(Eigen::VectorXd());
+  std::optional<Eigen::MatrixXd> covariance = section.matrix("covariance", dim, dim);
+  if (!covariance) return;
+  if (const auto problem = make_semidefinite(*covariance)) {
+    section.note("covariance", "a symmetric, positive semidefinite matrix", *problem);
+    return;
+  }
+  error.covariance = *covariance;
+}
+
+void read_radius(Section& section, ModelError& error) {
+  if (!section.has("radius")) {
+    (void)section.number("radius", 0.0);  // a known key
+    return;
+  }
+  const double least = error.root_mean_square.norm();
+  const double radius = section.number("radius", least, {.least = 0.0});
+  if (radius >= (1.0 - kRounding) * least) {
+    error.stated_radius = radius;
+  } else {
+    section.note("radius", fmt::format("at least {}, the norm of rms", least));
+  }
+}
+
+ModelError read_mapping(Section& section, const ModelErrorContext& context) {
+  const std::string system = section.text("system", context.system, kLongestName);
+  if (system != context.system) {
+    section.note("system", context.system + ", the scenario's system");
+  }
+  section.require(
+      "rms", fmt::format("{} numbers, each the root mean square of a state's error", context.dim));
+  const auto rms = read_norms(section, "rms", Eigen::VectorXd::Zero(context.dim), "numbers >= 0");
+  ModelError error = model_error_of_size(rms.value_or(Eigen::VectorXd::Zero(context.dim)));
+  read_moments(section, context.dim, error);
+  Eigen::VectorXd least = error.root_mean_square;
+  for (std::size_t k = 0; k < kNormKeys.size(); ++k) {
+    const auto norms = read_norms(section, kNormKeys[k], least,
+                                  "numbers that are at least the norms of lower order");
+    if (!norms) continue;
+    error.higher[k] = *norms;
+    least = *norms;
+  }
+  read_radius(section, error);
+  section.refuse_unread();
+  return error;
+}
+
+/// `name`, if it is an absolute path, or else relative to `folder`.
+std::string path_from(const std::string& folder, const std::string& name) {
+  const fs::path path(name);
+  return path.is_absolute() ? name : (fs::path(folder) / path).lexically_normal().string();
+}
+
+ModelError read_file(const std::string& path, Problems& problems,
+                     const ModelErrorContext& context) {
+  try {
+    const YamlNode tree = parse_yaml(read_text_file(path), path);
+    Problems own(path);
+    Section section(tree, own);
+    ModelError error = section.present() ? read_mapping(section, context)
+                                         : model_error_of_size(Eigen::VectorXd::Zero(context.dim));
+    for (InputError::Where& where : own.sorted()) problems.add(std::move(where));
+    return error;
+  } catch (const InputError& error) {
+    problems.add(error.where());
+    return model_error_of_size(Eigen::VectorXd::Zero(context.dim));
+  }
+}
+
+}  // namespace
+
+std::optional<ModelError> read_model_error(Section& root, Problems& problems,
+                                           const ModelErrorContext& context) {
+  if (!root.holds_text(kKey)) {
+    Section section = root.section(kKey);
+    if (!section.present()) return std::nullopt;
+    return read_mapping(section, context);
+  }
+  const std::string name = root.text(kKey, "", kLongestPath);
+  const std::string path = path_from(context.folder, name);
+  std::error_code error;
+  if (!name.empty() && fs::is_regular_file(path, error)) return read_file(path, problems, context);
+  root.note(kKey, "a mapping, or the path of a YAML file from the scenario's folder",
+            "no file " + name);
+  return std::nullopt;
+}
+
+std::string model_error_text(const ModelError& error, const std::string& indent) {
+  std::string out;
+  const auto line = [&](const std::string& key, const std::string& value) {
+    out += fmt::format("{}{}: {}\n", indent, key, value);
+  };
+  if (error.mean.size() > 0) line("mean", yaml_list(error.mean));
+  if (error.covariance.size() > 0) line("covariance", yaml_square(error.covariance));
+  line("rms", yaml_list(error.root_mean_square));
+  for (std::size_t k = 0; k < kNormKeys.size(); ++k) {
+    if (error.higher[k].allFinite()) line(kNormKeys[k], yaml_list(error.higher[k]));
+  }
+  if (error.stated_radius) line("radius", yaml_number(*error.stated_radius));
+  return out;
+}
+
+std::string model_error_yaml(const ModelError& error, const std::string& system,
+                             const std::string& comment) {
+  const std::string head = comment.empty() ? "" : "# " + comment + "\n";
+  return head + "system: " + system + "\n" + model_error_text(error, "");
+}
+
+}  // namespace qsmpc

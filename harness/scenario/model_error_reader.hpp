@@ -1,0 +1,36 @@
+// Reading and writing what is known of the difference between plant and model: the scenario's key
+// `model_error`, and files of the same keys.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "controller/prediction/model_error.hpp"
+#include "harness/scenario/yaml_section.hpp"
+
+namespace qsmpc {
+
+/// What a model error must fit.
+struct ModelErrorContext {
+  std::string system;    ///< a name from `qsmpc list systems`
+  Eigen::Index dim = 0;  ///< of its state
+  std::string folder;    ///< that the path of a file is relative to; the current one when empty
+};
+
+/// What `model_error` in `root` says, a mapping or the path of a file that holds one; nothing
+/// without the key. Problems are noted, those of the file with its name and lines.
+[[nodiscard]] std::optional<ModelError> read_model_error(Section& root, Problems& problems,
+                                                         const ModelErrorContext& context);
+
+/// The keys of `error`, each on a line after `indent`; norms that are unknown in any coordinate are
+/// left out.
+[[nodiscard]] std::string model_error_text(const ModelError& error, const std::string& indent);
+
+/// A file that `model_error` can name, of the same values bit for bit: `# comment` if there is
+/// one (one line), the system, then the keys.
+[[nodiscard]] std::string model_error_yaml(const ModelError& error, const std::string& system,
+                                           const std::string& comment = "");
+
+}  // namespace qsmpc

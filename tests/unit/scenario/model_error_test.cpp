@@ -1,0 +1,160 @@
+// The key `model_error` and files of its keys.
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/scenario/model_error_reader.hpp"
+#include "tests/unit/scenario/scenario_fixture.hpp"
+
+namespace qsmpc {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string whole_text =
+    "mean: [0.001, -0.002, 0.0003]\n"
+    "covariance: [[1e-4, 1e-5, 0], [1e-5, 2e-4, 0], [0, 0, 1e-6]]\n"
+    "rms: [0.01, 0.02, 0.001]\n"
+    "norm4: [0.012, 0.025, 0.001]\n"
+    "norm8: [0.02, 0.03, 0.002]\n"
+    "radius: 0.025\n";
+
+/// Each line of `text` further to the right, as what a key holds.
+std::string indented(const std::string& text) {
+  std::string out = "  ";
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    out += text[i];
+    if (text[i] == '\n' && i + 1 < text.size()) out += "  ";
+  }
+  return out;
+}
+
+ModelError loaded(const std::string& text) {
+  const Scenario scenario = parse_scenario(minimal_text + "model_error:\n" + indented(text));
+  EXPECT_TRUE(scenario.model_error.has_value());
+  return scenario.model_error.value_or(ModelError{});
+}
+
+void expect_same(const ModelError& one, const ModelError& other) {
+  EXPECT_EQ(one.mean, other.mean);
+  EXPECT_EQ(one.covariance, other.covariance);
+  EXPECT_EQ(one.root_mean_square, other.root_mean_square);
+  EXPECT_EQ(one.higher, other.higher);
+  EXPECT_EQ(one.stated_radius, other.stated_radius);
+}
+
+TEST(ModelErrorKey, every_key_reaches_its_value) {
+  const ModelError error = loaded(whole_text);
+  EXPECT_EQ(error.mean, Eigen::Vector3d(0.001, -0.002, 0.0003));
+  EXPECT_EQ(error.covariance(1, 0), 1e-5);
+  EXPECT_EQ(error.root_mean_square, Eigen::Vector3d(0.01, 0.02, 0.001));
+  EXPECT_EQ(error.higher[0], Eigen::Vector3d(0.012, 0.025, 0.001));
+  EXPECT_EQ(error.higher[1], Eigen::Vector3d(0.02, 0.03, 0.002));
+  EXPECT_EQ(error.radius(), 0.025);
+}
+
+TEST(ModelErrorKey, what_is_left_out_is_unknown) {
+  const ModelError error = loaded("rms: [0.03, 0.04, 0]\n");
+  EXPECT_EQ(error.mean.size(), 0);
+  EXPECT_EQ(error.covariance.size(), 0);
+  EXPECT_EQ(error.higher[0][1], std::numeric_limits<double>::infinity());
+  EXPECT_EQ(error.higher[1][2], std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(error.radius(), 0.05, 1e-16);  // one rounding
+  EXPECT_FALSE(parse_scenario(minimal_text).model_error.has_value());
+}
+
+TEST(ModelErrorKey, resolved_scenarios_hold_it_and_read_it_back_bit_for_bit) {
+  for (const std::string& text : {whole_text, std::string("rms: [0.1, 0.3, 1e-300]\n")}) {
+    const Scenario scenario = parse_scenario(minimal_text + "model_error:\n" + indented(text));
+    const std::string written = to_yaml(scenario);
+    const Scenario read = parse_scenario(written);
+    ASSERT_TRUE(read.model_error.has_value());
+    expect_same(*read.model_error, *scenario.model_error);
+    EXPECT_EQ(to_yaml(read), written);
+  }
+  EXPECT_EQ(to_yaml(parse_scenario(minimal_text)).find("model_error"), std::string::npos);
+}
+
+TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
+  const TemporaryFolder folder;
+  const ModelError error = loaded(whole_text);
+  (void)folder.file("error.yaml", model_error_yaml(error, "dubins", "from 3 episodes"));
+  const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
+  expect_same(load_scenario(path).model_error.value(), error);
+  // The resolved scenario needs the file no longer.
+  expect_same(parse_scenario(to_yaml(load_scenario(path))).model_error.value(), error);
+  const std::string absolute = "model_error=" + (folder / "error.yaml");
+  expect_same(load_scenario(path, {absolute}).model_error.value(), error);
+}
+
+TEST(ModelErrorKey, problems_of_its_file_are_told_with_its_name_and_line) {
+  const TemporaryFolder folder;
+  (void)folder.file("error.yaml", "system: bicycle\nrms: [0.1, 0.1, 0.1]\nnorm4: [1, 1, 0.01]\n");
+  const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
+  const std::vector<InputError::Where> problems = validate_scenario_file(path);
+  ASSERT_EQ(problems.size(), 2U);
+  EXPECT_EQ(problems[0].file, folder / "error.yaml");
+  EXPECT_EQ(problems[0].line, 1);
+  EXPECT_EQ(problems[0].key, "system");
+  EXPECT_EQ(problems[0].found, "bicycle");
+  EXPECT_THAT(problems[0].expected, HasSubstr("dubins"));
+  EXPECT_EQ(problems[1].line, 3);
+  EXPECT_EQ(problems[1].key, "norm4");
+  EXPECT_THAT(problems[1].found, HasSubstr("0.01 as number 3"));
+  // A file that is no YAML at all is a problem like any other.
+  (void)folder.file("error.yaml", "rms: [1, 2\n");
+  EXPECT_EQ(validate_scenario_file(path).at(0).file, folder / "error.yaml");
+}
+
+TEST(ModelErrorKey, rounding_of_printed_norms_is_no_contradiction) {
+  EXPECT_EQ(loaded("rms: [0.1, 0, 0]\nradius: 0.09999999999\n").radius(), 0.09999999999);
+}
+
+struct Refused {
+  std::string name;
+  std::string text;
+  std::string key;
+  std::string expected;  ///< a piece of it
+};
+
+std::string name_of(const ::testing::TestParamInfo<Refused>& info) { return info.param.name; }
+
+class RefusedModelError : public ::testing::TestWithParam<Refused> {};
+
+TEST_P(RefusedModelError, is_told_with_where_and_why) {
+  const Refused& refused = GetParam();
+  const InputError::Where where = refusal_of(minimal_text + refused.text);
+  EXPECT_GE(where.line, 6);
+  EXPECT_EQ(where.key, refused.key);
+  EXPECT_THAT(where.expected, HasSubstr(refused.expected));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Keys, RefusedModelError,
+    ::testing::Values(
+        Refused{"without_rms", "model_error: {mean: [0, 0, 0]}\n", "model_error.rms", "3 numbers"},
+        Refused{"negative", "model_error: {rms: [1, -1, 0]}\n", "model_error.rms", "numbers >= 0"},
+        Refused{"too_few", "model_error: {rms: [1, 1]}\n", "model_error.rms", "3 numbers"},
+        Refused{"less_than_a_lower_norm", "model_error: {rms: [1, 1, 1], norm8: [1, 0.9, 1]}\n",
+                "model_error.norm8", "at least the norms of lower order"},
+        Refused{"norms_out_of_order",
+                "model_error: {rms: [1, 1, 1], norm4: [2, 2, 2], norm8: [2, 1.9, 2]}\n",
+                "model_error.norm8", "at least the norms of lower order"},
+        Refused{"small_radius", "model_error: {rms: [3, 4, 0], radius: 4.9}\n",
+                "model_error.radius", "at least 5"},
+        Refused{"negative_radius", "model_error: {rms: [0, 0, 0], radius: -1}\n",
+                "model_error.radius", "a number >= 0"},
+        Refused{"covariance", "model_error: {rms: [1, 1, 1], covariance: [1, -1, 1]}\n",
+                "model_error.covariance", "positive semidefinite"},
+        Refused{"other_system", "model_error: {system: cart_pole, rms: [1, 1, 1]}\n",
+                "model_error.system", "dubins"},
+        Refused{"unknown_key", "model_error: {rms: [1, 1, 1], norm6: [1, 1, 1]}\n",
+                "model_error.norm6", "norm4"},
+        Refused{"no_file", "model_error: nowhere.yaml\n", "model_error", "the path of a YAML file"},
+        Refused{"a_list", "model_error: [1, 2, 3]\n", "model_error", "a mapping"}),
+    name_of);
+
+}  // namespace
+}  // namespace qsmpc
