@@ -8,6 +8,13 @@ std::unique_ptr<const Dynamics> model_of(const Scenario& scenario) {
   return make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
 }
 
+PredictedMotion of_plant(PredictedMotion motion, const Scenario& scenario, BeliefOrigin belief) {
+  if (!scenario.model_error) return motion;
+  motion.model_error = &*scenario.model_error;
+  if (belief == BeliefOrigin::kPredicted) motion.belief_error = &*scenario.model_error;
+  return motion;
+}
+
 PlannerSettings planner_settings(const Scenario& scenario) {
   const Scenario::Controller& controller = scenario.controller;
   const Scenario::Penalty& penalty = controller.penalty;

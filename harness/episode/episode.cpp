@@ -119,7 +119,8 @@ class Episode {
          {scenario_.disturbance.covariance, scenario_.initial_state.covariance}) {
       const Gaussian belief{.mean = belief_.mean, .covariance = covariance};
       for (int n = 0; n < kRehearsals; ++n) {
-        const StepRecord record = certified(belief, planner_.plan(belief));
+        const StepRecord record =
+            certified(belief, BeliefOrigin::kPredicted, planner_.plan(belief));
         // What takes longer than a period anyway is not to be waited for twice.
         if (record.timing.total > kMilliseconds * scenario_.time_step) break;
       }
@@ -128,10 +129,11 @@ class Episode {
   }
 
   /// The certificates of `plan`, made for `belief`, and how long both took.
-  [[nodiscard]] StepRecord certified(const Gaussian& belief, const Plan& plan) const {
+  [[nodiscard]] StepRecord certified(const Gaussian& belief, BeliefOrigin origin,
+                                     const Plan& plan) const {
     const auto start = Clock::now();
     StepRecord record;
-    const PredictedMotion motion = motion_of(planner_, belief, plan);
+    const PredictedMotion motion = of_plant(motion_of(planner_, belief, plan), scenario_, origin);
     record.budgets = error_budget(motion);
     const PlannerSettings& settings = planner_.settings();
     record.certificates =
@@ -148,7 +150,8 @@ class Episode {
   /// Plans for the belief, certifies the plan, and evaluates its first stage at the observed state.
   [[nodiscard]] StepRecord decide(int k) {
     const Plan& plan = planner_.plan(belief_);
-    StepRecord record = certified(belief_, plan);
+    StepRecord record =
+        certified(belief_, k == 0 ? BeliefOrigin::kGiven : BeliefOrigin::kPredicted, plan);
     record.time = k * scenario_.time_step;
     record.state = state_;
     record.input = policy_input(plan.policy, 0, state_);

@@ -126,6 +126,10 @@ void add_certificate(Layout& layout) {
                     .units = {kStateNorm},
                     .columns = sources,
                     .comment = kBudgetMeaning});
+  layout.push_back({.path = kModelErrorPath,
+                    .axes = {"stage"},
+                    .units = {kStateNorm},
+                    .comment = kModelErrorMeaning});
   layout.push_back({.path = kDynamicsPath,
                     .axes = {"stage"},
                     .units = {kStateNorm},
@@ -225,6 +229,7 @@ void write_certificate(Hdf5File& file, const PredictionReport& report) {
     for (const BudgetField& field : kBudgetColumns) budgets.push_back(stage.*field.member);
   }
   file.append("/certificate/budget", budgets);
+  file.append(kModelErrorPath, column_of(report.budgets, &StageBudget::model));
   file.append(kDynamicsPath, column_of(report.budgets, &StageBudget::dynamics));
   file.append("/certificate/lipschitz", column_of(report.budgets, &StageBudget::lipschitz));
   for (const CertificateField& field : kCertificateFields) {

@@ -40,6 +40,7 @@ Json stage_json(const PredictionReport& report, std::size_t stage) {
   json["budget"] = {{"belief", budget.belief},
                     {"noise", budget.noise},
                     {"compression", budget.compression},
+                    {"model", budget.model},
                     {"dynamics", budget.dynamics}};
   json["certificate"] = certificate_json(report.certificates[stage - 1]);
   if (report.monte_carlo) {

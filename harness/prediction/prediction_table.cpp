@@ -106,10 +106,12 @@ std::string prediction_table(const PredictionReport& report) {
     text += stage_row(report, stage, states);
   }
   text += total_row(report, states.size());
-  text +=
-      "P(unsafe)<= holds for the model under this plan as planned: a plant that\n"
-      "differs from it, and planning anew on the way, are not in it.\n"
-      "* the published algorithms' value: NOT a bound\n";
+  text += report.scenario.model_error
+              ? "P(unsafe)<= holds for plants within model_error under this plan as planned:\n"
+                "planning anew on the way is not in it.\n"
+              : "P(unsafe)<= holds for the model under this plan as planned: a plant that\n"
+                "differs from it, and planning anew on the way, are not in it.\n";
+  text += "* the published algorithms' value: NOT a bound\n";
   if (report.monte_carlo) {
     text += fmt::format("rate: of {} simulated paths; rate <=: its limit, wrong once in {:.0e}\n",
                         report.monte_carlo->samples, 1.0 / kRateTail);

@@ -18,8 +18,8 @@ struct CertificateField {
 
 inline constexpr std::array<CertificateField, 7> kCertificateFields = {{
     {"value", &StageCertificate::value,
-     "the least of the sound upper bounds of the probability that the model's state is unsafe; "
-     "the first is that of stage 1"},
+     "the least of the sound upper bounds of the probability that the state, the model's or with a "
+     "model_error the plant's, is unsafe; the first is that of stage 1"},
     {"particles", &StageCertificate::particles,
      "c1: worst case over the W2 ball around the particles; sound"},
     {"mixture", &StageCertificate::mixture,
@@ -51,13 +51,19 @@ inline constexpr std::array<BudgetField, 4> kBudgetColumns = {{
 }
 
 inline constexpr const char* kDynamicsPath = "/certificate/dynamics";
+/// The budget's part that the scenario's model error has; not among the columns, so that traces
+/// without it are read as they are.
+inline constexpr const char* kModelErrorPath = "/certificate/model";
 /// Unit of a W2 distance.
 inline constexpr const char* kStateNorm = "Euclidean norm of the state";
 inline constexpr const char* kBudgetMeaning =
-    "bounds of the W2 distance between the model's law and the particles; stage 0 is the present";
+    "bounds of the W2 distance between the particles and the law of the state, the model's or with "
+    "a model_error the plant's; stage 0 is the present";
 inline constexpr const char* kDynamicsMeaning =
     "how much of the budget's total is due to the dynamics stretching distances; a part of the "
     "other sources, not one beside them";
+inline constexpr const char* kModelErrorMeaning =
+    "W2 error that the scenario's model_error alone would give; 0 without one";
 inline constexpr const char* kLipschitzMeaning =
     "bound of the closed loop's Lipschitz constant from this stage to the next; 1 at the last";
 inline constexpr const char* kKindMeaning = "which bound the value is: c1, c2, c3 or c4";

@@ -152,6 +152,11 @@ void add_certificate(std::vector<DatasetSpec>& layout, const Sizes& n) {
                     .units = {kStateNorm},
                     .columns = sources,
                     .comment = kBudgetMeaning});
+  layout.push_back({.path = kModelErrorPath,
+                    .row_shape = {n.horizon + 1},
+                    .axes = {"step", "stage"},
+                    .units = {kStateNorm},
+                    .comment = kModelErrorMeaning});
   layout.push_back({.path = kDynamicsPath,
                     .row_shape = {n.horizon + 1},
                     .axes = {"step", "stage"},
@@ -202,7 +207,7 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
 }
 
 bool may_be_missing(std::string_view path) {
-  return path == kDynamicsPath || path == "/certificate/smoothed";
+  return path == kDynamicsPath || path == kModelErrorPath || path == "/certificate/smoothed";
 }
 
 }  // namespace qsmpc

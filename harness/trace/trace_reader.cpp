@@ -225,10 +225,13 @@ void TraceReader::read_budgets() {
   const auto budgets = file_.doubles("/certificate/budget");
   const auto lipschitz = file_.doubles("/certificate/lipschitz");
   const auto dynamics = doubles_if_there(kDynamicsPath);
+  const auto model = doubles_if_there(kModelErrorPath);
   const auto stages = static_cast<std::size_t>(horizon_) + 1;
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
     for (std::size_t i = k * stages; i < (k + 1) * stages; ++i) {
-      StageBudget budget{.dynamics = dynamics.empty() ? kUnknown : dynamics[i],
+      // Without the dataset no model error was known to the program.
+      StageBudget budget{.model = model.empty() ? 0.0 : model[i],
+                         .dynamics = dynamics.empty() ? kUnknown : dynamics[i],
                          .lipschitz = lipschitz[i]};
       const double* const columns = row_of(budgets, i, std::ssize(kBudgetColumns));
       for (std::size_t c = 0; c < kBudgetColumns.size(); ++c) {

@@ -150,6 +150,7 @@ void TraceWriter::append_certificates(const StepRecord& record) {
     for (const BudgetField& field : kBudgetColumns) budgets.push_back(stage.*field.member);
   }
   file_.append("/certificate/budget", budgets);
+  file_.append(kModelErrorPath, column_of(record.budgets, &StageBudget::model));
   file_.append(kDynamicsPath, column_of(record.budgets, &StageBudget::dynamics));
   file_.append("/certificate/lipschitz", column_of(record.budgets, &StageBudget::lipschitz));
   for (const CertificateField& field : kCertificateFields) {

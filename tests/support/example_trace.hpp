@@ -94,6 +94,7 @@ inline void add_example_plan(StepRecord& step, const Scenario& scenario,
     step.budgets.push_back({.belief = bound,
                             .noise = bound / 2,
                             .compression = bound / 4,
+                            .model = bound / 16,
                             .dynamics = bound / 8,
                             .total = bound * 1.2,
                             .lipschitz = 1.0 + bound});

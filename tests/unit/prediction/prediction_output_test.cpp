@@ -48,7 +48,8 @@ TEST(PredictionJson, keys_are_the_documented_ones) {
   const auto& stage = json["stages"][0];
   EXPECT_THAT(keys_of(stage), ElementsAre("stage", "mean", "covariance", "w2_bound", "budget",
                                           "certificate", "monte_carlo"));
-  EXPECT_THAT(keys_of(stage["budget"]), ElementsAre("belief", "noise", "compression", "dynamics"));
+  EXPECT_THAT(keys_of(stage["budget"]),
+              ElementsAre("belief", "noise", "compression", "model", "dynamics"));
   EXPECT_THAT(keys_of(stage["certificate"]), ElementsAre("value", "kind", "all", "thesis"));
   EXPECT_THAT(keys_of(stage["certificate"]["all"]), ElementsAre("c1", "c2", "c3", "c4"));
   EXPECT_THAT(keys_of(stage["monte_carlo"]), ElementsAre("rate", "lower", "upper", "samples"));
@@ -70,6 +71,7 @@ TEST(PredictionJson, holds_the_reports_numbers_bit_for_bit) {
     EXPECT_EQ(stage["mean"][1], mean_of(report.prediction.stages[k + 1])[1]);
     EXPECT_EQ(stage["covariance"][2][0], covariance(2, 0));
     EXPECT_EQ(stage["w2_bound"], report.budgets[k + 1].total);
+    EXPECT_EQ(stage["budget"]["model"], report.budgets[k + 1].model);
     EXPECT_EQ(stage["budget"]["dynamics"], report.budgets[k + 1].dynamics);
     EXPECT_EQ(stage["certificate"]["value"], certificate.value);
     EXPECT_EQ(stage["certificate"]["kind"], certificate.kind);

@@ -33,6 +33,19 @@ TEST(PredictScenario, planned_inputs_fill_the_horizon_and_every_stage_has_a_cert
   EXPECT_FALSE(report.interrupted);
 }
 
+TEST(PredictScenario, a_model_error_is_in_the_certificates_and_not_in_the_plan) {
+  const PredictionReport of_model = predict_scenario(small_scenario(), {});
+  const PredictionReport of_plant = predict_scenario(
+      small_scenario({"model_error={rms: [0.03, 0.04, 0.01], norm8: [0.05, 0.05, 0.02]}"}), {});
+  EXPECT_EQ(of_plant.policy.inputs, of_model.policy.inputs);
+  EXPECT_EQ(of_plant.budgets[0].model, 0.0);
+  for (std::size_t k = 0; k < 4; ++k) {
+    EXPECT_EQ(of_model.budgets[k + 1].model, 0.0);
+    EXPECT_GT(of_plant.budgets[k + 1].model, of_plant.budgets[k].model);
+    EXPECT_GT(of_plant.certificates[k].value, of_model.certificates[k].value);
+  }
+}
+
 TEST(PredictScenario, given_inputs_are_taken_as_they_are) {
   Eigen::MatrixXd inputs(1, 4);
   inputs << 0.1, -0.2, 2.0, -2.0;

@@ -34,6 +34,7 @@ inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
     EXPECT_TRUE(same_bits(a.budgets[s].belief, b.budgets[s].belief));
     EXPECT_TRUE(same_bits(a.budgets[s].noise, b.budgets[s].noise));
     EXPECT_TRUE(same_bits(a.budgets[s].compression, b.budgets[s].compression));
+    EXPECT_TRUE(same_bits(a.budgets[s].model, b.budgets[s].model));
     EXPECT_TRUE(same_bits(a.budgets[s].dynamics, b.budgets[s].dynamics));
     EXPECT_TRUE(same_bits(a.budgets[s].total, b.budgets[s].total));
     EXPECT_TRUE(same_bits(a.budgets[s].lipschitz, b.budgets[s].lipschitz));
