@@ -50,6 +50,7 @@ class Episode {
         model_(model_of(scenario)),
         planner_(*model_, planner_settings(scenario)),
         disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.covariance),
+        sensor_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.sensor),
         belief_{.mean = scenario.initial_state.mean,
                 .covariance = scenario.initial_state.covariance} {
     rehearse();
@@ -115,8 +116,9 @@ class Episode {
   /// Plans and certifies for beliefs like those that will come, and forgets the plans: what is slow
   /// the first time, tables and memory, is then over before the loop begins.
   void rehearse() {
-    for (const Eigen::MatrixXd& covariance :
-         {scenario_.disturbance.covariance, scenario_.initial_state.covariance}) {
+    const InputBounds& bounds = planner_.settings().bounds;
+    const Gaussian later = predicted(belief_.mean, 0.5 * (bounds.lower + bounds.upper));
+    for (const Eigen::MatrixXd& covariance : {later.covariance, belief_.covariance}) {
       const Gaussian belief{.mean = belief_.mean, .covariance = covariance};
       for (int n = 0; n < kRehearsals; ++n) {
         const StepRecord record =
@@ -147,6 +149,14 @@ class Episode {
     return record;
   }
 
+  /// What the planner sees of the state in period k.
+  [[nodiscard]] Eigen::VectorXd observation(int k) const {
+    if (scenario_.disturbance.sensor.isZero(0.0)) return state_;
+    return state_ + sensor_.sample({.seed = options_.seed,
+                                    .stream = RandomStream::kSensor,
+                                    .step = static_cast<std::uint64_t>(k)});
+  }
+
   /// Plans for the belief, certifies the plan, and evaluates its first stage at the observed state.
   [[nodiscard]] StepRecord decide(int k) {
     const Plan& plan = planner_.plan(belief_);
@@ -154,7 +164,8 @@ class Episode {
         certified(belief_, k == 0 ? BeliefOrigin::kGiven : BeliefOrigin::kPredicted, plan);
     record.time = k * scenario_.time_step;
     record.state = state_;
-    record.input = policy_input(plan.policy, 0, state_);
+    record.observation = observation(k);
+    record.input = policy_input(plan.policy, 0, record.observation);
     const RandomKey key{.seed = options_.plant_seed.value_or(options_.seed),
                         .stream = RandomStream::kDisturbance,
                         .step = static_cast<std::uint64_t>(k)};
@@ -173,12 +184,29 @@ class Episode {
 
   /// What is known of the next state before it is seen, and then the state itself.
   void observe(const StepRecord& record, const Eigen::VectorXd& next_state) {
-    const StateBatch state = record.state;
-    const StateBatch input = record.input;
-    StateBatch predicted(state.rows(), 1);
-    model_->step(state, input, predicted);
-    belief_ = {.mean = predicted.col(0), .covariance = scenario_.disturbance.covariance};
+    belief_ = predicted(record.observation, record.input);
     state_ = next_state;
+  }
+
+  /// The law of the next state once y has been seen and u applied: N(f(y, u), A R Aᵀ + Σ_w) with
+  /// A = ∂f/∂x at (y, u) and R the sensor's covariance. This takes the state to be N(y, R), which
+  /// is what y alone says of it, under a flat prior: what was seen before is left out, which a
+  /// filter would weigh in. Of f it is the linearisation; without sensor noise it is exact.
+  [[nodiscard]] Gaussian predicted(const Eigen::VectorXd& seen,
+                                   const Eigen::VectorXd& applied) const {
+    const StateBatch state = seen;
+    const StateBatch input = applied;
+    StateBatch next(state.rows(), 1);
+    model_->step(state, input, next);
+    Gaussian belief{.mean = next.col(0), .covariance = scenario_.disturbance.covariance};
+    const Eigen::MatrixXd& sensor = scenario_.disturbance.sensor;
+    if (sensor.isZero(0.0)) return belief;
+    Eigen::MatrixXd by_state(seen.size(), seen.size());
+    Eigen::MatrixXd by_input(seen.size(), applied.size());
+    model_->jacobians(seen, applied, by_state, by_input);
+    const Eigen::MatrixXd carried = by_state * sensor * by_state.transpose();
+    belief.covariance += 0.5 * (carried + carried.transpose());  // symmetric to the last bit
+    return belief;
   }
 
   const Scenario& scenario_;
@@ -187,6 +215,7 @@ class Episode {
   Planner planner_;
   std::unique_ptr<Plant> plant_;
   GaussianSampler disturbance_;
+  GaussianSampler sensor_;
   Gaussian belief_;
   Eigen::VectorXd state_;
 };

@@ -5,6 +5,10 @@
 // N(f(x_k, u_k), Σ_w). When x_{k+1} is then observed, the first stage of the policy is evaluated at
 // it. The plant's disturbance comes from a random stream of its own; the planner sees nothing of
 // the plant but the states at the ends of the periods.
+//
+// With measurement noise v_k ~ N(0, R), from another stream of its own, the planner sees
+// y_k = x_k + v_k instead: the policy is evaluated at y_k, and the belief of x_{k+1} is
+// N(f(y_k, u_k), A R Aᵀ + Σ_w) with A = ∂f/∂x at (y_k, u_k). The true state decides the outcome.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +24,8 @@ class TraceWriter;
 
 struct EpisodeOptions {
   std::uint64_t seed = 0;
-  /// Seed of the plant's disturbances where it is not `seed`; the initial state stays that of
-  /// `seed`.
+  /// Seed of the plant's disturbances where it is not `seed`; the initial state and the
+  /// measurement noise stay those of `seed`.
   std::optional<std::uint64_t> plant_seed{};
   /// Called after each step with the trace so far; not with none.
   std::function<void(const Trace&)> on_step{};

@@ -19,6 +19,8 @@ enum class RandomStream : std::uint64_t {
   kDisturbance = 1,
   kInput = 2,       ///< random inputs, as for measuring the mismatch between plant and model
   kPrediction = 3,  ///< paths of the model, one an episode; step 0 is the initial state
+  kSensor = 4,      ///< what the planner sees less what is
+  kParameters = 5,  ///< parameters of a plant that are drawn
 };
 
 struct RandomKey {

@@ -37,6 +37,7 @@ struct Scenario {
   };
   struct Disturbance {
     Eigen::MatrixXd covariance;  ///< of the noise in the model, state_dim x state_dim, per period
+    Eigen::MatrixXd sensor{};    ///< of what the planner sees less the state, state_dim x state_dim
   };
   struct Target {
     Eigen::VectorXd state;      ///< state_dim

@@ -248,8 +248,9 @@ void ScenarioReader::read_initial_state() {
 
 void ScenarioReader::read_disturbance() {
   Section section = root_.section("disturbance");
-  scenario_.disturbance.covariance =
-      semidefinite(section, "covariance", Eigen::MatrixXd::Zero(state_dim(), state_dim()));
+  const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(state_dim(), state_dim());
+  scenario_.disturbance.covariance = semidefinite(section, "covariance", none);
+  scenario_.disturbance.sensor = semidefinite(section, "sensor", none);
   section.refuse_unread();
 }
 

@@ -109,8 +109,9 @@ std::string to_yaml(const Scenario& scenario) {
   out += fmt::format("initial_state:\n  mean: {}\n  covariance: {}\n",
                      yaml_list(scenario.initial_state.mean),
                      yaml_square(scenario.initial_state.covariance));
-  out +=
-      fmt::format("disturbance:\n  covariance: {}\n", yaml_square(scenario.disturbance.covariance));
+  out += fmt::format("disturbance:\n  covariance: {}\n  sensor: {}\n",
+                     yaml_square(scenario.disturbance.covariance),
+                     yaml_square(scenario.disturbance.sensor));
   if (scenario.model_error) out += "model_error:\n" + model_error_text(*scenario.model_error, "  ");
   out += safe_set_text(scenario.safe_set, system.states);
   out += target_text(scenario.target, system.states);

@@ -35,6 +35,7 @@ struct StepTiming {
 struct StepRecord {
   double time = 0.0;            ///< s
   Eigen::VectorXd state;        ///< true state when the input is chosen, state_dim
+  Eigen::VectorXd observation;  ///< what the planner sees of it, state_dim
   Eigen::VectorXd input;        ///< input that is applied, input_dim
   Eigen::VectorXd disturbance;  ///< added at the end of the period, state_dim
   Eigen::VectorXd belief_mean;  ///< what the plan was made for, state_dim

@@ -42,6 +42,12 @@ void add_plant(std::vector<DatasetSpec>& layout, const Sizes& n) {
                     .units = n.states.units,
                     .columns = n.states.names,
                     .comment = "true state at the beginning of the period"});
+  layout.push_back({.path = kObservationPath,
+                    .row_shape = {n.states.names.size()},
+                    .axes = {"step", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = "what the planner saw of it"});
   layout.push_back({.path = "/plant/input",
                     .row_shape = {n.inputs.names.size()},
                     .axes = {"step", "input"},
@@ -207,7 +213,8 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
 }
 
 bool may_be_missing(std::string_view path) {
-  return path == kDynamicsPath || path == kModelErrorPath || path == "/certificate/smoothed";
+  return path == kObservationPath || path == kDynamicsPath || path == kModelErrorPath ||
+         path == "/certificate/smoothed";
 }
 
 }  // namespace qsmpc

@@ -14,6 +14,9 @@ namespace qsmpc {
 /// Grows with every change that an older reader would misread.
 inline constexpr std::int64_t kTraceSchema = 1;
 
+/// Of what the planner saw. Traces without it are of planners that saw the state itself.
+inline constexpr const char* kObservationPath = "/plant/observation";
+
 /// The datasets of a trace of `scenario`. A dataset whose first axis is "step" has one row a
 /// control period. Throws std::invalid_argument on an unknown system.
 [[nodiscard]] std::vector<DatasetSpec> trace_layout(const Scenario& scenario);

@@ -153,6 +153,7 @@ void TraceReader::read_final_state() {
 void TraceReader::read_plant_and_belief() {
   const auto times = file_.doubles("/plant/time");
   const auto states = file_.doubles("/plant/state");
+  const auto seen = doubles_if_there(kObservationPath);
   const auto inputs = file_.doubles("/plant/input");
   const auto disturbances = file_.doubles("/plant/disturbance");
   const auto means = file_.doubles("/belief/mean");
@@ -162,6 +163,7 @@ void TraceReader::read_plant_and_belief() {
     StepRecord& step = trace_.steps[k];
     step.time = times[k];
     step.state = Vector(row_of(states, k, state_dim_), state_dim_);
+    step.observation = Vector(row_of(seen.empty() ? states : seen, k, state_dim_), state_dim_);
     step.input = Vector(row_of(inputs, k, input_dim_), input_dim_);
     step.disturbance = Vector(row_of(disturbances, k, state_dim_), state_dim_);
     step.belief_mean = Vector(row_of(means, k, state_dim_), state_dim_);

@@ -74,6 +74,7 @@ void TraceWriter::append(const StepRecord& record, std::span<const MotionSample>
 
 void TraceWriter::check_sizes(const StepRecord& record) const {
   require(record.state.size() == state_dim_, "state is not state_dim");
+  require(record.observation.size() == state_dim_, "observation is not state_dim");
   require(record.input.size() == input_dim_, "input is not input_dim");
   require(record.disturbance.size() == state_dim_, "disturbance is not state_dim");
   require(record.belief_mean.size() == state_dim_, "belief_mean is not state_dim");
@@ -114,6 +115,7 @@ void TraceWriter::append_motion(std::span<const MotionSample> motion) {
 
 void TraceWriter::append_vectors(const StepRecord& record) {
   file_.append("/plant/state", by_rows(record.state));
+  file_.append(kObservationPath, by_rows(record.observation));
   file_.append("/plant/input", by_rows(record.input));
   file_.append("/plant/disturbance", by_rows(record.disturbance));
   file_.append("/belief/mean", by_rows(record.belief_mean));

@@ -121,6 +121,7 @@ inline StepRecord example_step(const Scenario& scenario, const Eigen::VectorXd& 
   StepRecord step;
   step.time = k * scenario.time_step;
   step.state = state;
+  step.observation = state + Eigen::Vector3d(0.01, -0.02, 0.03);
   const Eigen::VectorXd way = scenario.target.state - state;
   const double error = std::atan2(way[1], way[0]) - state[2];
   step.input = Eigen::VectorXd::Constant(1, std::fmin(1.0, std::fmax(-1.0, 2.0 * error)));

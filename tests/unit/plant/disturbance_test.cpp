@@ -110,6 +110,8 @@ TEST(RandomNumbers, of_neighbouring_keys_are_uncorrelated) {
   // A correlation of independent numbers deviates by 1/sqrt(n).
   const double limit = kLimit / std::sqrt(kCount);
   EXPECT_LT(std::abs(correlation_with(key_at(0, RandomStream::kInitialState))), limit);
+  EXPECT_LT(std::abs(correlation_with(key_at(0, RandomStream::kSensor))), limit);
+  EXPECT_LT(std::abs(correlation_with(key_at(0, RandomStream::kParameters))), limit);
   EXPECT_LT(std::abs(correlation_with(key_at(1))), limit);
   EXPECT_LT(std::abs(correlation_with({.seed = 12, .episode = 5})), limit);
   EXPECT_LT(std::abs(correlation_with({.seed = 11, .episode = 6})), limit);

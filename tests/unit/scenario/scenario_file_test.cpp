@@ -36,6 +36,7 @@ void expect_equal(const Scenario& a, const Scenario& b) {
   EXPECT_EQ(a.initial_state.mean, b.initial_state.mean);
   EXPECT_EQ(a.initial_state.covariance, b.initial_state.covariance);
   EXPECT_EQ(a.disturbance.covariance, b.disturbance.covariance);
+  EXPECT_EQ(a.disturbance.sensor, b.disturbance.sensor);
   EXPECT_EQ(a.safe_set.bounds.lower, b.safe_set.bounds.lower);
   EXPECT_EQ(a.safe_set.bounds.upper, b.safe_set.bounds.upper);
   ASSERT_EQ(a.safe_set.obstacles.size(), b.safe_set.obstacles.size());
@@ -97,6 +98,7 @@ TEST(ScenarioFile, what_is_left_out_gets_its_documented_default) {
   EXPECT_EQ(scenario.time_step, 0.1);
   EXPECT_EQ(scenario.initial_state.covariance, Eigen::MatrixXd::Zero(3, 3));
   EXPECT_EQ(scenario.disturbance.covariance, Eigen::MatrixXd::Zero(3, 3));
+  EXPECT_EQ(scenario.disturbance.sensor, Eigen::MatrixXd::Zero(3, 3));
   EXPECT_EQ(scenario.safe_set.bounds.upper[0], kInfinity);
   EXPECT_TRUE(scenario.safe_set.obstacles.empty());
   EXPECT_EQ(scenario.target.radius, 0.5);
@@ -129,7 +131,7 @@ model: {system: dubins, speed: 2.5}
 plant: {kind: analytic, mjcf: ""}
 time_step: 0.2
 initial_state: {mean: [1, 2, 3], covariance: [[2, 1, 0], [1, 2, 0], [0, 0, 1]]}
-disturbance: {covariance: [4, 5, 6]}
+disturbance: {covariance: [4, 5, 6], sensor: [[7, 0, 0], [0, 8, 1], [0, 1, 9]]}
 safe_set:
   bounds: {x: [-10, 11], heading: [-.inf, 9]}
   obstacles: [{y: [-4, -3]}]
@@ -166,6 +168,8 @@ TEST(ScenarioFile, every_key_reaches_its_value) {
   EXPECT_EQ(scenario.initial_state.mean, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(scenario.initial_state.covariance(0, 1), 1.0);
   EXPECT_EQ(scenario.disturbance.covariance.diagonal(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(scenario.disturbance.sensor.diagonal(), Eigen::Vector3d(7, 8, 9));
+  EXPECT_EQ(scenario.disturbance.sensor(1, 2), 1.0);
   EXPECT_EQ(scenario.safe_set.bounds.lower, Eigen::Vector3d(-10, -kInfinity, -kInfinity));
   EXPECT_EQ(scenario.safe_set.bounds.upper, Eigen::Vector3d(11, kInfinity, 9));
   ASSERT_EQ(scenario.safe_set.obstacles.size(), 1U);

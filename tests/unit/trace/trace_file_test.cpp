@@ -1,5 +1,6 @@
 #include "harness/trace/trace_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <csignal>
@@ -120,26 +121,29 @@ void copy_dataset(const Hdf5File& from, Hdf5File& to, const DatasetSpec& spec) {
   }
 }
 
+/// Writes `old`: the trace in `file` without some datasets.
+void copy_without(const std::string& file, const std::vector<std::string>& missing,
+                  const std::string& old_file) {
+  const Hdf5File written = Hdf5File::open(file);
+  Hdf5File old = Hdf5File::create(old_file);
+  old.set_integer("/", "schema", 1);
+  for (const char* name : {"version", "scenario", "outcome", "fault"}) {
+    old.set_text("/", name, written.text("/", name));
+  }
+  old.set_unsigned("/", "seed", written.unsigned_integer("/", "seed"));
+  const Scenario scenario = parse_scenario(written.text("/", "scenario"));
+  for (const DatasetSpec& spec : trace_layout(scenario)) {
+    if (std::ranges::find(missing, spec.path) == missing.end()) copy_dataset(written, old, spec);
+  }
+  old.close();
+}
+
 TEST_F(TraceFile, a_trace_from_before_the_newer_numbers_is_read_with_what_it_has) {
   const Trace trace = example_trace();
   write_trace(path("new.h5"), trace);
-  {
-    const Hdf5File written = Hdf5File::open(path("new.h5"));
-    Hdf5File old = Hdf5File::create(path("old.h5"));
-    old.set_integer("/", "schema", 1);
-    for (const char* name : {"version", "scenario", "outcome", "fault"}) {
-      old.set_text("/", name, written.text("/", name));
-    }
-    old.set_unsigned("/", "seed", trace.seed);
-    for (const DatasetSpec& spec : trace_layout(trace.scenario)) {
-      if (spec.path == "/certificate/smoothed" || spec.path == "/certificate/dynamics" ||
-          spec.path == "/certificate/model") {
-        continue;
-      }
-      copy_dataset(written, old, spec);
-    }
-    old.close();
-  }
+  copy_without(path("new.h5"),
+               {"/certificate/smoothed", "/certificate/dynamics", "/certificate/model"},
+               path("old.h5"));
   const Trace read = read_trace(path("old.h5"));
   ASSERT_EQ(read.steps.size(), trace.steps.size());
   for (std::size_t k = 0; k < read.steps.size(); ++k) {
@@ -149,6 +153,20 @@ TEST_F(TraceFile, a_trace_from_before_the_newer_numbers_is_read_with_what_it_has
       stage.dynamics = std::numeric_limits<double>::quiet_NaN();
       stage.model = 0.0;
     }
+    expect_same_step(read.steps[k], expected);
+  }
+}
+
+TEST_F(TraceFile, a_trace_from_before_measurement_noise_is_of_a_planner_that_saw_the_state) {
+  const Trace trace = example_trace();
+  write_trace(path("new.h5"), trace);
+  copy_without(path("new.h5"), {"/plant/observation"}, path("old.h5"));
+  const Trace read = read_trace(path("old.h5"));
+  ASSERT_EQ(read.steps.size(), trace.steps.size());
+  for (std::size_t k = 0; k < read.steps.size(); ++k) {
+    EXPECT_FALSE(same_bits(trace.steps[k].observation, trace.steps[k].state));
+    StepRecord expected = trace.steps[k];
+    expected.observation = expected.state;
     expect_same_step(read.steps[k], expected);
   }
 }

@@ -55,6 +55,7 @@ inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
 inline void expect_same_step(const StepRecord& a, const StepRecord& b) {
   EXPECT_TRUE(same_bits(a.time, b.time));
   EXPECT_TRUE(same_bits(a.state, b.state));
+  EXPECT_TRUE(same_bits(a.observation, b.observation));
   EXPECT_TRUE(same_bits(a.input, b.input));
   EXPECT_TRUE(same_bits(a.disturbance, b.disturbance));
   EXPECT_TRUE(same_bits(a.belief_mean, b.belief_mean));
