@@ -1,4 +1,5 @@
 #include <cstdint>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -14,12 +15,15 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
+#include "harness/errors.hpp"
 #include "harness/mismatch/comparison.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/mismatch/comparison_json.hpp"
 #include "harness/mismatch/comparison_table.hpp"
+#include "harness/mismatch/measured_error.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/svg_figure.hpp"
+#include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/scenario_file.hpp"
 
 namespace qsmpc {
@@ -46,8 +50,14 @@ struct CompareArguments {
   std::string out;
   bool quiet = false;
   bool json = false;
+  std::string error_file;
   ComparisonOptions options;
 };
+
+std::string folder_of(const std::string& path) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return folder.empty() ? "." : folder;
+}
 
 std::vector<TextFile> figure_files(const Comparison& comparison, const std::string& folder) {
   std::vector<TextFile> files;
@@ -55,6 +65,19 @@ std::vector<TextFile> figure_files(const Comparison& comparison, const std::stri
     files.push_back({.path = folder + "/" + figure.file, .text = svg_figure(figure.charts)});
   }
   return files;
+}
+
+/// The file that the scenario key `model_error` may name.
+TextFile error_file(const Comparison& comparison, const std::string& path) {
+  const std::string origin = fmt::format(
+      "qsmpc compare {}, plant {}, {} episodes, {} paths, seed {}: each norm an upper limit at "
+      "{:.0f} %",
+      printable(comparison.scenario.name), printable(comparison.error_plant),
+      comparison.plants.front().episodes.size(), comparison.paths, comparison.scenario.seed,
+      100.0 * (1.0 - kErrorTail));
+  return {.path = path,
+          .text = model_error_yaml(*comparison.measured_error, comparison.scenario.model.system,
+                                   origin)};
 }
 
 std::string files_table(const std::string& folder, const std::vector<TextFile>& more) {
@@ -76,13 +99,21 @@ int compare(CompareArguments& arguments) {
   options.on_progress = [&](std::int64_t done, std::int64_t total, const std::string& what) {
     progress.update(static_cast<int>(done), static_cast<int>(total), what);
   };
-  options.on_plants_ready = [&folder] { make_output_folder(folder); };
+  if (!arguments.error_file.empty() && options.error_plant.empty()) {
+    options.error_plant =
+        options.plants.empty() ? default_plants(scenario).back() : options.plants.back();
+  }
+  options.on_plants_ready = [&] {
+    make_output_folder(folder);
+    if (!arguments.error_file.empty()) make_output_folder(folder_of(arguments.error_file));
+  };
   const std::optional<Comparison> comparison = compare_plants(scenario, options);
   if (!comparison) {
     std::cerr << "qsmpc: interrupted; nothing was written\n";
     return kInterruptedExit;
   }
-  const std::vector<TextFile> more = figure_files(*comparison, folder);
+  std::vector<TextFile> more = figure_files(*comparison, folder);
+  if (!arguments.error_file.empty()) more.push_back(error_file(*comparison, arguments.error_file));
   write_comparison(*comparison, more, folder);
   print_result(arguments.json ? comparison_json(*comparison)
                               : comparison_table(*comparison) + files_table(folder, more));
@@ -109,6 +140,13 @@ void add_compare_command(CLI::App& app, int& exit_code) {
       ->add_option("--threads", options.threads,
                    "that the work is divided among; default: all; changes no result")
       ->check(CLI::Range(1, kMostThreads));
+  CLI::Option* error_file = command->add_option(
+      "--write-model-error", arguments->error_file,
+      "FILE (YAML): the measured model error, for the scenario's key model_error");
+  command
+      ->add_option("--model-error-plant", options.error_plant,
+                   "NAME: of which plant; default: the one named last")
+      ->needs(error_file);
   command->add_option("--set", arguments->overrides, "KEY=VALUE: replaces a key of the scenario")
       ->allow_extra_args(false);
   command->add_option("--seed", arguments->seed,

@@ -105,14 +105,21 @@ class Comparing {
     result_.policy = plan.policy;
     result_.particles = plan.prediction.stages;
     const PredictedMotion motion = motion_of(planner, belief_, plan);
-    result_.certificates =
-        certify(motion, scenario_.safe_set, error_budget(motion), CertificateEffort::kEvery, run_);
+    result_.certificates = certificates_of(motion);
+    if (scenario_.model_error) {
+      result_.with_error = certificates_of(of_plant(motion, scenario_, BeliefOrigin::kGiven));
+    }
     result_.w2_paths = w2_paths(result_.particles, options_.paths);
     source_.emplace(result_.policy, belief_, scenario_.disturbance.covariance, path_numbers());
     result_.model_paths = model_paths(*model_, *source_, options_.paths, run_);
     result_.floors = w2_floors(
         result_.particles, *model_, result_.policy, belief_, scenario_.disturbance.covariance,
         {.numbers = path_numbers(), .paths = options_.paths, .count = result_.w2_paths}, run_);
+  }
+
+  [[nodiscard]] std::vector<StageCertificate> certificates_of(const PredictedMotion& motion) const {
+    return certify(motion, scenario_.safe_set, error_budget(motion), CertificateEffort::kEvery,
+                   run_);
   }
 
   void compare(Candidate& candidate, SharedWork& work) {
@@ -131,12 +138,7 @@ class Comparing {
     plant.one_step = one_step_statistics(plant.episodes);
     plant.horizon = compare_along_horizon(plant.paths, result_.model_paths, result_.particles,
                                           scenario_.safe_set, {.w2_paths = result_.w2_paths}, run_);
-    for (std::size_t k = 0; k < plant.horizon.size(); ++k) {
-      // Written so that a certificate that is not a number is one that does not hold.
-      if (!(result_.in_force()[k].value >= plant.horizon[k].unsafe_limits.lower)) {
-        plant.exceeded_stages.push_back(plant.horizon[k].stage);
-      }
-    }
+    plant.exceeded_stages = exceeded_stages(plant.horizon, result_.in_force());
     result_.plants.push_back(std::move(plant));
   }
 
@@ -184,6 +186,18 @@ std::vector<std::string> default_plants(const Scenario& scenario) {
   std::vector<std::string> names{"analytic"};
   if (scenario.plant.kind == "mujoco") names.emplace_back("mujoco");
   return names;
+}
+
+std::vector<int> exceeded_stages(const std::vector<HorizonStage>& horizon,
+                                 const std::vector<StageCertificate>& certificates) {
+  std::vector<int> stages;
+  for (std::size_t k = 0; k < horizon.size(); ++k) {
+    // Written so that a certificate that is not a number is one that does not hold.
+    if (!(certificates[k].value >= horizon[k].unsafe_limits.lower)) {
+      stages.push_back(horizon[k].stage);
+    }
+  }
+  return stages;
 }
 
 std::optional<Comparison> compare_plants(const Scenario& scenario,

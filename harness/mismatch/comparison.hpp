@@ -84,6 +84,11 @@ struct Comparison {
 /// "analytic", and "mujoco" where that is the scenario's own plant.
 [[nodiscard]] std::vector<std::string> default_plants(const Scenario& scenario);
 
+/// The stages of `horizon` whose certificate, at the same place in `certificates`, is below the
+/// lower limit of the observed rate.
+[[nodiscard]] std::vector<int> exceeded_stages(const std::vector<HorizonStage>& horizon,
+                                               const std::vector<StageCertificate>& certificates);
+
 /// Compares the plants; those named twice are taken once. Nothing if `should_stop` said so before
 /// the end. But for `speed`, the result depends on the scenario (its seed included) and the options
 /// alone, not on the number of threads: a deadline of the planner is therefore left out. Throws

@@ -114,6 +114,34 @@ TEST(Compare, threads_and_a_second_run_change_nothing_but_the_speed) {
   EXPECT_EQ(numbers("one", "1"), numbers("three", "3"));
 }
 
+TEST(Compare, writes_a_model_error_that_makes_the_certificates_hold_for_the_plant) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path() + "/errors/car.yaml";
+  const ProcessResult measured =
+      compare("dubins_corridor", folder.path() + "/first",
+              {"--plant", "mujoco_car", "--plant", "analytic", "--write-model-error", file,
+               "--model-error-plant", "mujoco_car", "--json"});
+  ASSERT_EQ(measured.exit_code, 0) << measured.errors;
+  const auto error = nlohmann::json::parse(measured.output)["model_error"];
+  EXPECT_EQ(error["plant"], "mujoco_car");
+  EXPECT_THAT(read_text(file), HasSubstr("system: dubins"));
+  const ProcessResult covered = compare("dubins_corridor", folder.path() + "/second",
+                                        {"--set", "model_error=" + file, "--json"});
+  ASSERT_EQ(covered.exit_code, 0) << covered.errors;
+  const auto stages =
+      nlohmann::json::parse(covered.output)["plants"]["analytic"]["certificate"]["stages"];
+  for (const auto& stage : stages) EXPECT_GT(stage["with"], stage["without"]);
+}
+
+TEST(Compare, by_default_the_model_error_is_that_of_the_plant_named_last) {
+  const TemporaryFolder folder;
+  const std::string file = folder.path() + "/own.yaml";
+  const ProcessResult result =
+      compare("dubins_obstacles", folder.path() + "/out", {"--write-model-error", file, "--json"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(nlohmann::json::parse(result.output)["model_error"]["plant"], "mujoco");
+}
+
 TEST(Compare, refuses_bad_input_in_one_line_and_writes_nothing) {
   const TemporaryFolder folder;
   const std::string out = folder.path() + "/out";
@@ -123,6 +151,8 @@ TEST(Compare, refuses_bad_input_in_one_line_and_writes_nothing) {
       {{"--plant", "submarine"}, "analytic, mujoco, "},
       {{"--plant", "analytic", "--plant", folder.path() + "/none.xml"}, "none.xml"},
       {{"--plant", broken}, "broken.xml"},
+      {{"--model-error-plant", "analytic"}, "--write-model-error"},
+      {{"--write-model-error", out + "/e.yaml", "--model-error-plant", "mujoco_car"}, "analytic"},
       {{"--episodes", "0"}, "--episodes"},
       {{"--paths", "0"}, "--paths"},
       {{"--threads", "0"}, "--threads"},

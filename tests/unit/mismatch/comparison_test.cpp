@@ -36,7 +36,7 @@ std::string numbers_of(Comparison comparison) {
 }
 
 TEST(ComparePlants, gives_the_same_bits_for_any_number_of_threads) {
-  const Scenario scenario = short_scenario({"controller.deadline=0.02"});
+  const Scenario scenario = short_scenario();
   ComparisonOptions options = small_options({"analytic", "mujoco"});
   options.error_plant = "mujoco";
   options.threads = 1;
@@ -50,6 +50,46 @@ TEST(ComparePlants, gives_the_same_bits_for_any_number_of_threads) {
     EXPECT_EQ(one->plants[n].paths.residuals.back(), three->plants[n].paths.residuals.back());
     EXPECT_EQ(one->plants[n].episodes[2].residuals, three->plants[n].episodes[2].residuals);
   }
+}
+
+// It would make results depend on how busy the machine is.
+TEST(ComparePlants, a_deadline_of_the_planner_is_left_out) {
+  const auto without = compare_plants(short_scenario(), small_options({"analytic"}));
+  const auto with =
+      compare_plants(short_scenario({"controller.deadline=1e-6"}), small_options({"analytic"}));
+  ASSERT_TRUE(without && with);
+  EXPECT_EQ(numbers_of(*without), numbers_of(*with));
+}
+
+TEST(ComparePlants, a_model_error_of_the_scenario_is_in_force) {
+  const auto plain = compare_plants(short_scenario(), small_options({"analytic"}));
+  const auto comparison = compare_plants(short_scenario({"model_error.rms=[0.02, 0.02, 0.01]"}),
+                                         small_options({"analytic"}));
+  ASSERT_TRUE(plain && comparison && comparison->with_error);
+  EXPECT_FALSE(plain->with_error);
+  EXPECT_EQ(&plain->in_force(), &plain->certificates);
+  EXPECT_EQ(&comparison->in_force(), &*comparison->with_error);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(comparison->certificates[k].value, plain->certificates[k].value) << k;
+    EXPECT_GT((*comparison->with_error)[k].value, plain->certificates[k].value) << k;
+  }
+  const auto json = nlohmann::json::parse(comparison_json(*comparison));
+  const auto& stage = json["plants"]["analytic"]["certificate"]["stages"][1];
+  EXPECT_EQ(stage["with"], (*comparison->with_error)[1].value);
+}
+
+TEST(ExceededStages, are_those_whose_certificate_is_below_the_lower_limit) {
+  std::vector<HorizonStage> horizon(4);
+  std::vector<StageCertificate> certificates(4);
+  for (std::size_t k = 0; k < 4; ++k) {
+    horizon[k].stage = static_cast<int>(k) + 1;
+    horizon[k].unsafe_limits = {.lower = 0.1, .upper = 0.2};
+  }
+  certificates[0].value = 0.15;
+  certificates[1].value = 0.05;
+  certificates[2].value = 0.1;
+  certificates[3].value = std::nan("");
+  EXPECT_THAT(exceeded_stages(horizon, certificates), ElementsAre(2, 4));
 }
 
 TEST(ComparePlants, the_analytic_plant_is_the_model_but_for_rounding) {
