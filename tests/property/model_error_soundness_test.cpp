@@ -40,6 +40,13 @@ double lower_limit(int successes) {
                                                                      significance);
 }
 
+/// The truth is above this with such a probability.
+double upper_limit(int successes) {
+  const double significance = 1e-3 / (6.0 * 8.0 * problem_count());
+  return boost::math::binomial_distribution<>::find_upper_bound_on_p(kPaths, successes,
+                                                                     significance);
+}
+
 double uniform(Generator& generator, double lower, double upper) {
   return std::uniform_real_distribution<double>(lower, upper)(generator);
 }
@@ -59,8 +66,8 @@ ModelError scaled_norms(const Eigen::VectorXd& size, const std::array<double, 3>
   return error;
 }
 
-/// −1 or 1 in each coordinate: where the nearest part of the unsafe set is from every point.
-Points towards_unsafe(const SafeSet& safe_set, const Points& points) {
+/// From every point the shortest way to the unsafe set; infinite where there is none.
+Points ways_to_unsafe(const SafeSet& safe_set, const Points& points) {
   std::vector<Box> parts = safe_set.obstacles;
   for (Eigen::Index axis = 0; axis < points.rows(); ++axis) {
     Box face{.lower = Eigen::VectorXd::Constant(points.rows(), -kInfinity),
@@ -71,7 +78,7 @@ Points towards_unsafe(const SafeSet& safe_set, const Points& points) {
     face.upper[axis] = safe_set.bounds.lower[axis];
     parts.push_back(face);
   }
-  Points direction = Points::Ones(points.rows(), points.cols());
+  Points ways = Points::Constant(points.rows(), points.cols(), kInfinity);
   for (Eigen::Index i = 0; i < points.cols(); ++i) {
     double least = kInfinity;
     for (const Box& part : parts) {
@@ -79,10 +86,17 @@ Points towards_unsafe(const SafeSet& safe_set, const Points& points) {
       const Eigen::VectorXd way = point.cwiseMax(part.lower).cwiseMin(part.upper) - point;
       if (!(way.norm() < least)) continue;
       least = way.norm();
-      direction.col(i) = way.unaryExpr([](double one) { return one < 0.0 ? -1.0 : 1.0; });
+      ways.col(i) = way;
     }
   }
-  return direction;
+  return ways;
+}
+
+/// −1 or 1 in each coordinate: where the nearest part of the unsafe set is from every point.
+Points towards_unsafe(const SafeSet& safe_set, const Points& points) {
+  return ways_to_unsafe(safe_set, points).unaryExpr([](double way) {
+    return way < 0.0 ? -1.0 : 1.0;
+  });
 }
 
 Plant biased(const Eigen::VectorXd& size, Generator& generator) {
@@ -169,9 +183,44 @@ Plant heavy_tailed(const Eigen::VectorXd& size, const SafeSet& safe_set, Generat
           }};
 }
 
+/// None, but close to the unsafe set, into which it leads; a correlation with all noises so far
+/// that nothing must be smoothed over.
+PlantError lurking_error(const Eigen::VectorXd& reach, const SafeSet& safe_set) {
+  return [=](const PlantMoment& moment) {
+    Points error = ways_to_unsafe(safe_set, moment.stepped);
+    for (Eigen::Index i = 0; i < error.cols(); ++i) {
+      const bool near = (error.col(i).array().abs() < reach.array()).all();
+      error.col(i) *= near ? 1.0 : 0.0;
+    }
+    return Points(error.unaryExpr([](double one) { return std::isfinite(one) ? one : 0.0; }));
+  };
+}
+
+/// Its norms: those of what is `reach` with the probability of any error, of which simulated paths
+/// give an upper limit, and else zero.
+Plant lurking(const PredictedMotion& motion, const SafeSet& safe_set, const Eigen::VectorXd& reach,
+              Generator& generator) {
+  const PlantError error = lurking_error(reach, safe_set);
+  Eigen::VectorXd most = Eigen::VectorXd::Zero(reach.size());  // paths, at any moment
+  const PlantError counted = [&](const PlantMoment& moment) {
+    const Points one = error(moment);
+    most = most.cwiseMax((one.array() != 0.0).cast<double>().rowwise().sum().matrix());
+    return one;
+  };
+  (void)simulate(motion, safe_set, kPaths, generator, nullptr, counted);
+  Plant plant{.kind = "lurking", .norms = scaled_norms(reach, {1.0, 1.0, 1.0}), .error = error};
+  for (Eigen::Index i = 0; i < reach.size(); ++i) {
+    const double share = upper_limit(static_cast<int>(most[i]));
+    plant.norms.root_mean_square[i] *= std::sqrt(share);
+    plant.norms.higher[0][i] *= std::pow(share, 1.0 / 4.0);
+    plant.norms.higher[1][i] *= std::pow(share, 1.0 / 8.0);
+  }
+  return plant;
+}
+
 /// Any of the plants above; over the horizon its error adds up to between 0.03 and three times what
 /// the state deviates from its mean.
-Plant random_plant(const Problem& problem, Generator& generator) {
+Plant random_plant(const Problem& problem, const PredictedMotion& motion, Generator& generator) {
   const PlannerSettings& settings = problem.settings;
   const double total = std::pow(10.0, uniform(generator, -1.5, 0.5));
   const Eigen::VectorXd spread = (problem.belief.covariance.diagonal() +
@@ -179,7 +228,7 @@ Plant random_plant(const Problem& problem, Generator& generator) {
                                      .cwiseMax(0.0)
                                      .cwiseSqrt();
   const Eigen::VectorXd size = total / settings.horizon * spread;
-  switch (std::uniform_int_distribution<int>(0, 5)(generator)) {
+  switch (std::uniform_int_distribution<int>(0, 7)(generator)) {
     case 0:
       return biased(size, generator);
     case 1:
@@ -190,6 +239,9 @@ Plant random_plant(const Problem& problem, Generator& generator) {
       return jumping(size, settings.safe_set, generator);
     case 4:
       return dragging(uniform(generator, 0.05, 0.5), settings.noise_covariance, generator);
+    case 5:
+    case 6:
+      return lurking(motion, settings.safe_set, uniform(generator, 0.1, 0.6) * spread, generator);
     default:
       return heavy_tailed(size, settings.safe_set, generator);
   }
@@ -236,12 +288,13 @@ void check_problem(const Problem& problem, const std::string& name, Generator& g
                    Tally& tally) {
   Planner planner(*problem.dynamics, problem.settings);
   const Plan& plan = planner.plan(problem.belief);
-  const Plant plant = random_plant(problem, generator);
-  const ModelError known = as_known(plant.norms, generator);
   PredictedMotion motion = motion_of(planner, problem.belief, plan);
   const PredictedMotion model = motion;
+  ModelError known;
   motion.model_error = &known;
   if (uniform(generator, 0.0, 1.0) < 0.3) motion.belief_error = &known;
+  const Plant plant = random_plant(problem, motion, generator);
+  known = as_known(plant.norms, generator);
   const SafeSet& safe_set = problem.settings.safe_set;
   const CertificateEffort effort =
       uniform(generator, 0.0, 1.0) < 0.5 ? CertificateEffort::kLeast : CertificateEffort::kEvery;

@@ -8,6 +8,7 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 #include "controller/certification/error_cut.hpp"
+#include "controller/measure/normal_distribution.hpp"
 #include "models/dynamics/dubins.hpp"
 #include "tests/unit/controller/surrogate_cases.hpp"
 
@@ -130,6 +131,65 @@ TEST(PlantSurrogate, bounds_what_an_error_does_that_drives_the_state_away_from_i
   }
 }
 
+TEST(PlantSurrogate, regions_hold_the_state_where_only_the_error_moves_it) {
+  const Eigen::Vector3d size(0.02, 0.02, 0.05);
+  const ModelError error = bounded(size);
+  for (const bool closed_loop : {false, true}) {
+    const Case one = make_case("still", dubins_car(),
+                               around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(1e-9)),
+                               1e-18 * Eigen::Matrix3d::Identity(),
+                               Eigen::VectorXd::Constant(1, 0.3), {.closed_loop = closed_loop});
+    PredictedMotion motion = one.motion();
+    motion.model_error = &error;
+    motion.belief_error = &error;
+    const std::vector<SurrogateStage> stages = affine_surrogates(motion);
+    Points state = motion.belief.mean + size;
+    for (std::size_t k = 0; k + 1 < stages.size(); ++k) {
+      EXPECT_TRUE((state.array() >= stages[k].region.lower.array()).all()) << k;
+      EXPECT_TRUE((state.array() <= stages[k].region.upper.array()).all()) << k;
+      const Eigen::VectorXd distance = (state.col(0) - stages[k].law.mean).cwiseAbs();
+      EXPECT_TRUE((distance.array() <= stages[k].largest.array() + 1e-8).all()) << k;
+      Points inputs(1, 1);
+      Points next(3, 1);
+      policy_inputs(motion.policy, static_cast<Eigen::Index>(k), state, inputs);
+      motion.dynamics.step(state, inputs, next);
+      state = next + away(next.colwise() - stages[k + 1].law.mean, size);
+    }
+  }
+}
+
+/// An error that knows where the state is, though what it was made of is Gaussian and wide: it
+/// leads all into the wall that come near it. To count that width as smoothing would be wrong.
+TEST(PlantCertificate, holds_for_an_error_that_is_none_but_near_the_wall) {
+  constexpr double kWall = 3.0;   // m, and standard deviations
+  constexpr double kReach = 0.3;  // m, of the error
+  constexpr double kPush = 0.05;  // m, five deviations of the noise
+  const Case one =
+      make_case("watched", dubins_car(),
+                {.mean = Eigen::Vector3d(-dubins_car()->unicycle()->reach, 0.0, 0.0),
+                 .covariance = Eigen::Vector3d(1.0, 1.0, 0.0).asDiagonal()},
+                Eigen::Vector3d(1e-4, 1e-4, 0.0).asDiagonal(), Eigen::VectorXd::Zero(1), {}, 1);
+  const double near = normal_cumulative(kReach - kWall) - normal_cumulative(-kWall);
+  ModelError error = bounded(Eigen::Vector3d(kReach + kPush, 0.0, 0.0));
+  error.root_mean_square *= std::sqrt(near);
+  error.higher[0] *= std::pow(near, 1.0 / 4.0);
+  error.higher[1] *= std::pow(near, 1.0 / 8.0);
+  PredictedMotion motion = one.motion();
+  motion.model_error = &error;
+  SafeSet safe_set = unbounded_safe_set(3);
+  safe_set.bounds.upper[0] = kWall;
+  const StageCertificate certificate =
+      certify(motion, safe_set, error_budget(motion), CertificateEffort::kEvery).front();
+  // Who was within the reach of the wall, or beyond it, is unsafe but for five deviations; who was
+  // beyond it by less than that, and so may come back, counts half.
+  const double truth = near * (1.0 - 1e-6) + 0.5 * normal_cumulative(-kWall);
+  EXPECT_GE(certificate.particles, truth);
+  EXPECT_GE(certificate.mixture, truth);
+  EXPECT_GE(certificate.surrogate, truth);
+  EXPECT_GE(certificate.smoothed, truth);
+  EXPECT_LT(certificate.value, 0.1);
+}
+
 TEST(PlantSurrogate, cuts_are_charged_for_from_the_stage_that_rests_on_them) {
   const Case one = dubins({});
   const ModelError error = bounded(Eigen::Vector3d(0.01, 0.01, 0.01));
@@ -171,6 +231,23 @@ TEST(PlantSurrogate, unknown_norms_are_unknown_only_where_they_reach) {
   EXPECT_TRUE(std::isfinite(last.higher[1][Dubins::kY]));
   EXPECT_TRUE(last.error.allFinite());
   EXPECT_LT(last.leaving, 1e-4);
+}
+
+TEST(PlantSurrogate, what_unknown_norms_of_a_heading_do_is_bounded_by_their_cut) {
+  // Straight ahead along x, a heading's error reaches x by the residual's slope only.
+  const Case one = dubins({}, 0.0);
+  const ModelError known = bounded(Eigen::Vector3d(0.0, 0.0, 0.02));
+  const ModelError unknown = model_error_of_size(known.root_mean_square);
+  PredictedMotion motion = one.motion();
+  motion.model_error = &known;
+  const SurrogateStage with_norms = affine_surrogates(motion).back();
+  motion.model_error = &unknown;
+  const SurrogateStage without = affine_surrogates(motion).back();
+  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+    EXPECT_TRUE(std::isfinite(without.higher[k][Dubins::kX]));
+    EXPECT_GT(without.higher[k][Dubins::kX], with_norms.higher[k][Dubins::kX]);
+    EXPECT_EQ(without.higher[k][Dubins::kHeading], kInfinity);
+  }
 }
 
 TEST(Smoothing, is_that_of_the_last_noise_where_there_is_a_model_error) {
