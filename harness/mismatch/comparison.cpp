@@ -74,7 +74,7 @@ class Comparing {
  private:
   static int threads(const ComparisonOptions& options) {
     const auto available = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    return options.threads > 0 ? options.threads : available;
+    return options.threads > 0 ? std::min(options.threads, available) : available;
   }
 
   [[nodiscard]] PathNumbers path_numbers() const { return {.seed = scenario_.seed, .first = 0}; }

@@ -34,7 +34,7 @@ struct ComparisonOptions {
   std::vector<std::string> plants{};  ///< as `with_plant` takes them; empty: `default_plants`
   int episodes = 50;                  ///< ≥ 1, of each plant
   std::int64_t paths = 1000;          ///< ≥ 1, of each plant
-  int threads = 0;                    ///< 0: as many as the processor runs at once
+  int threads = 0;                    ///< at most; 0: as many as the processor runs at once
   /// The plant whose model error is measured, one of `plants`; empty: none.
   std::string error_plant{};
   /// Called once all plants are made, before anything is simulated; what it throws passes through.

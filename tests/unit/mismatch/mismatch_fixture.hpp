@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "controller/planning/planner.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/mismatch/path_ensemble.hpp"
 #include "harness/mismatch/plant_pool.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -61,5 +64,27 @@ inline PlantPool altered_plants(const Scenario& scenario, const Eigen::VectorXd&
     return std::make_unique<AlteredPlant>(make_plant(scenario), bias, breaks_at);
   });
 }
+
+/// A plan of a scenario, and paths under it.
+struct Planned {
+  explicit Planned(const Scenario& planned_scenario) : scenario(planned_scenario) {
+    model = model_of(scenario);
+    belief = {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance};
+    Planner planner(*model, planner_settings(scenario));
+    const Plan& plan = planner.plan(belief);
+    policy = plan.policy;
+    particles = plan.prediction.stages;
+  }
+
+  [[nodiscard]] PathSource source(std::uint64_t first = 0) const {
+    return {policy, belief, scenario.disturbance.covariance, {.seed = 5, .first = first}};
+  }
+
+  Scenario scenario;
+  std::unique_ptr<const Dynamics> model;
+  Gaussian belief;
+  Policy policy;
+  std::vector<DiscreteMeasure> particles;
+};
 
 }  // namespace qsmpc::testing

@@ -16,6 +16,7 @@ namespace qsmpc {
 namespace {
 
 using testing::altered_plants;
+using testing::Planned;
 using testing::short_scenario;
 
 constexpr std::int64_t kPaths = 130;  // no multiple of a batch
@@ -31,28 +32,6 @@ Scenario mass_scenario(const std::string& policy) {
       "  cost: {state: [30, 5], input: [20], terminal: [40, 10]}\n  policy: " +
       policy + "\n");
 }
-
-/// A plan of a scenario, and paths under it.
-struct Planned {
-  explicit Planned(const Scenario& planned_scenario) : scenario(planned_scenario) {
-    model = model_of(scenario);
-    belief = {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance};
-    Planner planner(*model, planner_settings(scenario));
-    const Plan& plan = planner.plan(belief);
-    policy = plan.policy;
-    particles = plan.prediction.stages;
-  }
-
-  [[nodiscard]] PathSource source(std::uint64_t first = 0) const {
-    return {policy, belief, scenario.disturbance.covariance, {.seed = 5, .first = first}};
-  }
-
-  Scenario scenario;
-  std::unique_ptr<const Dynamics> model;
-  Gaussian belief;
-  Policy policy;
-  std::vector<DiscreteMeasure> particles;
-};
 
 PlantPaths paths_of(PlantPool& pool, const Planned& planned, const Executor& run = run_in_turn) {
   SharedWork work(path_batches(kPaths), {}, {});

@@ -1,0 +1,61 @@
+// What a comparison is for: a plant that certificates of the model do not cover is found, and those
+// with its measured error cover it.
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "controller/certification/certificate.hpp"
+#include "harness/mismatch/comparison.hpp"
+#include "harness/mismatch/measured_error.hpp"
+#include "tests/unit/mismatch/mismatch_fixture.hpp"
+
+namespace qsmpc {
+namespace {
+
+using testing::altered_plants;
+using ::testing::IsEmpty;
+using testing::Planned;
+
+constexpr std::int64_t kPaths = 400;
+
+std::vector<StageCertificate> certificates(const Planned& planned, const Plan& plan,
+                                           const Planner& planner, const ModelError* error) {
+  PredictedMotion motion = motion_of(planner, planned.belief, plan);
+  motion.model_error = error;
+  return certify(motion, planned.scenario.safe_set, error_budget(motion));
+}
+
+// A side wind of 0.15 m a period towards a wall that the model keeps away from.
+TEST(PlantCertificates, those_of_the_model_are_exceeded_and_those_with_the_measured_error_hold) {
+  const Planned planned(testing::short_scenario());
+  PlantPool pool = altered_plants(planned.scenario, Eigen::Vector3d(0.0, -0.15, 0.0));
+  SharedWork work(path_batches(kPaths), {}, {});
+  const PlantPaths plant =
+      plant_paths(pool, *planned.model, planned.source(), kPaths, run_in_turn, work);
+  const std::vector<Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+  const auto horizon =
+      compare_along_horizon(plant, model, planned.particles, planned.scenario.safe_set,
+                            {.w2_paths = kPaths}, run_in_turn);
+
+  ResidualSample sample{.by_period = true};
+  for (Eigen::Index i = 0; i < kPaths; ++i) {
+    Eigen::MatrixXd path(3, 3);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      path.col(k) = plant.residuals[static_cast<std::size_t>(k)].col(i);
+    }
+    sample.units.push_back(path);
+  }
+  const ModelError error = measured_model_error({sample}, 1);
+  EXPECT_NEAR(error.root_mean_square[1], 0.15, 1e-9);
+
+  Planner planner(*planned.model, planner_settings(planned.scenario));
+  const Plan& plan = planner.plan(planned.belief);
+  EXPECT_THAT(exceeded_stages(horizon, certificates(planned, plan, planner, nullptr)),
+              ::testing::Not(IsEmpty()));
+  EXPECT_THAT(exceeded_stages(horizon, certificates(planned, plan, planner, &error)), IsEmpty());
+}
+
+}  // namespace
+}  // namespace qsmpc
