@@ -108,6 +108,7 @@ std::vector<int> shown_states(const SystemDescription& system) {
 
 std::string horizon_head(const SystemDescription& system, const std::vector<int>& states) {
   std::vector<Coordinate> shown;
+  shown.reserve(states.size());
   for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
   std::string head = state_head(
       shown, kStageWidth, kStageStateWidth,

@@ -82,6 +82,7 @@ std::vector<W2Floor> w2_floors(const std::vector<DiscreteMeasure>& stages, const
     });
   }
   std::vector<W2Floor> floors;
+  floors.reserve(distances.size());
   for (const std::vector<double>& of_stage : distances) floors.push_back(floor_of(of_stage));
   return floors;
 }
