@@ -61,7 +61,8 @@ class Episode {
     const GaussianSampler initial(belief_.mean, belief_.covariance);
     state_ = initial.sample({.seed = options_.seed, .stream = RandomStream::kInitialState});
     try {
-      plant_ = make_plant(scenario_);
+      plant_ = make_plant(scenario_, draw_variation(scenario_.disturbance,
+                                                    options_.plant_seed.value_or(options_.seed)));
       trace.outcome = drive(trace);
     } catch (const SimulatorError& error) {
       trace.outcome = Outcome::kFault;

@@ -2,37 +2,70 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 
 #include "harness/errors.hpp"
 #include "harness/plant/analytic_plant.hpp"
-#include "harness/plant/mujoco_plant.hpp"
+#include "harness/plant/mujoco/mujoco_plant.hpp"
 
 namespace qsmpc {
 namespace {
 
 struct PlantMaker {
   PlantEntry entry;
-  std::function<std::unique_ptr<Plant>(const Scenario&)> make;
+  std::function<std::unique_ptr<Plant>(const Scenario&, const PlantVariation&)> make;
 };
 
-std::unique_ptr<Plant> make_analytic(const Scenario& scenario) {
-  const Scenario::Model& model = scenario.model;
-  return make_analytic_plant(make_dynamics(model.system, model.parameters, scenario.time_step),
+/// Multiplies those of `names` among the parameters; refuses a factor that changes none.
+void vary(ParameterMap& parameters, const char* what, double factor,
+          std::initializer_list<const char*> names) {
+  if (factor == 1.0) return;
+  bool any = false;
+  for (const char* name : names) {
+    const auto found = parameters.find(name);
+    if (found == parameters.end()) continue;
+    found->second *= factor;
+    any = true;
+  }
+  if (any) return;
+  throw InputError({.key = std::string("disturbance.") + what,
+                    .found = "a deviation above 0",
+                    .expected = "0, as the system has no such constant, or a MuJoCo plant"});
+}
+
+std::unique_ptr<Plant> make_analytic(const Scenario& scenario, const PlantVariation& variation) {
+  if (scenario.disturbance.kind != "state") {
+    throw InputError({.key = "disturbance.kind",
+                      .found = scenario.disturbance.kind,
+                      .expected = "state, as an analytic plant has no body to push"});
+  }
+  ParameterMap parameters = scenario.model.parameters;
+  vary(parameters, "friction", variation.friction, {"front_tyre_stiffness", "rear_tyre_stiffness"});
+  vary(parameters, "mass", variation.mass, {"mass", "yaw_inertia", "cart_mass", "pole_mass"});
+  vary(parameters, "wheelbase", variation.wheelbase, {"front_axle_distance", "rear_axle_distance"});
+  return make_analytic_plant(make_dynamics(scenario.model.system, parameters, scenario.time_step),
                              scenario.time_step);
 }
 
-std::unique_ptr<Plant> make_mujoco(const Scenario& scenario) {
+std::unique_ptr<Plant> make_mujoco(const Scenario& scenario, const PlantVariation& variation) {
+  const auto model =
+      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const bool pushed = scenario.disturbance.kind == "force";
   return make_mujoco_plant(
       {.mjcf = scenario.plant.mjcf,
        .control_period = scenario.time_step,
-       .mapping = mujoco_mapping(scenario.model.system, scenario.model.parameters)});
+       .system = model->description(),
+       .parameters = scenario.model.parameters,
+       .mapping = scenario.plant.mapping,
+       .time_step = scenario.plant.time_step,
+       .variation = variation,
+       .force_covariance = pushed ? scenario.disturbance.covariance : Eigen::MatrixXd()});
 }
 
 const std::vector<PlantMaker>& makers() {
   static const std::vector<PlantMaker> table{
       {{.name = "analytic", .summary = "the planner's own model, disturbed"}, make_analytic},
-      {{.name = "mujoco", .summary = "a MuJoCo vehicle with low-level loops, disturbed by kicks"},
-       make_mujoco}};
+      {{.name = "mujoco", .summary = "a MuJoCo vehicle with its low-level loops"}, make_mujoco}};
   return table;
 }
 
@@ -47,10 +80,10 @@ const std::vector<PlantEntry>& plants() {
   return entries;
 }
 
-std::unique_ptr<Plant> make_plant(const Scenario& scenario) {
+std::unique_ptr<Plant> make_plant(const Scenario& scenario, const PlantVariation& variation) {
   const std::string& kind = scenario.plant.kind;
   for (const PlantMaker& maker : makers()) {
-    if (maker.entry.name == kind) return maker.make(scenario);
+    if (maker.entry.name == kind) return maker.make(scenario, variation);
   }
   std::string known;
   for (const PlantEntry& entry : plants()) known += (known.empty() ? "" : ", ") + entry.name;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "harness/plant/plant.hpp"
+#include "harness/plant/plant_variation.hpp"
 #include "harness/scenario/scenario.hpp"
 
 namespace qsmpc {
@@ -18,9 +19,11 @@ struct PlantEntry {
 
 [[nodiscard]] const std::vector<PlantEntry>& plants();
 
-/// The plant that `scenario.plant` names, for the scenario's system and control period.
-/// Throws InputError on an unknown kind, and whatever the plant's own maker throws: see
-/// make_mujoco_plant and make_dynamics.
-[[nodiscard]] std::unique_ptr<Plant> make_plant(const Scenario& scenario);
+/// The plant that `scenario.plant` names, for the scenario's system, control period and kind of
+/// disturbance. Throws InputError on an unknown kind, on a kind of disturbance or a variation that
+/// the plant does not offer, and whatever the plant's own maker throws: see make_mujoco_plant and
+/// make_dynamics.
+[[nodiscard]] std::unique_ptr<Plant> make_plant(const Scenario& scenario,
+                                                const PlantVariation& variation = {});
 
 }  // namespace qsmpc

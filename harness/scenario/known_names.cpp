@@ -71,6 +71,11 @@ const std::vector<std::string>& plant_kind_names() {
   return names;
 }
 
+const std::vector<std::string>& disturbance_kind_names() {
+  static const std::vector<std::string> names{"force", "state"};
+  return names;
+}
+
 const std::vector<std::string>& camera_names() {
   static const std::vector<std::string> names{"chase", "fixed", "top"};
   return names;

@@ -17,6 +17,7 @@ namespace qsmpc {
 [[nodiscard]] const std::vector<std::string>& policy_names();
 [[nodiscard]] const std::vector<std::string>& penalty_shape_names();
 [[nodiscard]] const std::vector<std::string>& plant_kind_names();
+[[nodiscard]] const std::vector<std::string>& disturbance_kind_names();
 [[nodiscard]] const std::vector<std::string>& camera_names();
 
 /// Least number of bytes to insert, delete, replace, or swap with a neighbour, that makes `a` into

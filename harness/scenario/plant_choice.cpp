@@ -23,10 +23,38 @@ std::vector<std::string> plant_names(const std::string& system) {
 
 const std::vector<ShippedPlant>& shipped_plants() {
   static const std::vector<ShippedPlant> plants{
+      {.name = "mujoco_planar",
+       .system = "dubins",
+       .mjcf = "dubins_planar.xml",
+       .summary = "the Dubins car in joints of MuJoCo, its speeds held by servos"},
       {.name = "mujoco_car",
        .system = "dubins",
        .mjcf = "dubins_car.xml",
-       .summary = "a small car on four wheels that steers, rolls and slips"}};
+       .summary = "a small car on four wheels that steers, rolls and slips"},
+      {.name = "mujoco_planar",
+       .system = "dubins_rk4",
+       .mjcf = "dubins_planar.xml",
+       .summary = "the Dubins car in joints of MuJoCo, its speeds held by servos"},
+      {.name = "mujoco_car",
+       .system = "dubins_rk4",
+       .mjcf = "dubins_car.xml",
+       .summary = "a small car on four wheels that steers, rolls and slips"},
+      {.name = "mujoco_planar",
+       .system = "bicycle",
+       .mjcf = "bicycle_planar.xml",
+       .summary = "the bicycle in joints of MuJoCo, pushed by its tyres' forces"},
+      {.name = "mujoco_car",
+       .system = "bicycle",
+       .mjcf = "bicycle_car.xml",
+       .summary = "a full-size car on four wheels with tyres that slip"},
+      {.name = "mujoco_slider",
+       .system = "double_integrator",
+       .mjcf = "double_integrator_slider.xml",
+       .summary = "a mass on a rail"},
+      {.name = "mujoco_cart_pole",
+       .system = "cart_pole",
+       .mjcf = "cart_pole.xml",
+       .summary = "a cart on a rail with a hinged pole"}};
   return plants;
 }
 
@@ -50,6 +78,11 @@ Scenario with_plant(Scenario scenario, const std::string& name) {
         {.key = "--plant",
          .found = name,
          .expected = "an MJCF file that exists, or " + expected_names(name, plant_names(system))});
+  }
+  if (mjcf != plant.mjcf) {
+    // These speak of the other file.
+    plant.mapping.reset();
+    plant.time_step.reset();
   }
   plant.kind = "mujoco";
   plant.mjcf = std::move(mjcf);

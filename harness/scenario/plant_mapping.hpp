@@ -120,6 +120,7 @@ struct PlantMapping {
   std::vector<std::string> rolling;  ///< joints of wheels that spin as the vehicle moves, on reset
   std::map<std::string, double> rate_limits;  ///< of controls, by actuator, unit/s
   double input_delay = 0.0;                   ///< s until an input acts
+  double settling = 1.0;                      ///< s that the vehicle runs before it is placed
   std::optional<TimeStepRange> time_steps;
 };
 

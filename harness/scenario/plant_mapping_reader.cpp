@@ -19,9 +19,11 @@ constexpr std::size_t kLongestElement = 200;  // bytes of a name in a MuJoCo mod
 constexpr std::size_t kMostItems = 100;       // of a list in a mapping
 constexpr int kMostComponents = 1000;         // numbers of one sensor
 constexpr double kLongestDelay = 10.0;        // s
+constexpr double kLongestSettling = 1000.0;   // s
 constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
-constexpr std::array kMappingKeys = {"state",   "input",      "hold",        "loops",
-                                     "rolling", "rate_limit", "input_delay", "time_steps"};
+constexpr std::array kMappingKeys = {"state",       "input",      "hold",
+                                     "loops",       "rolling",    "rate_limit",
+                                     "input_delay", "time_steps", "settling"};
 
 std::vector<std::string> names_of(const std::vector<Coordinate>& coordinates) {
   std::vector<std::string> names;
@@ -225,6 +227,8 @@ class MappingReader {
     }
     mapping_.input_delay =
         section_.number("input_delay", 0.0, {.least = 0.0, .most = kLongestDelay});
+    mapping_.settling =
+        section_.number("settling", mapping_.settling, {.least = 0.0, .most = kLongestSettling});
     if (const auto range = section_.vector("time_steps", 2)) {
       mapping_.time_steps = {.least = (*range)[0], .most = (*range)[1]};
       if (!((*range)[0] > 0.0 && (*range)[0] <= (*range)[1])) {

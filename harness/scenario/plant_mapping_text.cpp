@@ -111,9 +111,10 @@ std::string plant_mapping_text(const PlantMapping& mapping) {
   }
   std::string out = fmt::format(
       "state: {{{}}}, input: {{{}}}, hold: {}, loops: {}, rolling: {}, rate_limit: {{{}}}, "
-      "input_delay: {}",
+      "input_delay: {}, settling: {}",
       states, inputs_text(mapping), list_of(mapping.holds, hold), list_of(mapping.loops, loop),
-      list_of(mapping.rolling, quoted_yaml), limits, yaml_number(mapping.input_delay));
+      list_of(mapping.rolling, quoted_yaml), limits, yaml_number(mapping.input_delay),
+      yaml_number(mapping.settling));
   if (mapping.time_steps) {
     out += fmt::format(", time_steps: [{}, {}]", yaml_number(mapping.time_steps->least),
                        yaml_number(mapping.time_steps->most));

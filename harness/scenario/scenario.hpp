@@ -38,6 +38,11 @@ struct Scenario {
   struct Disturbance {
     Eigen::MatrixXd covariance;  ///< of the noise in the model, state_dim x state_dim, per period
     Eigen::MatrixXd sensor{};    ///< of what the planner sees less the state, state_dim x state_dim
+    std::string kind = "state";  ///< how the plant gets it: "state" or "force"
+    /// Deviations of the logarithms of what is drawn once an episode, see PlantVariation.
+    double friction = 0.0;
+    double mass = 0.0;
+    double wheelbase = 0.0;
   };
   struct Target {
     Eigen::VectorXd state;      ///< state_dim

@@ -12,6 +12,7 @@
 
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/model_error_reader.hpp"
+#include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/value_checks.hpp"
@@ -34,12 +35,19 @@ constexpr WholeRange kThreadsRange{1, 256};
 constexpr WholeRange kStepsRange{1, 1000000};
 constexpr WholeRange kFpsRange{1, 240};
 constexpr NumberRange kNotNegative{.least = 0.0};
+constexpr NumberRange kDeviationRange{.least = 0.0, .most = 0.5};  // of a logarithm
 constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
 constexpr NumberRange kDeadlineRange{.least = 0.0, .most = kLongestDeadline, .above_least = true};
 
-// The vehicle that drives, or is drawn for, a system unless the scenario names another.
-std::string default_mjcf(const std::string& system) {
-  return system == "dubins" || system == "dubins_rk4" ? "dubins_car.xml" : "";
+// The vehicle that drives, or is drawn for, a system unless the scenario names another. One that
+// has no place in the plane cannot be drawn without its own simulation.
+std::string default_mjcf(const SystemDescription& system, const std::string& kind) {
+  if (kind != "mujoco" && system.position_x < 0) return "";
+  std::string farthest;
+  for (const ShippedPlant& plant : shipped_plants()) {
+    if (plant.system == system.name) farthest = plant.mjcf;
+  }
+  return farthest;
 }
 
 std::vector<std::string> system_names() {
@@ -189,7 +197,9 @@ void ScenarioReader::check_parameters(Section& model, const SystemEntry& entry) 
 void ScenarioReader::read_plant() {
   Section plant = root_.section("plant");
   scenario_.plant.kind = plant.name("kind", scenario_.plant.kind, plant_kind_names());
-  const std::string name = plant.text("mjcf", default_mjcf(scenario_.model.system), kLongestPath);
+  const std::string fallback =
+      dynamics_ == nullptr ? "" : default_mjcf(system(), scenario_.plant.kind);
+  const std::string name = plant.text("mjcf", fallback, kLongestPath);
   const bool is_needed = scenario_.plant.kind == "mujoco" && dynamics_ != nullptr;
   const std::string path = find_mjcf(name, lookup_.folder);
   scenario_.plant.mjcf = path.empty() && !lookup_.must_exist ? name : path;
@@ -251,6 +261,14 @@ void ScenarioReader::read_disturbance() {
   const Eigen::MatrixXd none = Eigen::MatrixXd::Zero(state_dim(), state_dim());
   scenario_.disturbance.covariance = semidefinite(section, "covariance", none);
   scenario_.disturbance.sensor = semidefinite(section, "sensor", none);
+  Scenario::Disturbance& disturbance = scenario_.disturbance;
+  disturbance.kind = section.name("kind", disturbance.kind, disturbance_kind_names());
+  disturbance.friction = section.number("friction", disturbance.friction, kDeviationRange);
+  disturbance.mass = section.number("mass", disturbance.mass, kDeviationRange);
+  disturbance.wheelbase = section.number("wheelbase", disturbance.wheelbase, kDeviationRange);
+  if (disturbance.kind == "force" && scenario_.plant.kind == "analytic") {
+    section.note("kind", "state, or plant.kind: mujoco");
+  }
   section.refuse_unread();
 }
 

@@ -31,6 +31,15 @@ std::string model_text(const Scenario& scenario) {
   return out + "}\n";
 }
 
+std::string disturbance_text(const Scenario::Disturbance& disturbance) {
+  return fmt::format(
+      "disturbance:\n  covariance: {}\n  sensor: {}\n  kind: {}\n  friction: {}\n  mass: {}\n  "
+      "wheelbase: {}\n",
+      yaml_square(disturbance.covariance), yaml_square(disturbance.sensor), disturbance.kind,
+      yaml_number(disturbance.friction), yaml_number(disturbance.mass),
+      yaml_number(disturbance.wheelbase));
+}
+
 std::string plant_text(const Scenario::Plant& plant) {
   std::string out =
       fmt::format("plant: {{kind: {}, mjcf: {}", plant.kind, quoted_yaml(mjcf_name(plant.mjcf)));
@@ -109,9 +118,7 @@ std::string to_yaml(const Scenario& scenario) {
   out += fmt::format("initial_state:\n  mean: {}\n  covariance: {}\n",
                      yaml_list(scenario.initial_state.mean),
                      yaml_square(scenario.initial_state.covariance));
-  out += fmt::format("disturbance:\n  covariance: {}\n  sensor: {}\n",
-                     yaml_square(scenario.disturbance.covariance),
-                     yaml_square(scenario.disturbance.sensor));
+  out += disturbance_text(scenario.disturbance);
   if (scenario.model_error) out += "model_error:\n" + model_error_text(*scenario.model_error, "  ");
   out += safe_set_text(scenario.safe_set, system.states);
   out += target_text(scenario.target, system.states);

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco_errors.hpp"
-#include "harness/plant/mujoco_model.hpp"
+#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/plant/mujoco/mujoco_model.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
 namespace qsmpc {
@@ -143,9 +143,10 @@ TEST_F(MujocoPlantFault, refuses_a_model_that_loads_with_a_warning) {
 }
 
 TEST_F(MujocoPlantFault, refuses_a_model_without_the_names_that_the_mapping_needs) {
-  const auto joint = refusal(folder_.write("a.xml", altered_car("\"root\"", "\"base\"")));
-  EXPECT_EQ(joint.key, "joint root");
-  EXPECT_THAT(joint.expected, AllOf(HasSubstr("base"), HasSubstr("front_left_steering")));
+  const auto body =
+      refusal(folder_.write("a.xml", altered_car("<body name=\"car\"", "<body name=\"cra\"")));
+  EXPECT_EQ(body.key, "body car");
+  EXPECT_THAT(body.expected, AllOf(HasSubstr("cra"), HasSubstr("front_left")));
   const auto actuator =
       refusal(folder_.write("b.xml", altered_car("name=\"steer_right\"", "name=\"steer_rihgt\"")));
   EXPECT_EQ(actuator.key, "actuator steer_right");

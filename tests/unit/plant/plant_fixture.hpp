@@ -11,7 +11,8 @@
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
-#include "harness/plant/mujoco_plant.hpp"
+#include "harness/plant/mujoco/mujoco_plant.hpp"
+#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
 
@@ -19,10 +20,17 @@ inline constexpr double kSpeed = 1.5;          // m/s
 inline constexpr double kControlPeriod = 0.1;  // s
 inline constexpr const char* kCarFile = QSMPC_SOURCE_DIR "/models/mjcf/dubins_car.xml";
 
+inline MujocoPlantSetup car_setup(const std::string& mjcf = kCarFile,
+                                  double control_period = kControlPeriod) {
+  return {.mjcf = mjcf,
+          .control_period = control_period,
+          .system = make_dynamics("dubins", {{"speed", kSpeed}}, control_period)->description(),
+          .parameters = {{"speed", kSpeed}}};
+}
+
 inline std::unique_ptr<Plant> make_car(const std::string& mjcf = kCarFile,
                                        double control_period = kControlPeriod) {
-  return make_mujoco_plant(
-      {.mjcf = mjcf, .control_period = control_period, .mapping = dubins_car_mapping(kSpeed)});
+  return make_mujoco_plant(car_setup(mjcf, control_period));
 }
 
 inline Eigen::VectorXd pose(double x, double y, double heading) {

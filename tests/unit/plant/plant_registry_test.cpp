@@ -17,7 +17,8 @@ namespace {
 Scenario dubins_scenario(const std::string& kind) {
   Scenario scenario;
   scenario.model = {.system = "dubins", .parameters = {{"speed", kSpeed}}};
-  scenario.plant = {.kind = kind, .mjcf = kCarFile};
+  scenario.plant.kind = kind;
+  scenario.plant.mjcf = kCarFile;
   scenario.time_step = kControlPeriod;
   return scenario;
 }
@@ -73,7 +74,8 @@ TEST(PlantRegistry, refuses_what_it_cannot_make) {
   Scenario scenario = dubins_scenario("mujoco");
   scenario.model.parameters["speed"] = 0.0;
   EXPECT_THROW((void)make_plant(scenario), InputError);
-  scenario.model.system = "quadrotor";
+  scenario = dubins_scenario("mujoco");
+  scenario.model = {.system = "bicycle", .parameters = systems().at(2).defaults};
   EXPECT_THROW((void)make_plant(scenario), InputError);
 }
 

@@ -1,4 +1,4 @@
-#include "harness/plant/mujoco_model.hpp"
+#include "harness/plant/mujoco/mujoco_model.hpp"
 
 #include <array>
 #include <fstream>
@@ -8,7 +8,7 @@
 #include <mujoco/mujoco.h>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco_errors.hpp"
+#include "harness/plant/mujoco/mujoco_errors.hpp"
 
 namespace qsmpc {
 namespace {

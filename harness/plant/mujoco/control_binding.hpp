@@ -1,0 +1,83 @@
+// A system's inputs as controls of a MuJoCo model's actuators, with the low-level loops that do
+// not depend on the simulated state. Private to the MuJoCo plant.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "harness/plant/mujoco/named_model.hpp"
+#include "harness/scenario/plant_mapping.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// A PlantConstant as a number. Throws InputError on a name that is no parameter.
+[[nodiscard]] double constant_value(const PlantConstant& constant, const ParameterMap& parameters);
+
+class ControlBinding {
+ public:
+  /// data: after mj_forward at the model's reference pose. Throws InputError on a name that the
+  /// model does not have, a steered wheel that is not before the fixed axle, and a speed that is
+  /// not above 0.
+  ControlBinding(const NamedModel& named, const mjData& data, const PlantMapping& mapping,
+                 const SystemDescription& system, const ParameterMap& parameters);
+
+  /// The controls (nu) that `input` (input_dim) asks for.
+  [[nodiscard]] Eigen::VectorXd targets(const Eigen::VectorXd& input) const;
+
+  /// Moves the controls towards `targets` as far as their rates allow within one time step.
+  void follow(mjData& data, const Eigen::VectorXd& targets) const;
+
+  /// A loop that holds a speed.
+  struct SpeedHold {
+    double speed;  ///< m/s
+    int actuator;
+    double command;  ///< rad/s
+    int body;        ///< that the wheel belongs to, at the root
+    /// Corrects the command by the steady speed (m/s, > 0) to which it led: a loaded wheel rolls
+    /// on slightly less than its radius and the servo droops under rolling resistance.
+    void calibrate(double steady_speed) { command *= speed / steady_speed; }
+  };
+  [[nodiscard]] std::vector<SpeedHold>& speed_holds() { return speed_holds_; }
+
+ private:
+  struct Term {
+    Eigen::Index input;
+    int actuator;
+    double gain;
+    double offset;
+  };
+  struct Constant {
+    int actuator;
+    double value;
+  };
+  struct SteeredWheel {
+    int actuator;
+    double forward;  ///< m from the fixed axle
+    double left;     ///< m from the middle of the fixed axle
+  };
+  struct Ackermann {
+    Eigen::Index input;
+    double speed;      ///< m/s; 0 where the input is an angle
+    double wheelbase;  ///< m
+    std::vector<SteeredWheel> wheels;
+  };
+
+  void add(const NamedModel& named, const mjData& data, const AckermannLoop& loop,
+           const SystemDescription& system, const ParameterMap& parameters);
+  void add(const NamedModel& named, const SpeedHoldLoop& loop, const ParameterMap& parameters);
+
+  const mjModel& model_;
+  std::vector<Term> terms_;
+  std::vector<Constant> constants_;
+  std::vector<Ackermann> ackermann_;
+  std::vector<SpeedHold> speed_holds_;
+  Eigen::VectorXd most_change_;  // of a control within one time step
+};
+
+/// Index of the input called `name`, which the system has.
+[[nodiscard]] Eigen::Index input_index(const SystemDescription& system, const std::string& name);
+
+}  // namespace qsmpc

@@ -1,0 +1,118 @@
+#include "harness/plant/mujoco/mujoco_plant.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+#include "harness/plant/mujoco/force_shooting.hpp"
+#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/plant/mujoco/simulation.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kSamplePeriod = 0.02;  // s; pictures between samples are interpolated
+
+void require_size(const Eigen::VectorXd& vector, std::size_t size, const char* what) {
+  if (static_cast<std::size_t>(vector.size()) == size) return;
+  throw std::invalid_argument(
+      fmt::format("MuJoCo plant: {} of size {}, expected {}", what, vector.size(), size));
+}
+
+std::unique_ptr<Simulation> make_simulation(const MujocoPlantSetup& setup) {
+  const MujocoTrap trap;
+  try {
+    return std::make_unique<Simulation>(setup);
+  } catch (const MujocoError& error) {
+    throw SimulatorError({.file = setup.mjcf,
+                          .found = fmt::format("{} while settling", error.what()),
+                          .expected = "a vehicle that settles"});
+  }
+}
+
+class MujocoPlant final : public Plant {
+ public:
+  explicit MujocoPlant(const MujocoPlantSetup& setup)
+      : state_dim_(setup.system.states.size()),
+        input_dim_(setup.system.inputs.size()),
+        simulation_(make_simulation(setup)),
+        sample_steps_(
+            std::max(1, static_cast<int>(std::lround(kSamplePeriod / simulation_->time_step())))) {
+    const MujocoTrap trap;
+    if (setup.force_covariance.size() > 0) {
+      shooting_.emplace(*simulation_, setup.system, setup.force_covariance);
+    }
+    simulation_->reset(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(state_dim_)));
+  }
+
+  MotionSample reset(const Eigen::VectorXd& state) override {
+    require_size(state, state_dim_, "state");
+    if (!state.allFinite()) {
+      throw std::invalid_argument("MuJoCo plant: reset to a state not finite");
+    }
+    const MujocoTrap trap;
+    fault_.reset();
+    simulation_->reset(state);
+    return sample();
+  }
+
+  PlantStep advance(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance) override {
+    require_size(input, input_dim_, "input");
+    require_size(disturbance, state_dim_, "disturbance");
+    PlantStep result;
+    if (!fault_) {
+      const MujocoTrap trap;
+      try {
+        take_period(input, disturbance, result.motion);
+      } catch (const MujocoError& error) {
+        fault_ = fmt::format("{} at {:.3f} s", error.what(), simulation_->time());
+      }
+    }
+    result.state = simulation_->state();
+    result.fault = fault_;
+    return result;
+  }
+
+  [[nodiscard]] Eigen::VectorXd state() const override { return simulation_->state(); }
+
+ private:
+  [[nodiscard]] MotionSample sample() const {
+    return {.time = simulation_->time(), .qpos = simulation_->qpos()};
+  }
+
+  void take_period(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance,
+                   std::vector<MotionSample>& motion) {
+    if (!input.allFinite()) throw MujocoError("input that is not finite");
+    if (!disturbance.allFinite()) throw MujocoError("disturbance that is not finite");
+    simulation_->start_period(input);
+    if (shooting_ && !disturbance.isZero(0.0)) {
+      simulation_->set_pull(shooting_->solve(*simulation_, disturbance));
+    }
+    for (int k = 1; k <= simulation_->period_steps(); ++k) {
+      simulation_->step();
+      if (k % sample_steps_ == 0 || k == simulation_->period_steps()) motion.push_back(sample());
+    }
+    const bool kicked = !shooting_;
+    simulation_->add(kicked ? disturbance
+                            : Eigen::VectorXd(Eigen::VectorXd::Zero(disturbance.size())));
+    motion.push_back(sample());
+  }
+
+  std::size_t state_dim_;
+  std::size_t input_dim_;
+  std::unique_ptr<Simulation> simulation_;
+  std::optional<ForceShooting> shooting_;
+  int sample_steps_;
+  std::optional<std::string> fault_;
+};
+
+}  // namespace
+
+std::unique_ptr<Plant> make_mujoco_plant(const MujocoPlantSetup& setup) {
+  return std::make_unique<MujocoPlant>(setup);
+}
+
+}  // namespace qsmpc

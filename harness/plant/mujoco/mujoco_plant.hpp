@@ -1,0 +1,63 @@
+// A MuJoCo vehicle as plant, with the low-level loops that make it follow its system's inputs.
+//
+//   auto plant = qsmpc::make_mujoco_plant({.mjcf = "models/mjcf/dubins_car.xml",
+//                                          .control_period = 0.1,
+//                                          .system = dynamics.description(),
+//                                          .parameters = {{"speed", 1.5}}});
+//   plant->reset(state);
+//   const qsmpc::PlantStep step = plant->advance(input, disturbance);
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "harness/plant/plant.hpp"
+#include "harness/plant/plant_variation.hpp"
+#include "harness/scenario/plant_mapping.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+struct MujocoPlantSetup {
+  std::string mjcf;                       ///< path of the XML
+  double control_period = 0.1;            ///< s, a multiple of the model's time step
+  SystemDescription system;               ///< whose states and inputs are mapped
+  ParameterMap parameters;                ///< constants of the system, all of them
+  std::optional<PlantMapping> mapping{};  ///< else what the XML says of itself
+  std::optional<double> time_step{};      ///< s; else the XML's
+  PlantVariation variation{};
+  /// Where not empty, the disturbance acts as a force, and this is its covariance: state_dim x
+  /// state_dim, a scale for how near the force must bring the vehicle to where it should.
+  Eigen::MatrixXd force_covariance{};
+};
+
+/// Loads the model and settles the vehicle on its suspension, rolling straight where it holds a
+/// speed.
+///
+/// The plant's behaviour beyond Plant's contract:
+/// - `reset` places the settled vehicle: no transient follows. The heading is kept as given and
+///   counted on from there, never wrapped. States that are read from sensors, and the roll and
+///   pitch of bodies, are as the settled vehicle has them.
+/// - `advance` samples the motion about every 20 ms; the last two samples have the same time, the
+///   period's end, before and after the disturbance. Times never decrease.
+/// - The disturbance is a kick: the states jump, velocities turn with the vehicle, and height,
+/// roll,
+///   pitch and wheels stay. Or it is a force along the states that are positions, constant in each
+///   half of the period, and such that the vehicle ends where the kick would have brought it.
+/// - Any error or warning of MuJoCo, a state that is not finite (or huge, beyond 1e10), and an
+///   input or a disturbance that is not finite is a fault, "WORDS at TIME s": the state and the
+///   samples are the last good ones, and every later step brings the same fault until `reset`.
+/// - Vectors of a wrong size, and a state for `reset` that is not finite, throw
+///   std::invalid_argument.
+/// Steps with equal arguments after `reset` are equal bit for bit.
+///
+/// Throws InputError on a file that does not load, a mapping that is missing or names what the
+/// model does not have, a period that is no multiple of the time step, a time step that the mapping
+/// does not allow, a variation or a force that can act on nothing, and a vehicle that does not
+/// settle at its speed.
+[[nodiscard]] std::unique_ptr<Plant> make_mujoco_plant(const MujocoPlantSetup& setup);
+
+}  // namespace qsmpc

@@ -1,0 +1,401 @@
+#include "harness/plant/mujoco/simulation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <variant>
+
+#include <Eigen/Geometry>
+#include <Eigen/QR>
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/plant/mujoco/vehicle_variation.hpp"
+#include "harness/scenario/plant_mapping_reader.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kSettledSpeedError = 0.01;  // relative
+// Of the springs' angular frequency by the time step: explicit springs are stable below 2.
+constexpr double kPullRate = 0.25;
+constexpr const char* kMappingText = "qsmpc";  // name of the text in a MuJoCo file
+
+std::vector<double> copied(const double* values, int count) { return {values, values + count}; }
+
+int first_bad(const double* values, int count) {
+  const auto is_bad = [](double value) { return !(std::abs(value) < mjMAXVAL); };
+  return static_cast<int>(std::find_if(values, values + count, is_bad) - values);
+}
+
+/// How often `step` goes into `duration`. Throws InputError unless it does so without a rest.
+int whole_steps(const std::string& file, double step, double duration) {
+  const double ratio = std::round(duration / step);
+  // Decimal numbers such as 0.1 / 0.002 are off by some rounding errors only.
+  constexpr double kRelativeRounding = 1e-9;
+  if (ratio >= 1.0 && std::abs(ratio * step - duration) <= kRelativeRounding * duration) {
+    return static_cast<int>(ratio);
+  }
+  throw InputError({.file = file,
+                    .key = "option timestep",
+                    .found = fmt::format("{} s", step),
+                    .expected = fmt::format("a divisor of the control period {} s", duration)});
+}
+
+PlantMapping own_mapping(const NamedModel& named, const MappedSystem& system) {
+  const int text = mj_name2id(&named.model, mjOBJ_TEXT, kMappingText);
+  if (text < 0) {
+    throw InputError({.file = named.file,
+                      .key = "plant.state",
+                      .found = "nothing",
+                      .expected = "where the model has each state and input, in the scenario or in "
+                                  "a custom text called \"qsmpc\" of the model"});
+  }
+  return parse_plant_mapping(named.model.text_data + named.model.text_adr[text], named.file,
+                             system);
+}
+
+void check_time_step(const NamedModel& named, const PlantMapping& mapping) {
+  if (!mapping.time_steps) return;
+  const double step = named.model.opt.timestep;
+  constexpr double kRounding = 1.0 + 1e-9;
+  if (step * kRounding >= mapping.time_steps->least &&
+      step <= mapping.time_steps->most * kRounding) {
+    return;
+  }
+  throw InputError(
+      {.file = named.file,
+       .key = "plant.time_step",
+       .found = fmt::format("{} s", step),
+       .expected = fmt::format("{} to {} s", mapping.time_steps->least, mapping.time_steps->most)});
+}
+
+LoadedVehicle load_vehicle(const MujocoPlantSetup& setup) {
+  LoadedVehicle loaded{.model = load_mujoco_model(setup.mjcf), .mapping = {}};
+  const NamedModel named{.model = *loaded.model, .file = setup.mjcf};
+  loaded.mapping =
+      setup.mapping
+          ? *setup.mapping
+          : own_mapping(named, {.description = setup.system, .parameters = setup.parameters});
+  if (setup.time_step) loaded.model->opt.timestep = *setup.time_step;
+  check_time_step(named, loaded.mapping);
+  vary_vehicle(named, *loaded.model, loaded.mapping, setup.variation);
+  return loaded;
+}
+
+}  // namespace
+
+Simulation::Simulation(const MujocoPlantSetup& setup) : Simulation(setup, load_vehicle(setup)) {}
+
+Simulation::Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded)
+    : file_(setup.mjcf),
+      system_(setup.system),
+      model_(std::move(loaded.model)),
+      data_([&] {
+        mjData* data = mj_makeData(model_.get());
+        mj_forward(model_.get(), data);
+        return data;
+      }()),
+      states_({.model = *model_, .file = file_}, *data_, loaded.mapping, system_),
+      controls_({.model = *model_, .file = file_}, *data_, loaded.mapping, system_,
+                setup.parameters),
+      period_steps_(whole_steps(file_, model_->opt.timestep, setup.control_period)),
+      delay_steps_(std::lround(loaded.mapping.input_delay / model_->opt.timestep)),
+      state_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system_.states.size()))),
+      active_input_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(system_.inputs.size()))) {
+  const NamedModel named{.model = *model_, .file = file_};
+  for (const PlantLoop& loop : loaded.mapping.loops) {
+    if (const auto* axles = std::get_if<AxleForces>(&loop)) {
+      axles_.emplace_back(named, *axles, system_).scale_friction(setup.variation.friction);
+    } else if (const auto* tyres = std::get_if<TyreForces>(&loop)) {
+      tyres_.emplace_back(named, *tyres).scale_friction(setup.variation.friction);
+    }
+  }
+  if (model_->opt.integrator == mjINT_RK4 && !(axles_.empty() && tyres_.empty())) {
+    throw InputError({.file = file_,
+                      .key = "option integrator",
+                      .found = "RK4",
+                      .expected = "Euler or implicit, with tyres that the plant works out"});
+  }
+  for (const std::string& name : loaded.mapping.rolling) {
+    const int joint = scalar_joint(named, name);
+    rolling_.push_back({.dof = model_->jnt_dofadr[joint], .radius = wheel_radius(named, joint)});
+  }
+  settle(loaded.mapping.settling);
+}
+
+// With loops that hold a speed, two runs: the first shows at which speed the vehicle rolls
+// steadily, and the second settles it with the command corrected for that.
+void Simulation::settle(double duration) {
+  mj_resetData(model_.get(), data_.get());
+  mj_forward(model_.get(), data_.get());
+  for (const auto& hold : controls_.speed_holds()) set_forward_speed(hold.body, hold.speed);
+  mj_forward(model_.get(), data_.get());
+  for (TyreForceBinding& tyres : tyres_) tyres.weigh(*data_);
+  run_idle(duration);
+  for (auto& hold : controls_.speed_holds()) {
+    const double speed = forward_speed(hold.body);
+    if (!(std::abs(speed - hold.speed) <= kSettledSpeedError * hold.speed)) {
+      throw SimulatorError({.file = file_,
+                            .found = fmt::format("{:.4g} m/s after settling", speed),
+                            .expected = fmt::format("{:.4g} m/s within 1 %", hold.speed)});
+    }
+    hold.calibrate(speed);
+  }
+  if (!controls_.speed_holds().empty()) {
+    active_period_ = -2;
+    run_idle(duration);
+  }
+  settled_ = snapshot();
+}
+
+void Simulation::run_idle(double duration) {
+  const auto count = std::lround(duration / model_->opt.timestep);
+  for (long k = 0; k < count; ++k) step();
+}
+
+double Simulation::forward_speed(int body) const {
+  std::array<double, 6> motion{};
+  mj_forward(model_.get(), data_.get());
+  mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, body, motion.data(), 0);
+  const Eigen::Vector3d forward = body_rotation(*data_, body).col(0);
+  const double level = std::hypot(forward.x(), forward.y());
+  return level > 0.0 ? (forward.x() * motion[3] + forward.y() * motion[4]) / level : 0.0;
+}
+
+/// Moves the body forward, and spins the wheels along.
+void Simulation::set_forward_speed(int body, double speed) {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> jacobian(3, model_->nv);
+  mj_jacBody(model_.get(), data_.get(), jacobian.data(), nullptr, body);
+  const Eigen::Vector3d missing =
+      (speed - forward_speed(body)) * body_rotation(*data_, body).col(0);
+  Eigen::Map<Eigen::VectorXd> velocities(data_->qvel, model_->nv);
+  velocities += jacobian.completeOrthogonalDecomposition().solve(missing);
+  for (const RollingWheel& wheel : rolling_) data_->qvel[wheel.dof] = speed / wheel.radius;
+}
+
+void Simulation::reset(const Eigen::VectorXd& state) {
+  restore(settled_);
+  mj_forward(model_.get(), data_.get());
+  const int body = states_.carrier();
+  const double before = states_.has_velocity() ? forward_speed(body) : 0.0;
+  Eigen::VectorXd change = state - states_.read(*data_, state);
+  for (Eigen::Index i = 0; i < change.size(); ++i) {
+    if (!states_.is_writable(i)) change[i] = 0.0;
+  }
+  states_.add(*data_, change);
+  if (states_.has_velocity() && !rolling_.empty()) {
+    const double faster = forward_speed(body) - before;
+    for (const RollingWheel& wheel : rolling_) data_->qvel[wheel.dof] += faster / wheel.radius;
+    mj_forward(model_.get(), data_.get());
+  }
+  for (TyreForceBinding& tyres : tyres_) tyres.weigh(*data_);
+  check();
+  state_ = states_.read(*data_, state);
+  for (Eigen::Index i = 0; i < change.size(); ++i) {
+    if (states_.is_writable(i)) state_[i] = state[i];
+  }
+  steps_ = 0;
+  inputs_.clear();
+  first_period_ = 0;
+  active_period_ = -2;
+  pull_ = {};
+}
+
+void Simulation::start_period(const Eigen::VectorXd& input) {
+  inputs_.push_back(input);
+  const auto kept = static_cast<std::size_t>(delay_steps_ / period_steps_ + 2);
+  while (inputs_.size() > kept) {
+    inputs_.pop_front();
+    ++first_period_;
+  }
+  pull_ = {};
+}
+
+void Simulation::set_pull(PeriodPull pull) {
+  pull_ = std::move(pull);
+  pull_start_ = steps_;
+  pull_axes_ = frame(heading());
+}
+
+PeriodPath Simulation::take_period() {
+  PeriodPath path;
+  const auto note = [&] {
+    mj_forward(model_.get(), data_.get());
+    const Eigen::Map<const Eigen::VectorXd> velocities(data_->qvel, model_->nv);
+    path.positions.push_back(states_.read(*data_, state_)(states_.positions()));
+    path.rates.emplace_back(states_.position_jacobian(*data_) * velocities);
+  };
+  for (int k = 0; k < period_steps_; ++k) {
+    note();
+    step();
+  }
+  return path;
+}
+
+double Simulation::heading() const { return system_.heading >= 0 ? state_[system_.heading] : 0.0; }
+
+/// What acts now is the input of the period in which it was `delay` ago; before the first, none.
+void Simulation::choose_input() {
+  const long at = steps_ - delay_steps_;
+  const long period = inputs_.empty() || at < 0 ? -1 : at / period_steps_;
+  if (period == active_period_) return;
+  active_period_ = period;
+  active_input_.setZero();
+  if (period >= 0) active_input_ = inputs_[static_cast<std::size_t>(period - first_period_)];
+  targets_ = controls_.targets(active_input_);
+}
+
+void Simulation::apply_forces() {
+  std::fill_n(data_->xfrc_applied, 6 * model_->nbody, 0.0);
+  std::fill_n(data_->qfrc_applied, model_->nv, 0.0);
+  for (const AxleForceBinding& axles : axles_) axles.apply(*data_, active_input_);
+  for (const TyreForceBinding& tyres : tyres_) tyres.apply(*data_);
+  if (pull_.path != nullptr) apply_pull();
+}
+
+/// A critically damped spring in each direction, as stiff as the time step allows, with the force
+/// that a free body would need for the spring's own motion.
+void Simulation::apply_pull() {
+  const long k = steps_ - pull_start_;
+  if (k < 0 || k >= period_steps_) return;
+  const double period = period_steps_ * model_->opt.timestep;
+  const double u = static_cast<double>(k) / period_steps_;
+  const Eigen::VectorXd& end = pull_.displacement;
+  const Eigen::VectorXd& rate = pull_.rate;
+  const Eigen::VectorXd wanted = u * u * (3.0 - 2.0 * u) * end + period * u * u * (u - 1.0) * rate;
+  const Eigen::VectorXd wanted_rate =
+      6.0 * u * (1.0 - u) / period * end + u * (3.0 * u - 2.0) * rate;
+  const Eigen::VectorXd wanted_acceleration =
+      (6.0 - 12.0 * u) / (period * period) * end + (6.0 * u - 2.0) / period * rate;
+  const Eigen::MatrixXd rows = states_.position_jacobian(*data_);
+  const Eigen::Map<const Eigen::VectorXd> velocities(data_->qvel, model_->nv);
+  const auto at = static_cast<std::size_t>(k);
+  const Eigen::VectorXd moved =
+      states_.read(*data_, state_)(states_.positions()) - pull_.path->positions[at];
+  const Eigen::VectorXd faster = rows * velocities - pull_.path->rates[at];
+  const double stiffness = kPullRate / model_->opt.timestep;  // rad/s
+  const Eigen::VectorXd acceleration =
+      stiffness * stiffness * (wanted - pull_axes_.transpose() * moved) +
+      2.0 * stiffness * (wanted_rate - pull_axes_.transpose() * faster) + wanted_acceleration;
+  Eigen::Map<Eigen::VectorXd> applied(data_->qfrc_applied, model_->nv);
+  applied = rows.transpose() * (pull_axes_ * pull_.masses.cwiseProduct(acceleration));
+}
+
+void Simulation::step() {
+  choose_input();
+  controls_.follow(*data_, targets_);
+  // MuJoCo's second half of a step knows no Runge-Kutta; forces that depend on the state need the
+  // halves, others do not.
+  if (model_->opt.integrator == mjINT_RK4) {
+    apply_forces();
+    mj_step(model_.get(), data_.get());
+  } else {
+    mj_step1(model_.get(), data_.get());
+    apply_forces();
+    mj_step2(model_.get(), data_.get());
+  }
+  check();
+  for (TyreForceBinding& tyres : tyres_) tyres.weigh(*data_);
+  ++steps_;
+  state_ = states_.read(*data_, state_);
+}
+
+/// A bad position would make the next step start anew from the reference pose and go on as if
+/// nothing had happened.
+void Simulation::check() const {
+  for (int kind = 0; kind < mjNWARNING; ++kind) {
+    const mjWarningStat& warning = data_->warning[kind];
+    if (warning.number > 0) throw MujocoError(mju_warningText(kind, warning.lastinfo));
+  }
+  const int position = first_bad(data_->qpos, model_->nq);
+  if (position < model_->nq) throw MujocoError(mju_warningText(mjWARN_BADQPOS, position));
+  const int velocity = first_bad(data_->qvel, model_->nv);
+  if (velocity < model_->nv) throw MujocoError(mju_warningText(mjWARN_BADQVEL, velocity));
+}
+
+void Simulation::add(const Eigen::VectorXd& change) {
+  mj_forward(model_.get(), data_.get());
+  const Eigen::VectorXd next = states_.read(*data_, state_) + change;
+  states_.add(*data_, change);
+  check();
+  for (TyreForceBinding& tyres : tyres_) tyres.weigh(*data_);
+  state_ = states_.read(*data_, next);
+}
+
+std::vector<double> Simulation::qpos() const { return copied(data_->qpos, model_->nq); }
+
+SimulationSnapshot Simulation::snapshot() const {
+  std::vector<Eigen::VectorXd> loads;
+  for (const TyreForceBinding& tyres : tyres_) loads.push_back(tyres.loads());
+  return {.qpos = copied(data_->qpos, model_->nq),
+          .qvel = copied(data_->qvel, model_->nv),
+          .act = copied(data_->act, model_->na),
+          .qacc_warmstart = copied(data_->qacc_warmstart, model_->nv),
+          .ctrl = copied(data_->ctrl, model_->nu),
+          .tyre_loads = loads,
+          .state = state_,
+          .steps = steps_};
+}
+
+void Simulation::restore(const SimulationSnapshot& snapshot) {
+  mj_resetData(model_.get(), data_.get());  // also forgets warnings, and a stack left by an error
+  std::ranges::copy(snapshot.qpos, data_->qpos);
+  std::ranges::copy(snapshot.qvel, data_->qvel);
+  std::ranges::copy(snapshot.act, data_->act);
+  std::ranges::copy(snapshot.qacc_warmstart, data_->qacc_warmstart);
+  std::ranges::copy(snapshot.ctrl, data_->ctrl);
+  for (std::size_t k = 0; k < tyres_.size(); ++k) tyres_[k].set_loads(snapshot.tyre_loads[k]);
+  state_ = snapshot.state;
+  steps_ = snapshot.steps;
+}
+
+Eigen::MatrixXd Simulation::frame(double heading) const {
+  const std::vector<Eigen::Index>& positions = states_.positions();
+  const auto place = [&](int state) {
+    return static_cast<Eigen::Index>(std::ranges::find(positions, state) - positions.begin());
+  };
+  const auto size = static_cast<Eigen::Index>(positions.size());
+  Eigen::MatrixXd rotation = Eigen::MatrixXd::Identity(size, size);
+  const Eigen::Index x = place(system_.position_x);
+  const Eigen::Index y = place(system_.position_y);
+  if (system_.heading < 0 || x >= size || y >= size) return rotation;
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(heading).toRotationMatrix();
+  rotation(x, x) = turn(0, 0);
+  rotation(x, y) = turn(0, 1);
+  rotation(y, x) = turn(1, 0);
+  rotation(y, y) = turn(1, 1);
+  return rotation;
+}
+
+Eigen::VectorXd Simulation::placement(double heading) {
+  mj_forward(model_.get(), data_.get());
+  const Eigen::VectorXd state = states_.read(*data_, state_);
+  const Eigen::MatrixXd to_vehicle = frame(heading).transpose();
+  const Eigen::Map<const Eigen::VectorXd> velocities(data_->qvel, model_->nv);
+  const auto size = static_cast<Eigen::Index>(states_.positions().size());
+  Eigen::VectorXd result(2 * size);
+  result.head(size) = to_vehicle * state(states_.positions());
+  result.tail(size) = to_vehicle * (states_.position_jacobian(*data_) * velocities);
+  return result;
+}
+
+Eigen::MatrixXd Simulation::rates_by_velocities() {
+  mj_forward(model_.get(), data_.get());
+  const Eigen::MatrixXd rows = states_.velocity_jacobian(*data_);
+  return states_.position_jacobian(*data_) * rows.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+Eigen::VectorXd Simulation::apparent_masses() {
+  mj_forward(model_.get(), data_.get());
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows =
+      states_.position_jacobian(*data_);
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> solved(rows.rows(),
+                                                                                rows.cols());
+  mj_solveM(model_.get(), data_.get(), solved.data(), rows.data(), static_cast<int>(rows.rows()));
+  return (rows * solved.transpose()).diagonal().cwiseInverse();
+}
+
+}  // namespace qsmpc

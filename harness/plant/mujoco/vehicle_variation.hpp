@@ -1,0 +1,20 @@
+// A vehicle that is not quite the one in its file.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include "harness/plant/mujoco/named_model.hpp"
+#include "harness/plant/plant_variation.hpp"
+#include "harness/scenario/plant_mapping.hpp"
+
+namespace qsmpc {
+
+/// Changes the friction of all geoms, the mass and inertia of all bodies, and the distance between
+/// the axles that `mapping` names (steered wheels before the fixed axle; sites of axle forces about
+/// their body's origin). Forces that the plant applies itself are not in the model: see their
+/// scale_friction. Throws InputError where the vehicle has nothing that a factor other than 1 could
+/// change.
+void vary_vehicle(const NamedModel& named, mjModel& model, const PlantMapping& mapping,
+                  const PlantVariation& variation);
+
+}  // namespace qsmpc

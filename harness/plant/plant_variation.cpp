@@ -1,0 +1,18 @@
+#include "harness/plant/plant_variation.hpp"
+
+#include <cmath>
+
+#include "harness/plant/disturbance.hpp"
+
+namespace qsmpc {
+
+PlantVariation draw_variation(const Scenario::Disturbance& disturbance, std::uint64_t seed,
+                              std::uint64_t episode) {
+  const Eigen::VectorXd normal = standard_normal_sample(
+      3, {.seed = seed, .episode = episode, .stream = RandomStream::kParameters, .step = 0});
+  return {.friction = std::exp(disturbance.friction * normal[0]),
+          .mass = std::exp(disturbance.mass * normal[1]),
+          .wheelbase = std::exp(disturbance.wheelbase * normal[2])};
+}
+
+}  // namespace qsmpc

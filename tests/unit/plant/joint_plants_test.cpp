@@ -1,0 +1,136 @@
+// Plants in MuJoCo's own joints follow the equations of their systems, with the integrator's order.
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harness/plant/disturbance.hpp"
+#include "tests/unit/plant/shipped_plants.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kPeriod = 0.1;  // s
+constexpr int kPeriods = 20;
+
+struct JointPlant {
+  std::string system;
+  std::string mjcf;
+  std::vector<double> start;
+  std::vector<double> input_scale;  // of random inputs
+  double coarse_step;               // s
+  int order;                        // of convergence
+  /// The system whose steps, made small, are the same equations in continuous time.
+  std::string reference_system;
+};
+
+std::ostream& operator<<(std::ostream& out, const JointPlant& plant) { return out << plant.mjcf; }
+
+Eigen::VectorXd vector_of(const std::vector<double>& values) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+Eigen::VectorXd input_of(const JointPlant& plant, int period) {
+  const Eigen::VectorXd scale = vector_of(plant.input_scale);
+  const RandomKey key{
+      .seed = 4, .stream = RandomStream::kInput, .step = static_cast<std::uint64_t>(period)};
+  return scale.cwiseProduct(2.0 * uniform_sample(scale.size(), key).array().matrix() -
+                            Eigen::VectorXd::Ones(scale.size()));
+}
+
+/// The states at the ends of the periods, by small steps of the analytic system.
+std::vector<Eigen::VectorXd> analytic_states(const JointPlant& plant, int steps_per_period) {
+  const auto model =
+      make_dynamics(plant.reference_system, default_parameters(plant.reference_system),
+                    kPeriod / steps_per_period);
+  StateBatch state = vector_of(plant.start);
+  StateBatch next = state;
+  std::vector<Eigen::VectorXd> states;
+  for (int k = 0; k < kPeriods; ++k) {
+    const StateBatch input = input_of(plant, k);
+    for (int i = 0; i < steps_per_period; ++i) {
+      model->step(state, input, next);
+      state.swap(next);
+    }
+    states.emplace_back(state.col(0));
+  }
+  return states;
+}
+
+/// The largest deviation from `truth` over the periods and states.
+double plant_error(const JointPlant& plant, double time_step,
+                   const std::vector<Eigen::VectorXd>& truth) {
+  MujocoPlantSetup setup = shipped_setup(plant.system, plant.mjcf, kPeriod);
+  setup.time_step = time_step;
+  const auto vehicle = make_mujoco_plant(setup);
+  vehicle->reset(vector_of(plant.start));
+  double error = 0.0;
+  for (int k = 0; k < kPeriods; ++k) {
+    const PlantStep step = vehicle->advance(
+        input_of(plant, k), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(plant.start.size())));
+    EXPECT_FALSE(step.fault.has_value()) << *step.fault;
+    error =
+        std::max(error, (step.state - truth[static_cast<std::size_t>(k)]).cwiseAbs().maxCoeff());
+  }
+  return error;
+}
+
+class JointPlants : public ::testing::TestWithParam<JointPlant> {};
+
+TEST_P(JointPlants, converge_to_their_systems_with_the_integrators_order) {
+  const JointPlant& plant = GetParam();
+  // The reference is of first order at worst; two step sizes extrapolate that away.
+  constexpr int kFine = 4000;
+  const std::vector<Eigen::VectorXd> coarse = analytic_states(plant, kFine);
+  std::vector<Eigen::VectorXd> truth = analytic_states(plant, 2 * kFine);
+  if (plant.order == 1) {
+    for (std::size_t k = 0; k < truth.size(); ++k) truth[k] = 2.0 * truth[k] - coarse[k];
+  }
+  const double first = plant_error(plant, plant.coarse_step, truth);
+  const double second = plant_error(plant, plant.coarse_step / 2.0, truth);
+  const double third = plant_error(plant, plant.coarse_step / 4.0, truth);
+  ::testing::Test::RecordProperty("error_at_coarse_step", std::to_string(first));
+  EXPECT_NEAR(std::log2(first / second), plant.order, 0.2);
+  EXPECT_NEAR(std::log2(second / third), plant.order, 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(all, JointPlants,
+                         ::testing::Values(JointPlant{.system = "dubins",
+                                                      .mjcf = "dubins_planar.xml",
+                                                      .start = {1.0, -2.0, 0.7},
+                                                      .input_scale = {2.0},
+                                                      .coarse_step = 0.002,
+                                                      .order = 1,
+                                                      .reference_system = "dubins_rk4"},
+                                           JointPlant{.system = "bicycle",
+                                                      .mjcf = "bicycle_planar.xml",
+                                                      .start = {1.0, -2.0, 0.7, 8.0, 0.2, 0.1},
+                                                      .input_scale = {2.0, 0.2},
+                                                      .coarse_step = 0.001,
+                                                      .order = 1,
+                                                      .reference_system = "bicycle"},
+                                           JointPlant{.system = "cart_pole",
+                                                      .mjcf = "cart_pole.xml",
+                                                      .start = {0.5, -0.3, 2.0, 1.0},
+                                                      .input_scale = {10.0},
+                                                      .coarse_step = 0.02,
+                                                      .order = 4,
+                                                      .reference_system = "cart_pole"}),
+                         [](const auto& test) { return test.param.system; });
+
+TEST(JointPlants, the_slider_is_the_double_integrator) {
+  const JointPlant plant{.system = "double_integrator",
+                         .mjcf = "double_integrator_slider.xml",
+                         .start = {0.5, -0.3},
+                         .input_scale = {2.0},
+                         .coarse_step = 0.1,
+                         .order = 4,
+                         .reference_system = "double_integrator"};
+  const std::vector<Eigen::VectorXd> truth = analytic_states(plant, 1);
+  EXPECT_LT(plant_error(plant, 0.1, truth), 1e-13);
+  EXPECT_LT(plant_error(plant, 0.01, truth), 1e-13);
+}
+
+}  // namespace
+}  // namespace qsmpc
