@@ -233,7 +233,7 @@ TEST(PlantVariation, of_nothing_that_the_plant_has_is_refused) {
   EXPECT_THROW((void)make_mujoco_plant(setup), InputError);
   setup.variation = {.wheelbase = 1.1};
   EXPECT_THROW((void)make_mujoco_plant(setup), InputError);
-  Scenario scenario = rail_scenario("\"\"");
+  Scenario scenario = rail_scenario("double_integrator_slider.xml");
   scenario.plant.kind = "analytic";
   EXPECT_THROW((void)make_plant(scenario, {.mass = 1.1}), InputError);
 }
