@@ -27,9 +27,9 @@ struct Scenario {
   struct Plant {
     std::string kind = "mujoco";  ///< a name from `qsmpc list plants`: "analytic" or "mujoco"
     std::string mjcf;             ///< absolute path of the XML; also drawn for an analytic plant
-    std::optional<double> time_step;  ///< the simulator's, s; else the one in the XML
+    std::optional<double> time_step{};  ///< the simulator's, s; else the one in the XML
     /// How the system appears in the MuJoCo model; else what the XML says of itself.
-    std::optional<PlantMapping> mapping;
+    std::optional<PlantMapping> mapping{};
   };
   struct GaussianValue {
     Eigen::VectorXd mean;        ///< state_dim
