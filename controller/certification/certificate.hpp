@@ -6,8 +6,8 @@
 //   C2  the same before the last noise, which stays Gaussian,
 //   C3  a Gaussian surrogate of the state, with a bound of what separates the two,
 //   C4  the same, smoothed by noise that is independent of this error.
-// Proofs: docs/theory/certificates.md and surrogate.md. A bound says nothing of any other plant, and
-// one of a later stage speaks of the plan as planned, not of what is planned anew in between.
+// Proofs: docs/theory/certificates.md and surrogate.md. A bound says nothing of any other plant,
+// and one of a later stage speaks of the plan as planned, not of what is planned anew in between.
 #pragma once
 
 #include <string>

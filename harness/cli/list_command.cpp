@@ -13,6 +13,7 @@
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/plant/plant_registry.hpp"
+#include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -37,12 +38,17 @@ Table make_table(const std::string& title, const Entries& entries) {
 }
 
 std::vector<Table> tables() {
+  Table all_plants = make_table("plants", plants());
+  for (const ShippedPlant& plant : shipped_plants()) {
+    all_plants.items.push_back(
+        {plant.name, fmt::format("for {}: {} ({})", plant.system, plant.summary, plant.mjcf)});
+  }
   Table scenarios{.title = "scenarios", .items = {}};
   for (const ShippedScenario& scenario : shipped_scenarios()) {
     scenarios.items.push_back({scenario.name, scenario.description});
   }
   return {make_table("systems", systems()),
-          make_table("plants", plants()),
+          all_plants,
           make_table("solvers", solvers()),
           make_table("boundings", input_boundings()),
           make_table("propagators", propagators()),

@@ -93,8 +93,12 @@ class Comparing {
       candidates_.push_back({.name = name, .scenario = with_plant(scenario_, name)});
     }
     for (Candidate& candidate : candidates_) {
-      candidate.pool = std::make_unique<PlantPool>(
-          [&scenario = candidate.scenario] { return make_plant(scenario); });
+      const Scenario& scenario = candidate.scenario;
+      const auto make = [&scenario, seed = scenario_.seed](std::int64_t path) {
+        return make_plant(
+            scenario, draw_variation(scenario.disturbance, seed, static_cast<std::uint64_t>(path)));
+      };
+      candidate.pool = std::make_unique<PlantPool>(make, varies(scenario.disturbance));
     }
   }
 
@@ -124,7 +128,7 @@ class Comparing {
 
   void compare(Candidate& candidate, SharedWork& work) {
     PlantComparison plant{.name = candidate.name};
-    std::unique_ptr<Plant> timed = candidate.pool->take();
+    std::unique_ptr<Plant> timed = candidate.pool->take(0);
     plant.speed = simulation_speed(*timed, *source_, scenario_.time_step, kTimedPaths);
     candidate.pool->give_back(std::move(timed));
 

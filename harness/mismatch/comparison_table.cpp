@@ -33,9 +33,11 @@ std::string number(double value) {
   return plain ? fmt::format("{:.3f}", value) : fmt::format("{:.2e}", value);
 }
 
-std::string by_state(const std::string& name, const Eigen::VectorXd& values) {
+std::string by_state(const std::string& name, const Eigen::VectorXd& values,
+                     bool with_norm = false) {
   std::string row = fmt::format("  {:<{}}", name, kNameWidth - 2);
   for (const double value : values) row += fmt::format("{:>{}}", number(value), kStateWidth);
+  if (with_norm) row += fmt::format("{:>{}}", number(values.norm()), kStateWidth);
   return row + "\n";
 }
 
@@ -75,15 +77,16 @@ std::string state_head(const std::vector<Coordinate>& states, std::size_t left, 
 
 std::string one_step_section(const Comparison& comparison, const SystemDescription& system) {
   std::string text = "\nOne period: what the plant adds to the model and the disturbance\n" +
-                     state_head(system.states, kNameWidth, kStateWidth);
+                     state_head(system.states, kNameWidth, kStateWidth,
+                                fmt::format("{:>{}}", "norm", kStateWidth));
   text += by_state("disturbance, rms",
-                   comparison.scenario.disturbance.covariance.diagonal().cwiseSqrt());
+                   comparison.scenario.disturbance.covariance.diagonal().cwiseSqrt(), true);
   for (const PlantComparison& plant : comparison.plants) {
     const ResidualStatistics& one_step = plant.one_step;
     const bool exact = (one_step.rmse.array() <= one_step.rounding.array()).all();
     text += fmt::format("  {}{}\n", printable(plant.name, 60),
                         exact ? ": the model, but for rounding" : "");
-    text += by_state("  rms", one_step.rmse);
+    text += by_state("  rms", one_step.rmse, true);
     if (exact) continue;
     text += by_state("  mean", one_step.mean);
     text += by_state("  +- (one sigma)", one_step.mean_deviation);
@@ -112,7 +115,7 @@ std::string horizon_head(const SystemDescription& system, const std::vector<int>
   for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
   std::string head = state_head(
       shown, kStageWidth, kStageStateWidth,
-      fmt::format("{:>9}{:>16}{:>12}{:>22}", "W2", "floor", "P(unsafe)<=", "observed (99 %)"));
+      fmt::format("{:>10}{:>18}{:>11}{:>21}", "W2", "floor", "certified", "observed (99 %)"));
   return head.replace(0, kStageWidth, fmt::format("{:>{}}", "stage", kStageWidth));
 }
 
@@ -125,7 +128,7 @@ std::string stage_row(const Comparison& comparison, const HorizonStage& stage,
   }
   const W2Floor& floor = comparison.floors[k];
   row += fmt::format(
-      "{:>9}{:>16}{:>12.2e}{:>22}\n", number(stage.w2),
+      "{:>10}{:>18}{:>11.1e}{:>21}\n", number(stage.w2),
       fmt::format("{} +- {:.3f}", number(floor.mean), floor.deviation),
       comparison.in_force()[k - 1].value,
       fmt::format("[{:.1e}, {:.1e}]", stage.unsafe_limits.lower, stage.unsafe_limits.upper));

@@ -95,13 +95,13 @@ PlantPaths plant_paths(PlantPool& plants, const Dynamics& model, const PathSourc
   std::atomic<std::int64_t> faults = 0;
   run(static_cast<int>(path_batches(count)), [&](int batch) {
     if (work.stopped()) return;
-    std::unique_ptr<Plant> plant = plants.take();
     const std::int64_t begin = batch * kPathBatch;
     const std::int64_t end = std::min(begin + kPathBatch, count);
     for (std::int64_t path = begin; path < end; ++path) {
+      std::unique_ptr<Plant> plant = plants.take(path);
       if (!drive(*plant, model, source, path, paths)) ++faults;
+      plants.give_back(std::move(plant));
     }
-    plants.give_back(std::move(plant));
     work.advance();
   });
   paths.faults = faults;

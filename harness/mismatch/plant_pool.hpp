@@ -1,6 +1,7 @@
 // Plants that are used again: making one may mean to read and compile a MuJoCo model.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -11,18 +12,22 @@
 
 namespace qsmpc {
 
-/// Lends plants to threads: as many are made as are out at the same time at most. They are to be
-/// reset by who takes them.
+/// Lends plants to threads: as many are made as are out at the same time at most, or, where every
+/// path has a vehicle of its own, one for each. They are to be reset by who takes them.
 class PlantPool {
  public:
+  /// Makes the plant of a path.
+  using Maker = std::function<std::unique_ptr<Plant>(std::int64_t)>;
+
   /// make: called by several threads. A first plant is made at once, so that what is wrong with it
-  /// is thrown here.
-  explicit PlantPool(std::function<std::unique_ptr<Plant>()> make) : make_(std::move(make)) {
-    idle_.push_back(make_());
+  /// is thrown here. differ: whether paths differ in their plants.
+  explicit PlantPool(Maker make, bool differ = false) : make_(std::move(make)), differ_(differ) {
+    idle_.push_back(make_(0));
   }
 
-  [[nodiscard]] std::unique_ptr<Plant> take() {
-    {
+  /// The plant of path `path`.
+  [[nodiscard]] std::unique_ptr<Plant> take(std::int64_t path) {
+    if (!differ_) {
       const std::lock_guard lock(mutex_);
       if (!idle_.empty()) {
         std::unique_ptr<Plant> plant = std::move(idle_.back());
@@ -30,16 +35,18 @@ class PlantPool {
         return plant;
       }
     }
-    return make_();
+    return make_(path);
   }
 
   void give_back(std::unique_ptr<Plant> plant) {
+    if (differ_) return;
     const std::lock_guard lock(mutex_);
     idle_.push_back(std::move(plant));
   }
 
  private:
-  std::function<std::unique_ptr<Plant>()> make_;
+  Maker make_;
+  bool differ_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<Plant>> idle_;
 };

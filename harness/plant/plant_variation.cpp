@@ -6,6 +6,10 @@
 
 namespace qsmpc {
 
+bool varies(const Scenario::Disturbance& disturbance) {
+  return disturbance.friction > 0.0 || disturbance.mass > 0.0 || disturbance.wheelbase > 0.0;
+}
+
 PlantVariation draw_variation(const Scenario::Disturbance& disturbance, std::uint64_t seed,
                               std::uint64_t episode) {
   const Eigen::VectorXd normal = standard_normal_sample(

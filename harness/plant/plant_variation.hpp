@@ -14,6 +14,9 @@ struct PlantVariation {
   double wheelbase = 1.0;  ///< distances of the axles
 };
 
+/// Whether vehicles differ at all.
+[[nodiscard]] bool varies(const Scenario::Disturbance& disturbance);
+
 /// The vehicle of an episode: factors e^{σz} with the deviations σ that the scenario's disturbance
 /// has and independent standard normal z, from a random stream of their own.
 [[nodiscard]] PlantVariation draw_variation(const Scenario::Disturbance& disturbance,

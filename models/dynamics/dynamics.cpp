@@ -22,10 +22,8 @@ struct Registration {
 
 const std::vector<Registration>& registrations() {
   static const std::vector<Registration> table = {
-      {dubins_entry(), make_dubins},
-      {dubins_rk4_entry(), make_dubins_rk4},
-      {bicycle_entry(), make_bicycle},
-      {double_integrator_entry(), make_double_integrator},
+      {dubins_entry(), make_dubins},       {dubins_rk4_entry(), make_dubins_rk4},
+      {bicycle_entry(), make_bicycle},     {double_integrator_entry(), make_double_integrator},
       {cart_pole_entry(), make_cart_pole},
   };
   return table;

@@ -60,7 +60,7 @@ class AlteredPlant final : public Plant {
 /// The scenario's plant, altered.
 inline PlantPool altered_plants(const Scenario& scenario, const Eigen::VectorXd& bias,
                                 double breaks_at = 1e9) {
-  return PlantPool([scenario, bias, breaks_at]() -> std::unique_ptr<Plant> {
+  return PlantPool([scenario, bias, breaks_at](std::int64_t) -> std::unique_ptr<Plant> {
     return std::make_unique<AlteredPlant>(make_plant(scenario), bias, breaks_at);
   });
 }

@@ -128,7 +128,7 @@ TEST(ModelPaths, are_those_that_a_prediction_simulates) {
 
 TEST(PlantPaths, are_the_same_bit_for_bit_in_any_order_and_on_any_number_of_threads) {
   const Planned planned(short_scenario({"plant.kind=mujoco", "controller.horizon=2"}));
-  PlantPool pool([&] { return make_plant(planned.scenario); });
+  PlantPool pool([&](std::int64_t) { return make_plant(planned.scenario); });
   const PlantPaths reference = paths_of(pool, planned);
   for (const Executor& run :
        {Executor(testing::run_backwards), Executor(testing::run_on_threads), executor_of(2)}) {
