@@ -115,7 +115,7 @@ std::string horizon_head(const SystemDescription& system, const std::vector<int>
   for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
   std::string head = state_head(
       shown, kStageWidth, kStageStateWidth,
-      fmt::format("{:>10}{:>18}{:>11}{:>21}", "W2", "floor", "certified", "observed (99 %)"));
+      fmt::format("{:>10}{:>18}{:>11}{:>20}", "W2", "floor", "certified", "observed (99 %)"));
   return head.replace(0, kStageWidth, fmt::format("{:>{}}", "stage", kStageWidth));
 }
 
@@ -128,7 +128,7 @@ std::string stage_row(const Comparison& comparison, const HorizonStage& stage,
   }
   const W2Floor& floor = comparison.floors[k];
   row += fmt::format(
-      "{:>10}{:>18}{:>11.1e}{:>21}\n", number(stage.w2),
+      "{:>10}{:>18}{:>11.1e}{:>20}\n", number(stage.w2),
       fmt::format("{} +- {:.3f}", number(floor.mean), floor.deviation),
       comparison.in_force()[k - 1].value,
       fmt::format("[{:.1e}, {:.1e}]", stage.unsafe_limits.lower, stage.unsafe_limits.upper));

@@ -57,5 +57,23 @@ TEST(PlantCertificates, those_of_the_model_are_exceeded_and_those_with_the_measu
   EXPECT_THAT(exceeded_stages(horizon, certificates(planned, plan, planner, &error)), IsEmpty());
 }
 
+// The same with the shipped car on wheels, measured on other random numbers than it is judged by.
+TEST(PlantCertificates, with_the_measured_error_hold_for_the_car_on_wheels_on_other_seeds) {
+  Scenario scenario = load_scenario("car_past_a_wall", {});
+  ComparisonOptions options{
+      .plants = {"mujoco_car"}, .episodes = 4, .paths = kPaths, .error_plant = "mujoco_car"};
+  scenario.seed = 0;
+  const auto measured = compare_plants(scenario, options);
+  ASSERT_TRUE(measured.has_value());
+  EXPECT_THAT(measured->plants.front().exceeded_stages, ::testing::Not(IsEmpty()));
+  scenario.seed = 1000;
+  scenario.model_error = measured->measured_error;
+  const auto judged = compare_plants(scenario, options);
+  ASSERT_TRUE(judged.has_value());
+  EXPECT_THAT(judged->plants.front().exceeded_stages, IsEmpty());
+  EXPECT_THAT(exceeded_stages(judged->plants.front().horizon, judged->certificates),
+              ::testing::Not(IsEmpty()));
+}
+
 }  // namespace
 }  // namespace qsmpc
