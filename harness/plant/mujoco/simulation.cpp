@@ -7,6 +7,7 @@
 #include <variant>
 
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <Eigen/QR>
 #include <fmt/format.h>
 
@@ -282,6 +283,28 @@ void Simulation::apply_pull() {
       2.0 * stiffness * (wanted_rate - pull_axes_.transpose() * faster) + wanted_acceleration;
   Eigen::Map<Eigen::VectorXd> applied(data_->qfrc_applied, model_->nv);
   applied = rows.transpose() * (pull_axes_ * pull_.masses.cwiseProduct(acceleration));
+  keep_level(applied);
+}
+
+/// Adds the moments that keep a vehicle on the ground level while it is pulled: forces of several
+/// times its weight at one height would turn it over, which no disturbance of its states is to do.
+void Simulation::keep_level(Eigen::Ref<Eigen::VectorXd> applied) {
+  const int joint = model_->body_jntadr[states_.carrier()];
+  if (states_.carrier() == 0 || joint < 0 || model_->jnt_type[joint] != mjJNT_FREE) return;
+  using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Rows jacobian(3, model_->nv);
+  mj_jacBody(model_.get(), data_.get(), nullptr, jacobian.data(), states_.carrier());
+  const Rows rows = jacobian.topRows(2);  // about the world's x and y axes
+  Rows solved(2, model_->nv);
+  mj_solveM(model_.get(), data_.get(), solved.data(), rows.data(), 2);
+  const Eigen::Vector3d up = body_rotation(*data_, states_.carrier()).col(2);
+  const Eigen::Vector2d tilt(up.y(), -up.x());  // up × z: the rotation that brings it upright
+  const Eigen::Map<const Eigen::VectorXd> velocities(data_->qvel, model_->nv);
+  const double stiffness = kPullRate / model_->opt.timestep;  // rad/s
+  const Eigen::Vector2d acceleration =
+      stiffness * stiffness * tilt - 2.0 * stiffness * (rows * velocities);
+  const Eigen::Matrix2d inertia = (rows * solved.transpose()).inverse();
+  applied += rows.transpose() * (inertia * acceleration);
 }
 
 void Simulation::step() {

@@ -103,6 +103,7 @@ class Simulation {
   void choose_input();
   void apply_forces();
   void apply_pull();
+  void keep_level(Eigen::Ref<Eigen::VectorXd> applied);
   void check() const;
   void set_forward_speed(int body, double speed);
   [[nodiscard]] double forward_speed(int body) const;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 #include <tuple>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <Eigen/QR>
@@ -152,6 +153,61 @@ TEST(FullSizeCar, gains_the_acceleration_that_is_asked_for) {
       car->state()[Bicycle::kLongitudinalSpeed] - before[Bicycle::kLongitudinalSpeed];
   EXPECT_NEAR(gained, kPeriod, 0.002 * kPeriod);
 }
+
+/// Shipped car: system, file, state that it starts from, variances of the noise.
+struct PushedCar {
+  std::string system;
+  std::string mjcf;
+  std::vector<double> start;
+  std::vector<double> variances;
+  double speed;  // m/s
+};
+
+std::ostream& operator<<(std::ostream& out, const PushedCar& car) { return out << car.mjcf; }
+
+class PushedCars : public ::testing::TestWithParam<PushedCar> {};
+
+// A vehicle that turned over, or slid off sideways, would not move on by its speed in the next
+// period.
+TEST_P(PushedCars, drive_on_upright_under_forces_of_several_times_their_weight) {
+  const PushedCar& tested = GetParam();
+  MujocoPlantSetup setup = shipped_setup(tested.system, tested.mjcf);
+  const auto dim = static_cast<Eigen::Index>(tested.start.size());
+  const Eigen::Map<const Eigen::VectorXd> start(tested.start.data(), dim);
+  const Eigen::Map<const Eigen::VectorXd> variances(tested.variances.data(), dim);
+  setup.force_covariance = variances.asDiagonal();
+  const auto car = make_mujoco_plant(setup);
+  car->reset(start);
+  const GaussianSampler noise(Eigen::VectorXd::Zero(dim), setup.force_covariance);
+  Eigen::VectorXd before = car->state();
+  for (int k = 0; k < 100; ++k) {
+    Eigen::VectorXd input =
+        Eigen::VectorXd::Zero(static_cast<Eigen::Index>(setup.system.inputs.size()));
+    if (dim > 3) input[0] = std::clamp(2.0 * (tested.speed - before[3]), -5.0, 2.0);
+    const Eigen::VectorXd planned =
+        noise.sample({.seed = 6, .step = static_cast<std::uint64_t>(k)});
+    const PlantStep step = car->advance(input, planned);
+    ASSERT_FALSE(step.fault.has_value()) << *step.fault;
+    ASSERT_GT(uprightness(step.motion.back()), 0.99) << k;
+    const double speed = dim > 3 ? before[3] : tested.speed;
+    const Eigen::Vector2d way = (step.state - before - planned).head<2>();
+    ASSERT_NEAR(way.norm(), speed * kPeriod, 0.06 + 0.05 * speed * kPeriod) << k;
+    before = step.state;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(all, PushedCars,
+                         ::testing::Values(PushedCar{.system = "dubins",
+                                                     .mjcf = "dubins_car.xml",
+                                                     .start = {0.0, 0.0, 0.0},
+                                                     .variances = {0.01, 0.01, 0.001},
+                                                     .speed = 1.5},
+                                           PushedCar{
+                                               .system = "bicycle",
+                                               .mjcf = "bicycle_car.xml",
+                                               .start = {0.0, 0.0, 0.0, 8.0, 0.0, 0.0},
+                                               .variances = {0.01, 0.01, 0.001, 0.01, 0.01, 0.001},
+                                               .speed = 8.0}));
 
 }  // namespace
 }  // namespace qsmpc
