@@ -120,10 +120,13 @@ std::optional<ModelError> read_model_error(Section& root, Problems& problems,
     return read_mapping(section, context);
   }
   const std::string name = root.text(kKey, "", kLongestPath);
-  const std::string path = path_from(context.folder, name);
+  std::string path = path_from(context.folder, name);
   std::error_code error;
+  if (root.is_override(kKey) && !fs::is_regular_file(path, error)) path = path_from("", name);
   if (!name.empty() && fs::is_regular_file(path, error)) return read_file(path, problems, context);
-  root.note(kKey, "a mapping, or the path of a YAML file from the scenario's folder",
+  root.note(kKey,
+            "a mapping, or the path of a YAML file from the scenario's folder, or with --set from "
+            "the working one",
             "no file " + name);
   return std::nullopt;
 }

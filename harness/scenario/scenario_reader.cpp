@@ -201,7 +201,8 @@ void ScenarioReader::read_plant() {
       dynamics_ == nullptr ? "" : default_mjcf(system(), scenario_.plant.kind);
   const std::string name = plant.text("mjcf", fallback, kLongestPath);
   const bool is_needed = scenario_.plant.kind == "mujoco" && dynamics_ != nullptr;
-  const std::string path = find_mjcf(name, lookup_.folder);
+  std::string path = find_mjcf(name, lookup_.folder);
+  if (path.empty() && plant.is_override("mjcf")) path = find_mjcf(name, "");
   scenario_.plant.mjcf = path.empty() && !lookup_.must_exist ? name : path;
   if (name.empty() && is_needed) {
     plant.note("mjcf", "a MuJoCo XML file, since the plant's kind is mujoco");

@@ -76,6 +76,11 @@ class Section {
   [[nodiscard]] std::size_t list_size(const std::string& key);
 
   [[nodiscard]] bool has(const std::string& key) const { return get(key) != nullptr; }
+  /// Whether the value of `key` was given on the command line: paths may then be relative to the
+  /// working folder, too.
+  [[nodiscard]] bool is_override(const std::string& key) const {
+    return has(key) && get(key)->from_override;
+  }
   /// Whether `key` holds a scalar.
   [[nodiscard]] bool holds_text(const std::string& key);
   /// Whether the section is in the tree, as a mapping.

@@ -1,5 +1,6 @@
 // The key `model_error` and files of its keys.
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -87,6 +88,20 @@ TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
   expect_same(parse_scenario(to_yaml(load_scenario(path))).model_error.value(), error);
   const std::string absolute = "model_error=" + (folder / "error.yaml");
   expect_same(load_scenario(path, {absolute}).model_error.value(), error);
+}
+
+TEST(ModelErrorKey, of_the_command_line_is_found_in_the_working_folder_too) {
+  const TemporaryFolder folder;
+  const ModelError error = loaded(whole_text);
+  (void)folder.file("error.yaml", model_error_yaml(error, "dubins", ""));
+  const TemporaryFolder elsewhere;
+  const std::string path = elsewhere.file("s.yaml", minimal_text);
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder / "");
+  const auto found = load_scenario(path, {"model_error=error.yaml"}).model_error;
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(found.has_value());
+  expect_same(*found, error);
 }
 
 TEST(ModelErrorKey, problems_of_its_file_are_told_with_its_name_and_line) {
