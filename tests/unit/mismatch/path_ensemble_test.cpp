@@ -142,6 +142,28 @@ TEST(PlantPaths, are_the_same_bit_for_bit_in_any_order_and_on_any_number_of_thre
   EXPECT_EQ(model_paths(*planned.model, planned.source(), kPaths, testing::run_on_threads), model);
 }
 
+TEST(PlantPaths, have_vehicles_of_their_own_where_these_differ) {
+  const Planned planned(
+      short_scenario({"plant.kind=mujoco", "controller.horizon=2", "disturbance.wheelbase=0.2"}));
+  const auto make = [&](std::int64_t path) {
+    return make_plant(planned.scenario, draw_variation(planned.scenario.disturbance, 1,
+                                                       static_cast<std::uint64_t>(path)));
+  };
+  constexpr std::int64_t kFew = 45;
+  const auto paths = [&](PlantPool pool, const Executor& run) {
+    SharedWork work(path_batches(kFew), {}, {});
+    return plant_paths(pool, *planned.model, planned.source(), kFew, run, work).states.back();
+  };
+  const auto differing = [&] { return PlantPool(make, varies(planned.scenario.disturbance)); };
+  const Points reference = paths(differing(), run_in_turn);
+  EXPECT_EQ(paths(differing(), executor_of(2)), reference);
+  EXPECT_EQ(paths(differing(), testing::run_backwards), reference);
+  const Points alike = paths(PlantPool(make), run_in_turn);
+  EXPECT_EQ(alike.col(0), reference.col(0));
+  EXPECT_GT((alike - reference).rightCols(kFew - 1).cwiseAbs().colwise().maxCoeff().minCoeff(),
+            0.0);
+}
+
 TEST(PlantPaths, a_path_depends_on_its_number_alone) {
   const Planned planned(short_scenario());
   const std::vector<Points> all =
