@@ -104,4 +104,10 @@ void make_output_folder(const std::string& path) {
   if (::access(path.c_str(), W_OK | X_OK) != 0) fail(path, "be written into", errno);
 }
 
+void remove_file(const std::string& path) {
+  std::error_code error;
+  std::filesystem::remove(path, error);
+  if (error) throw IoError(path + ": " + error.message());
+}
+
 }  // namespace qsmpc

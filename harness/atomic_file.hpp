@@ -50,4 +50,7 @@ void write_file(const std::string& path, std::string_view text);
 /// fails, when something else has that name, or when nothing can be written into it.
 void make_output_folder(const std::string& path);
 
+/// Removes the file at `path`, which need not exist. Throws IoError with the system's words.
+void remove_file(const std::string& path);
+
 }  // namespace qsmpc

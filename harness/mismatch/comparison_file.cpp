@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -287,12 +285,6 @@ void write_hdf5(const Comparison& comparison, const std::string& path) {
     write_horizon(file, groups[n], plant, comparison.paths);
   }
   file.close();
-}
-
-void remove_file(const std::string& path) {
-  std::error_code error;
-  std::filesystem::remove(path, error);
-  if (error) throw IoError(path + ": " + error.message());
 }
 
 }  // namespace

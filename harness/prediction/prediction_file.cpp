@@ -1,9 +1,7 @@
 #include "harness/prediction/prediction_file.hpp"
 
 #include <cstddef>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include "harness/atomic_file.hpp"
 #include "harness/episode/assembly.hpp"
@@ -260,12 +258,6 @@ void write_hdf5(const PredictionReport& report, const std::string& path) {
   write_certificate(file, report);
   if (report.monte_carlo) write_monte_carlo(file, *report.monte_carlo);
   file.close();
-}
-
-void remove_file(const std::string& path) {
-  std::error_code error;
-  std::filesystem::remove(path, error);
-  if (error) throw IoError(path + ": " + error.message());
 }
 
 }  // namespace

@@ -284,8 +284,6 @@ void StateBinding::move(mjData& data, const Eigen::VectorXd& change) const {
 void StateBinding::accelerate(mjData& data, const Eigen::VectorXd& change, double turn,
                               const Eigen::Vector3d& velocity) const {
   Eigen::Map<Eigen::VectorXd> generalised(data.qvel, model_.nv);
-  const Eigen::MatrixXd rows = velocity_jacobian(data);
-  Eigen::VectorXd now(velocities_.size());
   if (turn != 0.0 && carrier_ > 0) {
     const Eigen::Vector3d turned =
         Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() * velocity;
@@ -294,7 +292,7 @@ void StateBinding::accelerate(mjData& data, const Eigen::VectorXd& change, doubl
     generalised += smallest_solution(along, missing);
   }
   if (velocities_.empty() || change(velocities_).isZero(0.0)) return;
-  generalised += smallest_solution(rows, change(velocities_));
+  generalised += smallest_solution(velocity_jacobian(data), change(velocities_));
 }
 
 void StateBinding::add(mjData& data, const Eigen::VectorXd& change) const {

@@ -85,6 +85,7 @@ void vary_wheelbase(const NamedModel& named, mjModel& model, const PlantMapping&
 
 void vary_vehicle(const NamedModel& named, mjModel& model, const PlantMapping& mapping,
                   const PlantVariation& variation) {
+  if (variation.friction == 1.0 && variation.mass == 1.0 && variation.wheelbase == 1.0) return;
   if (variation.friction != 1.0) vary_friction(named, model, mapping, variation.friction);
   if (variation.mass != 1.0) vary_mass(model, variation.mass);
   if (variation.wheelbase != 1.0) vary_wheelbase(named, model, mapping, variation.wheelbase);
