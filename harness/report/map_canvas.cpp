@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -30,6 +31,11 @@ void widen(Axis& axis, double span) {
 
 bool is_drawable(const MapPoint& point) { return is_drawable(point.x) && is_drawable(point.y); }
 
+MapRectangle unbounded_plane() {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  return {.x_lower = -kFar, .x_upper = kFar, .y_lower = -kFar, .y_upper = kFar};
+}
+
 MapCanvas::MapCanvas(const MapRectangle& area)
     : x_{.lower = area.x_lower, .upper = area.x_upper},
       y_{.lower = area.y_lower, .upper = area.y_upper} {
@@ -57,15 +63,15 @@ std::string MapCanvas::coordinates(const MapPoint& point) const {
   return fmt::format("{:.1f} {:.1f}", at.x, at.y);
 }
 
-std::string MapCanvas::rectangle(const char* css_class, const MapRectangle& rectangle) const {
+std::string MapCanvas::rectangle(const std::string& classes, const MapRectangle& rectangle) const {
   const MapPoint low = place({.x = std::clamp(rectangle.x_lower, x_.lower, x_.upper),
                               .y = std::clamp(rectangle.y_lower, y_.lower, y_.upper)});
   const MapPoint high = place({.x = std::clamp(rectangle.x_upper, x_.lower, x_.upper),
                                .y = std::clamp(rectangle.y_upper, y_.lower, y_.upper)});
   if (!(high.x > low.x) || !(low.y > high.y)) return {};
   return fmt::format(
-      "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>",
-      css_class, low.x, high.y, high.x - low.x, low.y - high.y);
+      "<rect class=\"{}\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"/>", classes,
+      low.x, high.y, high.x - low.x, low.y - high.y);
 }
 
 std::string MapCanvas::axes(const std::string& x_label, const std::string& y_label) const {
@@ -94,15 +100,19 @@ std::string MapCanvas::axes(const std::string& x_label, const std::string& y_lab
   return svg;
 }
 
-std::string MapCanvas::svg(const std::string& content, const std::string& title,
-                           const std::string& x_label, const std::string& y_label) const {
+MapSize MapCanvas::size() const {
+  return {.width = kLeft + width_ + kRight, .height = kTop + height_ + kBottom};
+}
+
+std::string MapCanvas::svg(const std::string& content, const MapTexts& texts,
+                           const std::string& place) const {
   // An inner <svg> clips what it shows to its own size.
   return fmt::format(
-      "<svg viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"{}\">\n"
+      "<svg{} viewBox=\"0 0 {:.1f} {:.1f}\" role=\"img\" aria-label=\"{}\">\n"
       "<svg x=\"{}\" y=\"{}\" width=\"{:.1f}\" height=\"{:.1f}\" class=\"clip\">\n{}</svg>\n{}"
       "</svg>\n",
-      kLeft + width_ + kRight, kTop + height_ + kBottom, escape_html(title), kLeft, kTop, width_,
-      height_, content, axes(x_label, y_label));
+      place, size().width, size().height, escape_html(texts.title), kLeft, kTop, width_, height_,
+      content, axes(texts.x_label, texts.y_label));
 }
 
 }  // namespace qsmpc

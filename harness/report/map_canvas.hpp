@@ -21,6 +21,20 @@ struct MapRectangle {
   double y_upper = 0.0;
 };
 
+/// All of it: no side is finite.
+[[nodiscard]] MapRectangle unbounded_plane();
+
+struct MapTexts {
+  std::string title;
+  std::string x_label;
+  std::string y_label;
+};
+
+struct MapSize {
+  double width = 0.0;
+  double height = 0.0;
+};
+
 class MapCanvas {
  public:
   /// Shows `area`, whose sides are finite and longer than 0, and more where the map would otherwise
@@ -35,12 +49,17 @@ class MapCanvas {
   /// "3.2 7.1", for path data.
   [[nodiscard]] std::string coordinates(const MapPoint& point) const;
   /// The part of `rectangle` that is shown, its sides may be infinite; empty if none is.
-  [[nodiscard]] std::string rectangle(const char* css_class, const MapRectangle& rectangle) const;
+  [[nodiscard]] std::string rectangle(const std::string& classes,
+                                      const MapRectangle& rectangle) const;
 
-  /// The whole drawing: `content` is clipped to the map, the axes are around it. Labels are
-  /// escaped.
-  [[nodiscard]] std::string svg(const std::string& content, const std::string& title,
-                                const std::string& x_label, const std::string& y_label) const;
+  /// Size of the map itself, and of the whole drawing, in view box units.
+  [[nodiscard]] MapSize inner_size() const { return {.width = width_, .height = height_}; }
+  [[nodiscard]] MapSize size() const;
+
+  /// The whole drawing: `content` is clipped to the map, the axes are around it. Texts are escaped.
+  /// `place` holds attributes of the <svg>, such as where it is put.
+  [[nodiscard]] std::string svg(const std::string& content, const MapTexts& texts,
+                                const std::string& place = {}) const;
 
  private:
   [[nodiscard]] std::string axes(const std::string& x_label, const std::string& y_label) const;

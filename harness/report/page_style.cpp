@@ -75,8 +75,9 @@ svg text { fill: var(--ink); font-size: 12.5px; font-variant-numeric: tabular-nu
 svg text.label { fill: var(--soft); }
 svg text.middle { text-anchor: middle; }
 svg text.end { text-anchor: end; }
-svg text.time { font-size: 12px; font-weight: 600; paint-order: stroke; stroke: var(--free); stroke-width: 3px; }
-.line, .rule, .axis, .grid-line, .way, .plan, .arrow, .frame { fill: none; }
+svg text.time { font-size: 12px; font-weight: 600; }
+svg text.edge { stroke: var(--free); stroke-width: 3px; stroke-linejoin: round; }
+.line, .rule, .axis, .grid-line, .way, .arrow, .frame, .outline, .dots, .mark { fill: none; }
 .line { stroke-width: 1.9; stroke-linejoin: round; stroke-linecap: round; }
 .points { fill: none; stroke-width: 6; stroke-linecap: round; }
 .dash { stroke-dasharray: 7 5; stroke-linecap: butt; }
@@ -85,18 +86,23 @@ svg text.time { font-size: 12px; font-weight: 600; paint-order: stroke; stroke: 
 .grid-line { stroke: var(--grid); stroke-width: 1; }
 .c0 { stroke: var(--c0); } .c1 { stroke: var(--c1); } .c2 { stroke: var(--c2); }
 .c3 { stroke: var(--c3); } .c4 { stroke: var(--c4); } .c5 { stroke: var(--c5); }
+.c6 { stroke: var(--ink); } .c7 { stroke: var(--soft); }
 .unsafe { fill: var(--unsafe); }
 .free { fill: var(--free); }
 .obstacle { fill: var(--obstacle); }
 .partial { fill: var(--obstacle); fill-opacity: 0.3; stroke: var(--obstacle); stroke-dasharray: 5 4; }
 .frame { stroke: var(--soft); stroke-width: 1; }
 .target { fill: var(--c2); fill-opacity: 0.18; stroke: var(--c2); stroke-width: 2; }
-.way { stroke: var(--ink); stroke-width: 2.2; stroke-linejoin: round; stroke-linecap: round; }
-.arrow { stroke: var(--ink); stroke-width: 2.2; stroke-linejoin: miter; }
-.here { fill: var(--ink); stroke: var(--free); stroke-width: 1.5; }
-.plan { stroke: var(--soft); stroke-width: 1.3; stroke-dasharray: 4 3; }
-.dots { fill: none; stroke-linecap: round; stroke-opacity: 0.6; }
-.w0 { stroke-width: 1.8; } .w1 { stroke-width: 2.8; } .w2 { stroke-width: 4.4; }
+.way { stroke-width: 2.2; stroke-linejoin: round; stroke-linecap: round; }
+.faint { stroke-width: 1.1; stroke-opacity: 0.45; }
+.broken { stroke-width: 1.3; stroke-dasharray: 4 3; stroke-linecap: butt; }
+.arrow { stroke-width: 2.2; stroke-linejoin: miter; }
+.outline { stroke-width: 1.6; stroke-linejoin: round; stroke-linecap: round; }
+.spot { stroke-width: 4; }
+.dots { stroke-linecap: round; stroke-opacity: 0.6; }
+.mark { stroke-width: 9; stroke-linecap: round; }
+.square { stroke-linecap: square; }
+.mark.edge { stroke: var(--free); stroke-width: 12; }
 .legend {
   list-style: none; display: flex; flex-wrap: wrap; gap: 2px 16px; margin: 2px 0 6px; padding: 0;
   font-size: 0.84rem; color: var(--soft);

@@ -15,6 +15,10 @@ inline constexpr int kPurple = 3;
 inline constexpr int kVermilion = 4;
 inline constexpr int kSky = 5;
 
+/// Classes c6 and c7, of maps only: the colours of text and of small print.
+inline constexpr int kInk = 6;
+inline constexpr int kGrey = 7;
+
 /// The style sheet. It refers to nothing outside of the page.
 [[nodiscard]] std::string_view page_style();
 

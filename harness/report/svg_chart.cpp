@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -96,6 +95,11 @@ PathData path_data(const Series& series, const Frame& frame) {
 
 int palette_index(const Series& series) { return std::clamp(series.colour, 0, kPaletteSize - 1); }
 
+std::string line_classes(const Series& series) {
+  return fmt::format("{} c{}{}", series.mark == Mark::kPoints ? "points" : "line",
+                     palette_index(series), series.dashed ? " dash" : "");
+}
+
 Frame frame_of(const Chart& chart) {
   std::vector<double> across = chart.x_includes;
   std::vector<double> up = chart.y_includes;
@@ -147,24 +151,6 @@ std::string axes_svg(const Chart& chart, const Frame& frame) {
   return svg;
 }
 
-std::string legend_entry(std::string_view classes, const std::string& name) {
-  return fmt::format(
-      "<li><svg class=\"swatch\" viewBox=\"0 0 28 12\" aria-hidden=\"true\"><path class=\"{}\" "
-      "d=\"{}\"/></svg>{}</li>",
-      classes, classes.starts_with("points") ? "M14 6h0" : "M2 6H26", escape_html(name));
-}
-
-std::string legend_html(const Chart& chart) {
-  std::string entries;
-  for (const Series& series : chart.series) {
-    entries += legend_entry(line_classes(series), series.name);
-  }
-  for (const Rule& rule : chart.rules) {
-    if (!rule.name.empty() && is_drawable(rule.value)) entries += legend_entry("rule", rule.name);
-  }
-  return "<ul class=\"legend\">" + entries + "</ul>\n";
-}
-
 /// What the drawing leaves out, so that nothing is hidden; empty if nothing is.
 std::string omissions(const Chart& chart) {
   std::size_t broken = 0;
@@ -180,9 +166,19 @@ std::string omissions(const Chart& chart) {
 
 }  // namespace
 
-std::string line_classes(const Series& series) {
-  return fmt::format("{} c{}{}", series.mark == Mark::kPoints ? "points" : "line",
-                     palette_index(series), series.dashed ? " dash" : "");
+std::vector<LegendEntry> chart_legend(const Chart& chart) {
+  std::vector<LegendEntry> entries;
+  for (const Series& series : chart.series) {
+    const bool points = series.mark == Mark::kPoints;
+    entries.push_back(points ? dot_entry(line_classes(series), series.name)
+                             : line_entry(line_classes(series), series.name));
+  }
+  for (const Rule& rule : chart.rules) {
+    if (!rule.name.empty() && is_drawable(rule.value)) {
+      entries.push_back(line_entry("rule", rule.name));
+    }
+  }
+  return entries;
 }
 
 bool has_points(const Chart& chart) {
@@ -228,7 +224,7 @@ std::string chart_figure(const Chart& chart) {
       "<figure class=\"card\">\n<figcaption>" + escape_html(chart.title) + "</figcaption>\n";
   if (!chart.note.empty()) html += "<p class=\"note\">" + escape_html(chart.note) + "</p>\n";
   if (has_points(chart)) {
-    html += legend_html(chart) + chart_drawing(chart);
+    html += legend_html(chart_legend(chart)) + chart_drawing(chart);
   } else {
     html += "<p class=\"empty\">No finite values to draw.</p>\n";
   }

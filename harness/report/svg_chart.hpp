@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/report/axis.hpp"
+#include "harness/report/legend.hpp"
 
 namespace qsmpc {
 
@@ -55,8 +56,8 @@ struct Chart {
 /// Whether there is a finite value to draw.
 [[nodiscard]] bool has_points(const Chart& chart);
 
-/// Classes of the drawing's style for a line or points.
-[[nodiscard]] std::string line_classes(const Series& series);
+/// What its lines, points and rules mean.
+[[nodiscard]] std::vector<LegendEntry> chart_legend(const Chart& chart);
 
 inline constexpr double kChartWidth = 480.0;
 inline constexpr double kChartHeight = 290.0;

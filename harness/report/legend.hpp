@@ -1,0 +1,28 @@
+// What the signs of a chart or a map mean.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace qsmpc {
+
+inline constexpr double kSwatchWidth = 28.0;
+inline constexpr double kSwatchHeight = 12.0;
+
+struct LegendEntry {
+  std::string drawing;  ///< SVG elements in a box of kSwatchWidth x kSwatchHeight units
+  std::string name;     ///< not escaped
+
+  bool operator==(const LegendEntry&) const = default;
+};
+
+/// Entries with a stroke over the whole box, a dot in its middle, and a filled rectangle, in the
+/// style of `classes`.
+[[nodiscard]] LegendEntry line_entry(const std::string& classes, const std::string& name);
+[[nodiscard]] LegendEntry dot_entry(const std::string& classes, const std::string& name);
+[[nodiscard]] LegendEntry area_entry(const std::string& classes, const std::string& name);
+
+/// A <ul>. Names are escaped.
+[[nodiscard]] std::string legend_html(const std::vector<LegendEntry>& entries);
+
+}  // namespace qsmpc

@@ -1,0 +1,15 @@
+// Texts of a drawing, whose width nobody measures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace qsmpc {
+
+/// About how wide `text` is in a sans-serif font of `size`, rather more than less.
+[[nodiscard]] double estimated_width(const std::string& text, double size);
+
+/// `text` in lines of at most `columns` ≥ 1 characters, broken at spaces where there are some.
+[[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
+
+}  // namespace qsmpc
