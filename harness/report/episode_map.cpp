@@ -1,12 +1,11 @@
 #include "harness/report/episode_map.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "harness/report/ground_map.hpp"
 #include "harness/report/numbers.hpp"
 #include "harness/report/page_style.hpp"
 #include "harness/report/plane_map.hpp"
@@ -35,22 +34,7 @@ class EpisodeMap {
 
  private:
   [[nodiscard]] MapPoint point_of(const Eigen::Ref<const Eigen::VectorXd>& state) const {
-    if (state.size() <= std::max(system_.position_x, system_.position_y)) {
-      return {.x = std::numeric_limits<double>::quiet_NaN()};
-    }
-    return {.x = state[system_.position_x], .y = state[system_.position_y]};
-  }
-
-  [[nodiscard]] MapRectangle rectangle_of(const Box& box) const {
-    return {.x_lower = box.lower[system_.position_x],
-            .x_upper = box.upper[system_.position_x],
-            .y_lower = box.lower[system_.position_y],
-            .y_upper = box.upper[system_.position_y]};
-  }
-
-  [[nodiscard]] std::string label(int coordinate) const {
-    const Coordinate& state = system_.states[static_cast<std::size_t>(coordinate)];
-    return state.name + " (" + state.unit + ")";
+    return map_point(state, system_);
   }
 
   [[nodiscard]] MapPath driven_path() const {
@@ -64,29 +48,11 @@ class EpisodeMap {
     return path;
   }
 
-  /// Whether the box restricts nothing but the position, so that it is unsafe as a whole.
-  [[nodiscard]] bool is_planar(const Box& box) const {
-    for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
-      if (i == system_.position_x || i == system_.position_y) continue;
-      if (std::isfinite(box.lower[i]) || std::isfinite(box.upper[i])) return false;
-    }
-    return true;
-  }
-
   [[nodiscard]] PlaneMap ground() const {
-    const Scenario& scenario = trace_.scenario;
-    PlaneMap map{
-        .title = trace_.steps.empty()
-                     ? "Map"
-                     : fmt::format("Map: belief and plan every {} steps", snapshot_period()),
-        .x_label = label(system_.position_x),
-        .y_label = label(system_.position_y),
-        .bounds = rectangle_of(scenario.safe_set.bounds),
-        .targets = {{.centre = point_of(scenario.target.state), .radius = scenario.target.radius}}};
-    for (const Box& obstacle : scenario.safe_set.obstacles) {
-      auto& boxes = is_planar(obstacle) ? map.obstacles : map.partial_obstacles;
-      boxes.push_back(rectangle_of(obstacle));
-    }
+    PlaneMap map = ground_map(trace_.scenario, system_);
+    map.title = trace_.steps.empty()
+                    ? "Map"
+                    : fmt::format("Map: belief and plan every {} steps", snapshot_period());
     return map;
   }
 
@@ -153,7 +119,7 @@ class EpisodeMap {
 }  // namespace
 
 std::string episode_map(const Trace& trace, const SystemDescription& system) {
-  if (system.position_x < 0 || system.position_y < 0) return {};
+  if (!has_position(system)) return {};
   return map_figure(EpisodeMap(trace, system).map());
 }
 

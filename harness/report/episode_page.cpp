@@ -8,17 +8,13 @@
 #include "harness/report/episode_map.hpp"
 #include "harness/report/html.hpp"
 #include "harness/report/key_figures.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/report/page_frame.hpp"
 #include "harness/report/svg_chart.hpp"
 #include "harness/trace/summary.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr std::string_view kPolicy =
-    "default-src 'none'; style-src 'unsafe-inline'; media-src 'self' file:; img-src data:; "
-    "base-uri 'none'; form-action 'none'";
 
 constexpr std::string_view kMeaning =
     "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
@@ -32,16 +28,6 @@ constexpr std::string_view kMismatchNote =
     "<h2>Mismatch of the plant against the planner’s model</h2>\n"
     "<p class=\"note\">What is left of the plant’s next state after the model’s prediction and the "
     "disturbance are taken away, over all steps. An exact model has zeros.</p>\n";
-
-std::string head(const Trace& trace) {
-  return fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"referrer\" content=\"no-referrer\">\n"
-      "<title>{}: episode</title>\n<style>{}</style>\n</head>\n<body>\n",
-      kPolicy, escape_html(trace.scenario.name), page_style());
-}
 
 std::string introduction(const Trace& trace) {
   const Scenario& scenario = trace.scenario;
@@ -99,7 +85,7 @@ std::string episode_page(const Trace& trace, const EpisodePageOptions& options) 
       make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   const SystemDescription& system = model->description();
   const Summary summary = summarise(trace);
-  std::string html = head(trace);
+  std::string html = page_head(trace.scenario.name + ": episode");
   html += introduction(trace);
   html += outcome_html(trace, summary);
   html += key_figures_html(trace, summary, system);
