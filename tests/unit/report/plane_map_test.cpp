@@ -170,6 +170,19 @@ TEST(MapFigure, a_large_cloud_is_thinned_by_weight_and_says_so) {
   EXPECT_EQ(map_figure(map), html);
 }
 
+TEST(MapFigure, a_heavy_point_of_a_thinned_cloud_stays_heavy) {
+  constexpr Index kPoints = 20000;
+  PlaneMap map = square_map();
+  map.clouds = {
+      {.points = Matrix2Xd::Constant(2, kPoints, 5.0), .weights = Eigen::VectorXd::Ones(kPoints)}};
+  map.clouds[0].points.col(kPoints / 2) << 1, 1;
+  map.clouds[0].weights[kPoints / 2] = 0.05 * kPoints;
+  const std::string svg = map_drawing(map);
+  const double heavy =
+      numbers_of(svg, "stroke-width=\"" + kNumber + "\" d=\"M48.0 432.0h0\"").at(0);
+  EXPECT_GT(heavy, 3.0 * numbers_of(svg, "stroke-width=\"" + kNumber + "\" d=\"M240.0").at(0));
+}
+
 TEST(MapFigure, many_long_paths_stay_small) {
   PlaneMap map = square_map();
   MapPath path{.name = "one of many", .faint = true};
@@ -311,19 +324,23 @@ TEST(MapLabels, stay_within_the_map) {
 }
 
 TEST(MapLabels, of_an_ellipse_stand_outside_of_it) {
-  PlaneMap map = square_map();
-  map.ellipses = {{.mean = {5, 5},
-                   .covariance = Vector2d(1.0, 0.1).asDiagonal(),
-                   .levels = {0.5, 0.95},
-                   .label = "0.5 s"}};
-  const std::vector<Text> places = label_places(map_drawing(map));
-  ASSERT_EQ(places.size(), 1U);
-  const double radius = std::sqrt(-2.0 * std::log(0.05));
-  // The nearest corner of the text's box, 12 units high, to the middle.
-  const double x = std::max({places[0].x - 240.0, 0.0, 240.0 - places[0].x - 40.0});
-  const double y = std::max({places[0].y - 10.0 - 240.0, 0.0, 240.0 - places[0].y - 2.0});
-  const Vector2d away(x / kUnits, y / kUnits / std::sqrt(0.1));
-  EXPECT_GT(away.norm(), radius);
+  // A wide one, and one that leaves room at its sides only.
+  for (const Vector2d& variance : {Vector2d(1.0, 0.1), Vector2d(1.0, 4.0)}) {
+    PlaneMap map = square_map();
+    map.ellipses = {{.mean = {5, 5},
+                     .covariance = variance.asDiagonal(),
+                     .levels = {0.5, 0.95},
+                     .label = "0.5 s"}};
+    const std::vector<Text> places = label_places(map_drawing(map));
+    ASSERT_EQ(places.size(), 1U);
+    const double radius = std::sqrt(-2.0 * std::log(0.05));
+    // The nearest corner of the text's box, 30 x 12 units large at least, to the middle.
+    const double x = std::max({places[0].x - 240.0, 0.0, 240.0 - places[0].x - 30.0});
+    const double y = std::max({places[0].y - 10.0 - 240.0, 0.0, 240.0 - places[0].y - 2.0});
+    EXPECT_GT((Vector2d(x, y) / kUnits).cwiseQuotient(variance.cwiseSqrt()).norm(), radius);
+    EXPECT_GE(places[0].x, 0.0);
+    EXPECT_LE(places[0].y, 480.0);
+  }
 }
 
 }  // namespace
