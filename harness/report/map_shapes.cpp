@@ -126,7 +126,8 @@ std::string dots_svg(const MapCanvas& canvas, const std::vector<MapDot>& dots,
 std::string mark_svg(const MapCanvas& canvas, const MapPoint& at, bool square,
                      const std::string& classes) {
   const std::string shape = square ? "mark square" : "mark";
-  const std::string data = "M" + canvas.coordinates(at) + "h0";
+  // Some renderers draw square caps of a line only if it has a length.
+  const std::string data = "M" + canvas.coordinates(at) + (square ? "h0.1" : "h0");
   return "<path class=\"" + shape + " edge\" d=\"" + data + "\"/><path class=\"" + shape + " " +
          classes + "\" d=\"" + data + "\"/>\n";
 }
