@@ -133,6 +133,7 @@ std::vector<MapDot> dots_of(const MapCloud& cloud, std::size_t most) {
 /// How many dots each cloud may have: small ones keep all of theirs, the others share the rest.
 std::vector<std::size_t> room_of(const std::vector<MapCloud>& clouds) {
   std::vector<std::size_t> count;
+  count.reserve(clouds.size());
   for (const MapCloud& cloud : clouds) count.push_back(drawable_dots(cloud));
   std::vector<std::size_t> order(clouds.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

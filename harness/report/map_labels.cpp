@@ -101,6 +101,7 @@ std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& te
                       const std::vector<MapPoint>& ink) {
   const Box map{.right = canvas.inner_size().width, .bottom = canvas.inner_size().height};
   std::vector<MapPoint> covered;
+  covered.reserve(ink.size());
   for (const MapPoint& point : ink) covered.push_back(canvas.place(point));
   std::vector<Box> taken;
   std::string grounds;
@@ -111,6 +112,7 @@ std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& te
                                           ? places_beside(canvas.place(text.at), width)
                                           : places_outside(canvas, text, width);
     std::vector<double> costs;
+    costs.reserve(places.size());
     for (const Place& place : places) costs.push_back(cost_of(place, map, taken, covered));
     const auto best = std::min_element(costs.begin(), costs.end()) - costs.begin();
     taken.push_back(places[static_cast<std::size_t>(best)].box);

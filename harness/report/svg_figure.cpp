@@ -175,6 +175,7 @@ std::vector<double> columns_of(const std::vector<Part>& parts) {
 
 std::string svg_figure(const std::vector<Panel>& panels) {
   std::vector<Part> parts;
+  parts.reserve(panels.size());
   for (const Panel& panel : panels) {
     parts.push_back(std::visit([](const auto& own) { return part_of(own); }, panel));
   }
