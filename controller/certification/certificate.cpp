@@ -88,21 +88,6 @@ std::vector<SurrogateBounds> surrogate_bounds_of_stages(const PredictedMotion& m
   return least;
 }
 
-/// The radius that the thesis would use: Eq. 4-4 and 4-6, without noise and without the feedback.
-/// Where no global constant is known, it is that of the closed loop on its region.
-std::vector<double> thesis_radii(const PredictedMotion& motion,
-                                 const std::vector<StageBudget>& budgets) {
-  const Eigen::MatrixXd no_gain =
-      Eigen::MatrixXd::Zero(motion.policy.inputs.rows(), motion.policy.states.rows());
-  const double global = motion.dynamics.lipschitz(no_gain);
-  std::vector<double> radii = {motion.belief_w2};
-  for (std::size_t k = 0; k < motion.prediction.maps.size(); ++k) {
-    const double lipschitz = std::isfinite(global) ? global : budgets[k].lipschitz;
-    radii.push_back(lipschitz * radii.back() + motion.prediction.maps[k].compression_w2);
-  }
-  return radii;
-}
-
 /// The certificate of stage k + 1; `radius` is the one that the thesis would use there.
 StageCertificate certify_stage(const PredictedMotion& motion, const SafeSet& safe_set,
                                const StageBudget& budget, const SurrogateBounds& surrogate,
@@ -134,6 +119,19 @@ StageCertificate certify_stage(const PredictedMotion& motion, const SafeSet& saf
 }
 
 }  // namespace
+
+std::vector<double> thesis_radii(const PredictedMotion& motion,
+                                 const std::vector<StageBudget>& budgets) {
+  const Eigen::MatrixXd no_gain =
+      Eigen::MatrixXd::Zero(motion.policy.inputs.rows(), motion.policy.states.rows());
+  const double global = motion.dynamics.lipschitz(no_gain);
+  std::vector<double> radii = {motion.belief_w2};
+  for (std::size_t k = 0; k < motion.prediction.maps.size(); ++k) {
+    const double lipschitz = std::isfinite(global) ? global : budgets[k].lipschitz;
+    radii.push_back(lipschitz * radii.back() + motion.prediction.maps[k].compression_w2);
+  }
+  return radii;
+}
 
 std::vector<StageCertificate> certify(const PredictedMotion& motion, const SafeSet& safe_set,
                                       const std::vector<StageBudget>& budgets,

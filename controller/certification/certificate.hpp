@@ -45,6 +45,12 @@ enum class CertificateEffort {
     const PredictedMotion& motion, const SafeSet& safe_set, const std::vector<StageBudget>& budgets,
     CertificateEffort effort = CertificateEffort::kLeast, const Executor& run = run_in_turn);
 
+/// The radii that the thesis would use at stages 0 … horizon, by Eq. 4-4 and 4-6: without noise and
+/// without the feedback, hence too small. Where no global Lipschitz constant is known, it is that
+/// of the closed loop on its region. budgets: as for `certify`.
+[[nodiscard]] std::vector<double> thesis_radii(const PredictedMotion& motion,
+                                               const std::vector<StageBudget>& budgets);
+
 /// Upper bound of the probability that the state is unsafe at any of the stages: their sum, at
 /// most 1.
 [[nodiscard]] double horizon_bound(const std::vector<StageCertificate>& certificates);

@@ -45,6 +45,15 @@ double thesis_distance(const Eigen::Ref<const Eigen::VectorXd>& point, const Box
   return bounded ? std::sqrt(squares) : std::numeric_limits<double>::infinity();
 }
 
+/// Of every point to the unsafe set.
+Eigen::VectorXd distances_of(const DiscreteMeasure& measure, const SafeSet& safe_set) {
+  Eigen::VectorXd distances(measure.size());
+  for (Eigen::Index i = 0; i < measure.size(); ++i) {
+    distances[i] = distance_to_unsafe(measure.locations.col(i), safe_set);
+  }
+  return distances;
+}
+
 }  // namespace
 
 double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances,
@@ -63,11 +72,12 @@ double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances
 
 double worst_case_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
                               double radius) {
-  Eigen::VectorXd distances(measure.size());
-  for (Eigen::Index i = 0; i < measure.size(); ++i) {
-    distances[i] = distance_to_unsafe(measure.locations.col(i), safe_set);
-  }
-  return worst_case_probability(distances, measure.weights, radius);
+  return worst_case_probability(distances_of(measure, safe_set), measure.weights, radius);
+}
+
+double linear_transport_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
+                                    double radius) {
+  return greedy_transport(distances_of(measure, safe_set), measure.weights, radius);
 }
 
 double thesis_probability(const DiscreteMeasure& measure, const SafeSet& safe_set, double radius) {

@@ -29,4 +29,9 @@ namespace qsmpc {
 [[nodiscard]] double thesis_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
                                         double radius);
 
+/// Algorithm 4 with the true distance in place of Algorithm 3's: spends d·m against the radius. The
+/// ball of that radius in W1 contains the one in W2, as W1 ≤ W2, so this is never below C1.
+[[nodiscard]] double linear_transport_probability(const DiscreteMeasure& measure,
+                                                  const SafeSet& safe_set, double radius);
+
 }  // namespace qsmpc

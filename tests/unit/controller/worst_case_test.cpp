@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -107,6 +108,37 @@ TEST(WorstCase, refuses_what_makes_no_sense) {
                std::invalid_argument);
   EXPECT_THROW((void)worst_case_probability(distances, weights, -1.0), std::invalid_argument);
   EXPECT_THROW((void)worst_case_probability(distances, weights, nan), std::invalid_argument);
+}
+
+TEST(LinearTransportProbability, spends_distances_in_the_order_of_their_size) {
+  const SafeSet room{
+      .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(8.0, 10.0)},
+      .obstacles = {}};
+  // Distances 0.5, 2 and 4 to the nearest wall.
+  DiscreteMeasure measure{.locations = Points(2, 3), .weights = Eigen::Vector3d(0.2, 0.3, 0.5)};
+  measure.locations << 0.5, 2.0, 4.0,  //
+      5.0, 5.0, 5.0;
+  // All of the first costs 0.1, a third of the second 0.2.
+  EXPECT_NEAR(linear_transport_probability(measure, room, 0.3), 0.3, kRounding);
+  EXPECT_EQ(linear_transport_probability(measure, room, 0.0), 0.0);
+  EXPECT_EQ(linear_transport_probability(measure, room, 100.0), 1.0);
+}
+
+TEST(LinearTransportProbability, is_never_below_the_exact_worst_case) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(0.0, 8.0);
+  const SafeSet room{
+      .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(8.0, 8.0)},
+      .obstacles = {{.lower = Eigen::Vector2d(3.0, 4.0), .upper = Eigen::Vector2d(3.5, 4.5)}}};
+  for (int repeat = 0; repeat < 200; ++repeat) {
+    constexpr Eigen::Index kCount = 12;
+    DiscreteMeasure measure{.locations = Points(2, kCount),
+                            .weights = Eigen::VectorXd::Constant(kCount, 1.0 / kCount)};
+    for (double& value : measure.locations.reshaped()) value = place(random);
+    const double radius = place(random) / 4.0;
+    EXPECT_GE(linear_transport_probability(measure, room, radius) + kRounding,
+              worst_case_probability(measure, room, radius));
+  }
 }
 
 TEST(ThesisProbability, takes_the_norm_of_the_face_distances_and_ignores_obstacles) {
