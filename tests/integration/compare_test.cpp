@@ -45,15 +45,6 @@ ProcessResult compare(const std::string& scenario, const std::string& out,
   return run_qsmpc(arguments, options);
 }
 
-std::set<std::string> files_in(const std::string& folder) {
-  std::set<std::string> names;
-  if (!fs::exists(folder)) return names;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    names.insert(entry.path().filename().string());
-  }
-  return names;
-}
-
 TEST(Compare, leaves_numbers_data_scenario_and_figures) {
   const TemporaryFolder folder;
   const ProcessResult result =

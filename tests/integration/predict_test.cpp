@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::SizeIs;
 
 // Few particles, so that a test is quick.
 const std::vector<std::string> kSmall = {
@@ -30,12 +31,6 @@ ProcessResult predict(const std::string& scenario, const std::string& out,
   arguments.insert(arguments.end(), kSmall.begin(), kSmall.end());
   arguments.insert(arguments.end(), more.begin(), more.end());
   return run_qsmpc(arguments, options);
-}
-
-int files_in(const std::string& folder) {
-  return fs::exists(folder) ? static_cast<int>(std::distance(fs::directory_iterator(folder),
-                                                             fs::directory_iterator()))
-                            : 0;
 }
 
 int lines(const std::string& text) {
@@ -66,7 +61,7 @@ TEST_P(PredictScenario, certificates_are_probabilities_that_the_simulation_does_
     EXPECT_GE(stage["monte_carlo"]["upper"], stage["monte_carlo"]["rate"]);
   }
   EXPECT_GE(json["horizon"]["value"], json["horizon"]["monte_carlo"]["lower"]);
-  EXPECT_EQ(files_in(folder.path()), 3);
+  EXPECT_THAT(files_in(folder.path()), SizeIs(3));
   EXPECT_EQ(Hdf5File::open(folder.path() + "/predict.h5").text("/", "kind"), "prediction");
   EXPECT_THAT(read_text(folder.path() + "/scenario.yaml"), HasSubstr("horizon: 5"));
 }
@@ -163,7 +158,7 @@ TEST(Predict, a_full_disk_is_exit_code_3_and_keeps_the_older_files) {
     const ProcessResult result =
         predict("dubins_corridor", folder.path(), {"--steps", "6"}, {.file_size_limit = limit});
     EXPECT_EQ(result.exit_code, 3) << result.errors;
-    EXPECT_EQ(files_in(folder.path()), 3) << "nothing unfinished is left";
+    EXPECT_THAT(files_in(folder.path()), SizeIs(3)) << "nothing unfinished is left";
     EXPECT_EQ(read_text(folder.path() + "/predict.json"), before);
   }
 }
@@ -186,14 +181,14 @@ TEST(Predict, an_interrupt_keeps_the_prediction_without_the_simulation) {
   EXPECT_THAT(result.errors, HasSubstr("interrupted"));
   const auto json = nlohmann::json::parse(read_text(out + "/predict.json"));
   EXPECT_FALSE(json["stages"][0].contains("monte_carlo"));
-  EXPECT_EQ(files_in(out), 3);
+  EXPECT_THAT(files_in(out), SizeIs(3));
 }
 
 TEST(Predict, a_kill_during_the_simulation_leaves_nothing) {
   const TemporaryFolder folder;
   const std::string out = folder.path() + "/out";
   EXPECT_EQ(predict_and_signal(out, SIGKILL).exit_code, 128 + SIGKILL);
-  EXPECT_EQ(files_in(out), 0);
+  EXPECT_THAT(files_in(out), SizeIs(0));
 }
 
 }  // namespace

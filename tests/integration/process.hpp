@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ class TemporaryFolder {
  private:
   std::string path_;
 };
+
+/// Names of what is in a folder; none where there is no such folder.
+[[nodiscard]] std::set<std::string> files_in(const std::string& folder);
 
 /// The whole content of a file; empty where there is none.
 [[nodiscard]] std::string read_text(const std::string& path);
