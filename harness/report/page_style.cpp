@@ -115,6 +115,16 @@ table { border-collapse: collapse; width: 100%; max-width: 720px; font-variant-n
 th, td { padding: 6px 12px 6px 0; text-align: right; border-bottom: 1px solid var(--edge); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; }
 thead th { color: var(--soft); font-size: 0.84rem; font-weight: 600; }
+table.results { max-width: none; }
+.results td, .results th { vertical-align: top; }
+.results .text { text-align: left; white-space: normal; }
+.results td.text:last-child { color: var(--soft); font-size: 0.84rem; }
+.claims {
+  display: grid; gap: 12px; margin: 12px 0;
+  grid-template-columns: repeat(auto-fill, minmax(min(100%, 360px), 1fr));
+}
+section h3 { margin-top: 18px; }
+nav ul { margin: 0; padding-left: 20px; }
 details { margin-top: 28px; }
 summary { cursor: pointer; font-weight: 650; }
 pre {

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/exit_codes.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/output.hpp"
+#include "harness/cli/progress.hpp"
+#include "harness/report/svg_figure.hpp"
+#include "harness/reproduction/experiment.hpp"
+#include "harness/reproduction/results_page.hpp"
+#include "harness/reproduction/results_table.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kHelp =
+    "Does the reference thesis's experiments again and lays each number beside the published one;\n"
+    "writes results.json, results.md, results.html and the figures, after every experiment anew.";
+constexpr int kDefaultSeeds = 50;
+constexpr int kMostSeeds = 100'000;
+constexpr int kMostThreads = 1024;
+
+struct ReproduceArguments {
+  std::vector<std::string> names;
+  std::string out = "out/reproduce";
+  bool quiet = false;
+  bool json = false;
+  LaboratoryOptions options{.seeds = kDefaultSeeds};
+};
+
+std::string example() {
+  std::string text =
+      "Example: qsmpc reproduce table-5-2 figure-4-1 --seeds 20\nWithout NAME, or with \"all\": "
+      "all of them, some minutes. The experiments:\n";
+  for (const ExperimentEntry& entry : experiments()) {
+    text += fmt::format("  {:<12} {}\n", entry.name, entry.title);
+  }
+  return text;
+}
+
+/// All files of what is done so far; the numbers last.
+void write_results(const Reproduction& reproduction, const std::string& folder) {
+  for (const ResultFigure& figure : reproduction.experiments.back().figures) {
+    write_file(folder + "/" + figure.file, svg_figure(figure.panels));
+  }
+  write_file(folder + "/results.md", results_markdown(reproduction, "."));
+  write_file(folder + "/results.html", results_page(reproduction));
+  write_file(folder + "/results.json", results_json(reproduction));
+}
+
+int reproduce_command(ReproduceArguments& arguments) {
+  const std::vector<std::string> chosen = experiments_named(arguments.names);
+  const std::string& folder = arguments.out;
+  make_output_folder(folder);
+  Progress progress("reproducing", arguments.quiet);
+  std::size_t done = 0;
+  arguments.options.should_stop = [] { return interrupts() > 0; };
+  arguments.options.on_work = [&](const std::string& what) {
+    progress.update(static_cast<int>(done), static_cast<int>(chosen.size()),
+                    fmt::format("{}, {}", chosen[std::min(done, chosen.size() - 1)], what));
+  };
+  Laboratory laboratory(arguments.options);
+  const Reproduction reproduction = reproduce(chosen, laboratory, [&](const Reproduction& so_far) {
+    done = so_far.experiments.size();
+    write_results(so_far, folder);
+    progress.update(static_cast<int>(done), static_cast<int>(chosen.size()));
+  });
+  if (!reproduction.experiments.empty()) {
+    print_result(arguments.json ? results_json(reproduction)
+                                : results_table(reproduction) +
+                                      fmt::format("\n  page     {0}/results.html\n  numbers  "
+                                                  "{0}/results.json\n",
+                                                  folder));
+  }
+  if (!reproduction.complete) {
+    std::cerr << fmt::format("qsmpc: interrupted; {} of {} experiments are finished and kept\n",
+                             reproduction.experiments.size(), chosen.size());
+    return kInterruptedExit;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_reproduce_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("reproduce", kHelp);
+  command->footer(example());
+  const auto arguments = std::make_shared<ReproduceArguments>();
+  LaboratoryOptions& options = arguments->options;
+  command->add_option("name", arguments->names, "experiments, see below; default: all");
+  command
+      ->add_option("--seeds", options.seeds,
+                   fmt::format("drives of each kind; default: {}", kDefaultSeeds))
+      ->check(CLI::Range(1, kMostSeeds));
+  command
+      ->add_option("--threads", options.threads,
+                   "that the work is divided among; default: all; changes nothing but timings")
+      ->check(CLI::Range(1, kMostThreads));
+  command->add_option("--out", arguments->out, "output folder; default: out/reproduce");
+  command->add_flag("--quiet", arguments->quiet, "no progress");
+  command->add_flag("--json", arguments->json, "print results.json instead of the table");
+  command->callback([arguments, &exit_code] { exit_code = reproduce_command(*arguments); });
+}
+
+}  // namespace qsmpc

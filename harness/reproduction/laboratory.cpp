@@ -1,0 +1,116 @@
+#include "harness/reproduction/laboratory.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "controller/certification/certificate.hpp"
+#include "harness/episode/episode.hpp"
+#include "harness/scenario/plant_choice.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/threads/executor.hpp"
+#include "harness/trace/residuals.hpp"
+#include "harness/trace/summary.hpp"
+
+namespace qsmpc {
+namespace {
+
+std::string label_of(const Variant& variant) {
+  std::string label = variant.scenario;
+  for (const std::string& override : variant.overrides) label += " " + override;
+  return label + " on " + variant.plant;
+}
+
+EpisodeDigest digest_of(const Trace& trace) {
+  const Summary summary = summarise(trace);
+  EpisodeDigest digest{.seed = trace.seed,
+                       .outcome = summary.outcome,
+                       .unsafe = summary.collision,
+                       .duration = static_cast<double>(summary.steps) * trace.scenario.time_step,
+                       .cost = summary.closed_loop_cost,
+                       .min_clearance = summary.min_clearance,
+                       .timing = summary.breakdown};
+  digest.states = true_states(trace);
+  digest.inputs.resize(trace.scenario.controller.input_lower.size(), std::ssize(trace.steps));
+  for (std::size_t k = 0; k < trace.steps.size(); ++k) {
+    const StepRecord& step = trace.steps[k];
+    digest.inputs.col(static_cast<Eigen::Index>(k)) = step.input;
+    digest.optimisation_s +=
+        1e-3 * (step.timing.quantise + step.timing.propagate + step.timing.optimise);
+    digest.costs.push_back(step.cost.total());
+    digest.next_step.push_back(step.certificates.front().value);
+    digest.particles.push_back(step.certificates.front().particles);
+    digest.published.push_back(step.certificates.front().thesis);
+    digest.plan_risk.push_back(horizon_bound(step.certificates));
+  }
+  return digest;
+}
+
+}  // namespace
+
+Scenario scenario_of(const Variant& variant) {
+  Scenario scenario = with_plant(load_scenario(variant.scenario, variant.overrides), variant.plant);
+  // One thread an episode, and nothing that depends on how fast it is.
+  scenario.controller.threads = 1;
+  scenario.controller.deadline = std::numeric_limits<double>::infinity();
+  return scenario;
+}
+
+Laboratory::Laboratory(LaboratoryOptions options)
+    : options_(std::move(options)),
+      threads_(std::min(options_.threads > 0 ? options_.threads : std::numeric_limits<int>::max(),
+                        static_cast<int>(std::max(1U, std::thread::hardware_concurrency())))),
+      run_(executor_of(threads_)) {}
+
+void Laboratory::at_work(const std::string& what) const {
+  if (stopped()) throw Stopped{};
+  if (options_.on_work) options_.on_work(what);
+}
+
+const Sample& Laboratory::sample(const Variant& variant) {
+  const std::string label = label_of(variant);
+  if (const auto known = samples_.find(label); known != samples_.end()) return known->second;
+  Sample sample{.scenario = scenario_of(variant)};
+  if (options_.step_limit > 0) {
+    sample.scenario.step_limit = std::min(sample.scenario.step_limit, options_.step_limit);
+  }
+  sample.episodes.resize(static_cast<std::size_t>(options_.seeds));
+  at_work(label);
+  std::mutex mutex;
+  int done = 0;
+  run_(options_.seeds, [&](int n) {
+    if (stopped()) return;
+    EpisodeOptions options;
+    options.seed = sample.scenario.seed + static_cast<std::uint64_t>(n);
+    options.should_stop = [this] { return stopped(); };
+    Trace trace = run_episode(sample.scenario, options);
+    sample.episodes[static_cast<std::size_t>(n)] = digest_of(trace);
+    if (n == 0) sample.first = std::move(trace);
+    const std::lock_guard lock(mutex);
+    if (options_.on_work) {
+      options_.on_work(fmt::format("{}: {} of {}", label, ++done, options_.seeds));
+    }
+  });
+  if (stopped()) throw Stopped{};
+  return samples_.emplace(label, std::move(sample)).first->second;
+}
+
+std::vector<double> over_episodes(const Sample& sample,
+                                  const std::function<double(const EpisodeDigest&)>& number) {
+  std::vector<double> numbers;
+  for (const EpisodeDigest& episode : sample.episodes) numbers.push_back(number(episode));
+  return numbers;
+}
+
+int safe_arrivals(const Sample& sample) {
+  return static_cast<int>(std::ranges::count_if(sample.episodes, [](const EpisodeDigest& episode) {
+    return episode.outcome == "reached" && !episode.unsafe;
+  }));
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,102 @@
+// Where experiments are done: runs scenarios with variations, keeps what several experiments need,
+// and says how far the work is.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/parallel.hpp"
+#include "harness/scenario/scenario.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc {
+
+/// A scenario as an experiment runs it.
+struct Variant {
+  std::string scenario;                  ///< name of a shipped one
+  std::vector<std::string> overrides{};  ///< KEY=VALUE
+  std::string plant = "analytic";        ///< as `with_plant` takes it
+};
+
+/// The scenario of `variant`. Throws InputError.
+[[nodiscard]] Scenario scenario_of(const Variant& variant);
+
+/// What is kept of an episode. A period is a column or an entry.
+struct EpisodeDigest {
+  std::uint64_t seed = 0;
+  std::string outcome;
+  bool unsafe = false;              ///< the true state entered the unsafe set
+  double duration = 0.0;            ///< of the episode, s of simulated time
+  double optimisation_s = 0.0;      ///< wall clock of all plans: quantise … optimise
+  double cost = 0.0;                ///< Σ ½ |x − r|²_Q + |u|²_R
+  double min_clearance = 0.0;       ///< m
+  StepTiming timing{};              ///< medians of the periods, ms
+  std::vector<double> next_step{};  ///< certificate of the next step
+  std::vector<double> particles{};  ///< C1 of it
+  std::vector<double> published{};  ///< Algorithms 3 and 4 as printed; no bound
+  std::vector<double> plan_risk{};  ///< certificate of the whole plan: sum of its stages', ≤ 1
+  std::vector<double> costs{};      ///< expected cost of the plan
+  Eigen::MatrixXd states{};         ///< true ones, state_dim x (periods + 1)
+  Eigen::MatrixXd inputs{};         ///< input_dim x periods
+};
+
+/// Episodes of one variant, of the scenario's seed and those that follow.
+struct Sample {
+  Scenario scenario;
+  std::vector<EpisodeDigest> episodes{};
+  Trace first{};  ///< of the first of them
+};
+
+/// The work was given up.
+struct Stopped {};
+
+struct LaboratoryOptions {
+  int seeds = 50;                          ///< ≥ 1, episodes of a variant
+  int step_limit = 0;                      ///< most periods of a drive; 0: the scenario's
+  std::int64_t truth_samples = 4'000'000;  ///< paths from which a truth is estimated
+  int threads = 0;                         ///< at most; 0: as many as the processor runs at once
+  std::function<bool()> should_stop{};     ///< asked by several threads
+  std::function<void(const std::string&)>
+      on_work{};  ///< told what is done, by one thread at a time
+};
+
+class Laboratory {
+ public:
+  explicit Laboratory(LaboratoryOptions options);
+
+  [[nodiscard]] int seeds() const { return options_.seeds; }
+  [[nodiscard]] std::int64_t truth_samples() const { return options_.truth_samples; }
+  [[nodiscard]] int threads() const { return threads_; }
+  /// What independent work is divided among.
+  [[nodiscard]] const Executor& run() const { return run_; }
+
+  /// The episodes of `variant`, driven unless they have been before. Each runs on one thread, and
+  /// but for the timings depends on the scenario and its seed alone. The reference is valid as long
+  /// as the laboratory. Throws Stopped, and InputError for what is wrong with the variant.
+  const Sample& sample(const Variant& variant);
+
+  /// Tells what is being done. Throws Stopped if the work is to be given up.
+  void at_work(const std::string& what) const;
+
+ private:
+  [[nodiscard]] bool stopped() const { return options_.should_stop && options_.should_stop(); }
+
+  LaboratoryOptions options_;
+  int threads_;
+  Executor run_;
+  std::map<std::string, Sample> samples_;
+};
+
+/// Of each episode one number.
+[[nodiscard]] std::vector<double> over_episodes(
+    const Sample& sample, const std::function<double(const EpisodeDigest&)>& number);
+
+/// Episodes that reached the target, and of them those that never were unsafe.
+[[nodiscard]] int safe_arrivals(const Sample& sample);
+
+}  // namespace qsmpc

@@ -1,0 +1,216 @@
+// Fig. 4-1 and 4-2: what a prediction by points looks like, beside samples and without compression.
+
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <fmt/format.h>
+
+#include "controller/measure/gaussian_quantiser.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/report/page_style.hpp"
+#include "harness/reproduction/experiments.hpp"
+#include "harness/reproduction/turn_prediction.hpp"
+
+namespace qsmpc {
+namespace {
+
+// ---- Fig. 4-1
+
+constexpr int kTurnStages = 40;
+constexpr int kShownEvery = 10;
+constexpr std::int64_t kPictureSamples = 2000;
+
+/// Position and its spread at one stage.
+struct Spread {
+  Eigen::Vector2d mean;
+  Eigen::Matrix2d covariance;
+  [[nodiscard]] double deviation() const { return std::sqrt(covariance.trace()); }
+};
+
+Spread position_spread(const DiscreteMeasure& measure) {
+  return {.mean = mean_of(measure).head<2>(),
+          .covariance = covariance_of(measure).topLeftCorner<2, 2>()};
+}
+
+void add_turn_rows(const PredictionReport& report, const std::vector<Points>& samples,
+                   ExperimentResult& result) {
+  for (int stage = 0; stage <= kTurnStages; stage += kShownEvery) {
+    const auto k = static_cast<std::size_t>(stage);
+    const Spread points = position_spread(report.prediction.stages[k]);
+    const Spread sampled = position_spread(equally_weighted(samples[k]));
+    const double time = stage * report.scenario.time_step;
+    result.rows.push_back(
+        {.quantity = fmt::format("distance of the mean positions, {:.0f} s", time),
+         .unit = "m",
+         .here = (points.mean - sampled.mean).norm(),
+         .note = fmt::format("the samples’ own error is about {:.1g}",
+                             sampled.deviation() / std::sqrt(kPictureSamples))});
+    result.rows.push_back(
+        {.quantity = fmt::format("spread of the points over that of the samples, "
+                                 "{:.0f} s",
+                                 time),
+         .here = points.deviation() / sampled.deviation(),
+         .note = "of the points alone; what is lost within their cells is known"});
+  }
+}
+
+// ---- Fig. 4-2
+
+constexpr int kNoisyStages = 5;
+constexpr int kNoiseParts = 8;  // points that stand for the noise in Fig. 4-2
+constexpr std::int64_t kTruthSamples = 200'000;
+constexpr double kPublishedPoints = 3.28e6;
+constexpr double kPublishedCompressed = 100.0;
+// The same for all panels of Fig. 4-2, about the 95 % ellipse.
+constexpr MapRectangle kCloudArea{.x_lower = -0.4, .x_upper = 1.9, .y_lower = -0.9, .y_upper = 1.0};
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Every point with every noise point added, stage after stage, nothing compressed (Eq. 4-5).
+DiscreteMeasure without_compression(const PredictionReport& report, const DiscreteMeasure& noise) {
+  const auto model = model_of(report.scenario);
+  DiscreteMeasure measure = report.prediction.stages.front();
+  for (int stage = 0; stage < kNoisyStages; ++stage) {
+    const Eigen::Index count = measure.size();
+    Points next(measure.locations.rows(), count);
+    StateBatch inputs(report.policy.inputs.rows(), count);
+    policy_inputs(report.policy, stage, measure.locations, inputs);
+    model->step(measure.locations, inputs, next);
+    DiscreteMeasure product{.locations = Points(next.rows(), count * noise.size()),
+                            .weights = Eigen::VectorXd(count * noise.size())};
+    for (Eigen::Index j = 0; j < noise.size(); ++j) {
+      product.locations.middleCols(j * count, count) =
+          next.colwise() + Eigen::VectorXd(noise.locations.col(j));
+      product.weights.segment(j * count, count) = noise.weights[j] * measure.weights;
+    }
+    measure = std::move(product);
+  }
+  return measure;
+}
+
+struct Compressed {
+  const char* propagator;
+  const char* what;
+};
+constexpr std::array<Compressed, 3> kCompressed{{{"soft", "the thesis’s soft compression"},
+                                                 {"compressed", "hard compression"},
+                                                 {"mixture", "this program’s mixture"}}};
+
+/// How much of the true law's variance `measure` has, and how far off its mean is.
+void add_moment_rows(const std::string& what, const DiscreteMeasure& measure,
+                     const DiscreteMeasure& truth, ExperimentResult& result) {
+  result.rows.push_back({.quantity = "variance after 5 steps over the true one, " + what,
+                         .here = covariance_of(measure).trace() / covariance_of(truth).trace(),
+                         .note = "traces; the truth from 200,000 samples"});
+  result.rows.push_back({.quantity = "distance of the mean from the true one, " + what,
+                         .here = (mean_of(measure) - mean_of(truth)).norm()});
+}
+
+MapCloud cloud_of(const DiscreteMeasure& measure) {
+  return {.colour = kBlue, .points = measure.locations.topRows<2>(), .weights = measure.weights};
+}
+
+MapEllipse ellipse_of(const DiscreteMeasure& measure) {
+  const Spread spread = position_spread(measure);
+  return {.colour = kOrange, .mean = spread.mean, .covariance = spread.covariance};
+}
+
+PlaneMap empty_map(const std::string& title) {
+  return {.title = title, .x_label = "x (m)", .y_label = "y (m)"};
+}
+
+/// Every kShownEvery-th of `stages`, `period` seconds apart.
+PlaneMap turn_map(const std::string& title, const std::vector<DiscreteMeasure>& stages,
+                  double period) {
+  PlaneMap map = empty_map(title);
+  for (int stage = 0; stage <= kTurnStages; stage += kShownEvery) {
+    const DiscreteMeasure& measure = stages[static_cast<std::size_t>(stage)];
+    map.clouds.push_back(cloud_of(measure));
+    MapEllipse ellipse = ellipse_of(measure);
+    ellipse.label = fmt::format("{:.0f} s", stage * period);
+    map.ellipses.push_back(std::move(ellipse));
+  }
+  return map;
+}
+
+PlaneMap cloud_map(const std::string& title, const DiscreteMeasure& measure) {
+  PlaneMap map = empty_map(title);
+  map.area = kCloudArea;
+  map.clouds.push_back(cloud_of(measure));
+  map.ellipses.push_back(ellipse_of(measure));
+  return map;
+}
+
+}  // namespace
+
+ExperimentResult propagation_along_a_turn(Laboratory& laboratory) {
+  laboratory.at_work("a belief along a turn");
+  ExperimentResult result;
+  const PredictionReport report = on_a_turn(kTurnStages, {"controller.propagate_noise=false"});
+  const std::vector<Points> samples =
+      samples_of(report, {.count = kPictureSamples, .with_noise = false}, laboratory.run());
+  add_turn_rows(report, samples, result);
+  std::vector<DiscreteMeasure> sampled;
+  sampled.reserve(samples.size());
+  for (const Points& points : samples) sampled.push_back(equally_weighted(points));
+  const double period = report.scenario.time_step;
+  result.figures = {
+      {.file = "figure-4-1.svg",
+       .title = "A belief along a turn",
+       .caption = "Ellipses of 50 and 95 %, from the mean and covariance of what is drawn.",
+       .panels = {turn_map("100 points", report.prediction.stages, period),
+                  turn_map("2,000 samples", sampled, period)}}};
+  return result;
+}
+
+ExperimentResult propagation_with_noise(Laboratory& laboratory) {
+  laboratory.at_work("points without compression");
+  ExperimentResult result;
+  const std::string parts = fmt::format("controller.quantisation.noise={}", kNoiseParts);
+  const PredictionReport first = on_a_turn(kNoisyStages, {parts});
+  const Clock::time_point start = Clock::now();
+  const GaussianQuantisation noise =
+      quantise({.mean = Eigen::VectorXd::Zero(first.scenario.disturbance.covariance.rows()),
+                .covariance = first.scenario.disturbance.covariance},
+               kNoiseParts);
+  const DiscreteMeasure all = without_compression(first, noise.measure);
+  const double naive_ms = milliseconds_since(start);
+  // Of so many samples the moments are known to a few per mille.
+  const DiscreteMeasure truth =
+      equally_weighted(samples_of(first, {.count = kTruthSamples}, laboratory.run()).back());
+  result.rows = {{.quantity = "points after 5 steps, nothing compressed",
+                  .published = kPublishedPoints,
+                  .here = static_cast<double>(all.size())},
+                 {.quantity = "time of these 5 steps", .unit = "ms", .here = naive_ms}};
+  add_moment_rows("nothing compressed", all, truth, result);
+  std::vector<Panel> maps{cloud_map("All points, nothing compressed", all)};
+  for (const Compressed& compressed : kCompressed) {
+    laboratory.at_work(compressed.what);
+    const PredictionReport report = on_a_turn(
+        kNoisyStages, {parts, std::string("controller.propagator=") + compressed.propagator});
+    const DiscreteMeasure& last = report.prediction.stages.back();
+    result.rows.push_back({.quantity = fmt::format("points after 5 steps, {}", compressed.what),
+                           .published = kPublishedCompressed,
+                           .here = static_cast<double>(last.size())});
+    add_moment_rows(compressed.what, last, truth, result);
+    maps.emplace_back(cloud_map(fmt::format("100 points, {}", compressed.what), last));
+  }
+  result.figures = {
+      {.file = "figure-4-2.svg",
+       .title = "Positions after 5 steps with noise",
+       .caption = "Ellipses of 50 and 95 %, from the mean and covariance of what is drawn.",
+       .panels = maps}};
+  return result;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,67 @@
+#include "harness/reproduction/published_way.hpp"
+
+#include <cmath>
+#include <memory>
+
+#include "controller/certification/certificate.hpp"
+#include "controller/certification/error_budget.hpp"
+#include "controller/certification/worst_case.hpp"
+#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/planning/planner.hpp"
+#include "harness/episode/assembly.hpp"
+
+namespace qsmpc {
+namespace {
+
+/// Every point of `states` with every one of `noise` added (Eq. 4-5).
+DiscreteMeasure product_of(const Points& states, const Eigen::VectorXd& weights,
+                           const DiscreteMeasure& noise) {
+  DiscreteMeasure product{.locations = Points(states.rows(), states.cols() * noise.size()),
+                          .weights = Eigen::VectorXd(states.cols() * noise.size())};
+  for (Eigen::Index i = 0; i < states.cols(); ++i) {
+    const Eigen::Index first = i * noise.size();
+    product.locations.middleCols(first, noise.size()) =
+        noise.locations.colwise() + Eigen::VectorXd(states.col(i));
+    product.weights.segment(first, noise.size()) = weights[i] * noise.weights;
+  }
+  return product;
+}
+
+}  // namespace
+
+WorstCase worst_cases(const DiscreteMeasure& measure, const SafeSet& safe_set, const Radii& radii) {
+  return {.published = thesis_probability(measure, safe_set, radii.published),
+          .distance = linear_transport_probability(measure, safe_set, radii.sound),
+          .sound = worst_case_probability(measure, safe_set, radii.sound)};
+}
+
+std::vector<NextStepView> next_step_views(const Trace& trace) {
+  Scenario scenario = trace.scenario;
+  scenario.controller.propagate_noise = true;
+  scenario.controller.propagator = "compressed";
+  const Eigen::MatrixXd& covariance = scenario.disturbance.covariance;
+  const std::unique_ptr<const Dynamics> model = model_of(scenario);
+  Planner planner(*model, planner_settings(scenario));
+  const GaussianQuantisation noise =
+      quantise({.mean = Eigen::VectorXd::Zero(model->state_dim()), .covariance = covariance},
+               scenario.controller.quantisation.noise);
+  std::vector<NextStepView> views;
+  for (const StepRecord& step : trace.steps) {
+    const Gaussian belief{.mean = step.belief_mean, .covariance = step.belief_covariance};
+    const Plan& plan = planner.prescribe(belief, step.plan_inputs);
+    const PredictedMotion motion = motion_of(planner, belief, plan);
+    const std::vector<StageBudget> budgets = error_budget(motion);
+    const double published = thesis_radii(motion, budgets)[1];
+    const DiscreteMeasure product = product_of(
+        plan.prediction.stepped.front(), plan.prediction.stages.front().weights, noise.measure);
+    views.push_back(
+        {.plain = worst_cases(product, scenario.safe_set,
+                              {.sound = std::hypot(budgets[1].before_noise, noise.w2),
+                               .published = published - plan.prediction.maps[0].compression_w2}),
+         .compressed = worst_cases(plan.prediction.stages[1], scenario.safe_set,
+                                   {.sound = budgets[1].total, .published = published})});
+  }
+  return views;
+}
+
+}  // namespace qsmpc

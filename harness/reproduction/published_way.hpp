@@ -1,0 +1,45 @@
+// The probability of the unsafe set as the thesis computes it, beside what it should be.
+//
+// Algorithm 3 takes a norm over the dimensions for the distance to the unsafe set and leaves
+// obstacles out, which certifies less than the truth; Algorithm 4 spends d · m against the radius
+// where W2 asks for d² · m against its square, which is loose. Eq. 4-4 leaves the noise
+// out of the radius.
+#pragma once
+
+#include <vector>
+
+#include "controller/measure/measures.hpp"
+#include "controller/planning/safe_set.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc {
+
+/// One measure and radius, in three ways.
+struct WorstCase {
+  double published = 1.0;  ///< Algorithms 3 and 4 and Eq. 4-4 as printed: NOT a bound
+  double distance = 1.0;   ///< Algorithm 4 with the true distance and radius: a bound
+  double sound = 1.0;      ///< with the true distance and transport cost: C1
+};
+
+/// The radii of one measure: a bound of W2 between it and the law of the state, and the one that
+/// the thesis would use (Eq. 4-4, 4-6).
+struct Radii {
+  double sound = 0.0;
+  double published = 0.0;
+};
+
+[[nodiscard]] WorstCase worst_cases(const DiscreteMeasure& measure, const SafeSet& safe_set,
+                                    const Radii& radii);
+
+/// The next step of a period, from the product of stepped points and noise points (Eq. 4-4) and
+/// from the compressed measure (Eq. 4-6).
+struct NextStepView {
+  WorstCase plain;
+  WorstCase compressed;
+};
+
+/// Of every period of `trace`: its plan is predicted again with the propagator "compressed", the
+/// thesis's, in place of the one that it was made with.
+[[nodiscard]] std::vector<NextStepView> next_step_views(const Trace& trace);
+
+}  // namespace qsmpc

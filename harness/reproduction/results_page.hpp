@@ -1,0 +1,12 @@
+// A reproduction as one HTML page: tables, claims and figures, nothing outside of it.
+#pragma once
+
+#include <string>
+
+#include "harness/reproduction/result.hpp"
+
+namespace qsmpc {
+
+[[nodiscard]] std::string results_page(const Reproduction& reproduction);
+
+}  // namespace qsmpc

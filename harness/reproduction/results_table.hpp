@@ -1,0 +1,27 @@
+// A reproduction as text: for a terminal, as JSON for programs, as Markdown for docs/results.md.
+#pragma once
+
+#include <string>
+
+#include "harness/reproduction/result.hpp"
+
+namespace qsmpc {
+
+/// Rows beside the published values, claims and remarks, for people.
+[[nodiscard]] std::string results_table(const Reproduction& reproduction);
+
+/// {"rows": [{"experiment", "quantity", "unit", "published", "here", "ratio", "note"}, …],
+/// "claims": […], "figures": […], …}, one object, ending in a new line. What is not there is null.
+[[nodiscard]] std::string results_json(const Reproduction& reproduction);
+
+/// As Markdown. figures: the folder of the figures, relative to where the text will be.
+[[nodiscard]] std::string results_markdown(const Reproduction& reproduction,
+                                           const std::string& figures);
+
+/// "intel …, 2 cores, gcc 12.2.0; 50 seeds, 2 threads": what the numbers depend on.
+[[nodiscard]] std::string circumstances(const Reproduction& reproduction);
+
+/// A number as tables show it: up to four digits, "–" for what is not there or not finite.
+[[nodiscard]] std::string table_number(std::optional<double> value);
+
+}  // namespace qsmpc

@@ -1,0 +1,37 @@
+// The prediction that Fig. 4-1, 4-2, 5-1 and Table 5-1 show: a car on a turn of constant rate, no
+// control.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/parallel.hpp"
+#include "harness/prediction/prediction_report.hpp"
+
+namespace qsmpc {
+
+inline constexpr double kTurnRate = 0.3;  ///< rad/s, of Fig. 4-1
+
+/// The shipped scenario `dubins_prediction` with `overrides` (KEY=VALUE), turning at kTurnRate for
+/// `stages` periods; samples: of the simulation beside its certificates.
+[[nodiscard]] PredictionReport on_a_turn(int stages, const std::vector<std::string>& overrides = {},
+                                         std::int64_t samples = 0);
+
+/// `count` paths of the model under the policy of `report`, by stage: those of the scenario's seed
+/// whose numbers begin with `first`. Without noise, only the initial state differs.
+struct PathChoice {
+  std::uint64_t first = 0;
+  std::int64_t count = 0;
+  bool with_noise = true;
+};
+[[nodiscard]] std::vector<Points> samples_of(const PredictionReport& report,
+                                             const PathChoice& choice, const Executor& run);
+
+/// The measure with the same weight on every column of `points`.
+[[nodiscard]] DiscreteMeasure equally_weighted(const Points& points);
+
+}  // namespace qsmpc
