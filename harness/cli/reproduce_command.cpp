@@ -25,7 +25,6 @@ namespace {
 constexpr const char* kHelp =
     "Does the reference thesis's experiments again and lays each number beside the published one;\n"
     "writes results.json, results.md, results.html and the figures, after every experiment anew.";
-constexpr int kDefaultSeeds = 50;
 constexpr int kMostSeeds = 100'000;
 constexpr int kMostThreads = 1024;
 
@@ -34,7 +33,7 @@ struct ReproduceArguments {
   std::string out = "out/reproduce";
   bool quiet = false;
   bool json = false;
-  LaboratoryOptions options{.seeds = kDefaultSeeds};
+  LaboratoryOptions options{};
 };
 
 std::string example() {
@@ -99,7 +98,14 @@ void add_reproduce_command(CLI::App& app, int& exit_code) {
   command->add_option("name", arguments->names, "experiments, see below; default: all");
   command
       ->add_option("--seeds", options.seeds,
-                   fmt::format("drives of each kind; default: {}", kDefaultSeeds))
+                   fmt::format("drives of each kind; default: {}", options.seeds))
+      ->check(CLI::Range(1, kMostSeeds));
+  command
+      ->add_option(
+          "--arrival-seeds", options.arrival_seeds,
+          fmt::format("drives of each kind on its model in \"plants\", where only the share that "
+                      "arrives is counted; default: {}",
+                      options.arrival_seeds))
       ->check(CLI::Range(1, kMostSeeds));
   command
       ->add_option("--threads", options.threads,

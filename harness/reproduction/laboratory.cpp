@@ -72,18 +72,20 @@ void Laboratory::at_work(const std::string& what) const {
   if (options_.on_work) options_.on_work(what);
 }
 
-const Sample& Laboratory::sample(const Variant& variant) {
+const Sample& Laboratory::sample(const Variant& variant, int count) {
+  if (count == 0) count = options_.seeds;
   const std::string label = label_of(variant);
-  if (const auto known = samples_.find(label); known != samples_.end()) return known->second;
+  const std::string key = fmt::format("{}, {}", label, count);
+  if (const auto known = samples_.find(key); known != samples_.end()) return known->second;
   Sample sample{.scenario = scenario_of(variant)};
   if (options_.step_limit > 0) {
     sample.scenario.step_limit = std::min(sample.scenario.step_limit, options_.step_limit);
   }
-  sample.episodes.resize(static_cast<std::size_t>(options_.seeds));
+  sample.episodes.resize(static_cast<std::size_t>(count));
   at_work(label);
   std::mutex mutex;
   int done = 0;
-  run_(options_.seeds, [&](int n) {
+  run_(count, [&](int n) {
     if (stopped()) return;
     EpisodeOptions options;
     options.seed = sample.scenario.seed + static_cast<std::uint64_t>(n);
@@ -93,11 +95,11 @@ const Sample& Laboratory::sample(const Variant& variant) {
     if (n == 0) sample.first = std::move(trace);
     const std::lock_guard lock(mutex);
     if (options_.on_work) {
-      options_.on_work(fmt::format("{}: {} of {}", label, ++done, options_.seeds));
+      options_.on_work(fmt::format("{}: {} of {}", label, ++done, count));
     }
   });
   if (stopped()) throw Stopped{};
-  return samples_.emplace(label, std::move(sample)).first->second;
+  return samples_.emplace(key, std::move(sample)).first->second;
 }
 
 std::vector<double> over_episodes(const Sample& sample,

@@ -56,8 +56,9 @@ struct Sample {
 struct Stopped {};
 
 struct LaboratoryOptions {
-  int seeds = 50;                          ///< ≥ 1, episodes of a variant
-  int step_limit = 0;                      ///< most periods of a drive; 0: the scenario's
+  int seeds = 20;          ///< ≥ 1, episodes of a variant
+  int arrival_seeds = 50;  ///< ≥ 1, episodes where only the share that arrives is counted
+  int step_limit = 0;      ///< most periods of a drive; 0: the scenario's
   std::int64_t truth_samples = 4'000'000;  ///< paths from which a truth is estimated
   int threads = 0;                         ///< at most; 0: as many as the processor runs at once
   std::function<bool()> should_stop{};     ///< asked by several threads
@@ -70,15 +71,17 @@ class Laboratory {
   explicit Laboratory(LaboratoryOptions options);
 
   [[nodiscard]] int seeds() const { return options_.seeds; }
+  [[nodiscard]] int arrival_seeds() const { return options_.arrival_seeds; }
   [[nodiscard]] std::int64_t truth_samples() const { return options_.truth_samples; }
   [[nodiscard]] int threads() const { return threads_; }
   /// What independent work is divided among.
   [[nodiscard]] const Executor& run() const { return run_; }
 
-  /// The episodes of `variant`, driven unless they have been before. Each runs on one thread, and
+  /// `count` episodes of `variant`, `seeds` where it is 0, driven unless they have been
+  /// before. Each runs on one thread, and
   /// but for the timings depends on the scenario and its seed alone. The reference is valid as long
   /// as the laboratory. Throws Stopped, and InputError for what is wrong with the variant.
-  const Sample& sample(const Variant& variant);
+  const Sample& sample(const Variant& variant, int count = 0);
 
   /// Tells what is being done. Throws Stopped if the work is to be given up.
   void at_work(const std::string& what) const;

@@ -99,7 +99,7 @@ ExperimentResult cart_pole_upright(Laboratory& laboratory) {
 ExperimentResult scenarios_on_plants(Laboratory& laboratory) {
   ExperimentResult result;
   for (const Drive& drive : drives()) {
-    const Sample& analytic = laboratory.sample(drive.variant);
+    const Sample& analytic = laboratory.sample(drive.variant, laboratory.arrival_seeds());
     add_share(drive.name, "model", analytic, result);
     const double share = safe_arrivals(analytic) / static_cast<double>(analytic.episodes.size());
     result.claims.push_back(
