@@ -83,7 +83,7 @@ ExperimentResult bicycle_with_noise(Laboratory& laboratory) {
     result.rows.push_back({.quantity = "full noise: optimisation time of a problem, " + reading,
                            .unit = "s",
                            .published = published,
-                           .here = median_of(seconds_a_plan(sample))});
+                           .here = median_plan_seconds(sample)});
   };
   row("1.3 h for one drive (the caption)", kNoisyHours * kSecondsAnHour / periods);
   row("1.3 h for ten drives (the text)", 0.1 * kNoisyHours * kSecondsAnHour / periods);

@@ -1,5 +1,6 @@
 #include "harness/reproduction/drive_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -11,11 +12,29 @@
 namespace qsmpc {
 namespace {
 
+/// `samples` without the seeds of which one has no number: drives that ended before their first
+/// period have none.
+std::vector<std::vector<double>> complete(const std::vector<std::vector<double>>& samples) {
+  std::vector<std::vector<double>> kept(samples.size());
+  for (std::size_t n = 0; n < samples.front().size(); ++n) {
+    const bool finite = std::ranges::all_of(
+        samples, [n](const std::vector<double>& sample) { return std::isfinite(sample[n]); });
+    if (!finite) continue;
+    for (std::size_t s = 0; s < samples.size(); ++s) kept[s].push_back(samples[s][n]);
+  }
+  return kept;
+}
+
 std::vector<double> differences(const std::vector<double>& first,
                                 const std::vector<double>& second) {
   std::vector<double> result;
   for (std::size_t n = 0; n < first.size(); ++n) result.push_back(first[n] - second[n]);
   return result;
+}
+
+/// Of those episodes that have the number.
+double median_of_episodes(const std::vector<double>& numbers) {
+  return median_of(complete({numbers}).front());
 }
 
 }  // namespace
@@ -32,6 +51,10 @@ std::vector<double> seconds_a_plan(const Sample& sample) {
   return over_episodes(sample, [](const EpisodeDigest& episode) {
     return episode.optimisation_s / static_cast<double>(episode.inputs.cols());
   });
+}
+
+double median_plan_seconds(const Sample& sample) {
+  return median_of_episodes(seconds_a_plan(sample));
 }
 
 std::vector<double> largest_by_episode(const Sample& sample, EpisodeSeries series) {
@@ -62,16 +85,17 @@ void add_drive_rows(const Column& column, const Sample& sample, ExperimentResult
   row("target reached in", "s", column.reached_s, median_of(arrivals),
       fmt::format("median of the {} drives that reached it", arrivals.size()));
   row("optimisation time of a drive", "s", column.optimisation_s,
-      median_of(over_episodes(
+      median_of_episodes(over_episodes(
           sample, [](const EpisodeDigest& episode) { return episode.optimisation_s; })));
   row("largest P(unsafe) of a next step, the published way", "", column.unsafe,
-      median_of(largest_by_episode(sample, &EpisodeDigest::published)),
+      median_of_episodes(largest_by_episode(sample, &EpisodeDigest::published)),
       "Algorithms 3 and 4 as printed: no bound");
   row("largest P(unsafe) of a next step, C1", "", std::nullopt,
-      median_of(largest_by_episode(sample, &EpisodeDigest::particles)),
+      median_of_episodes(largest_by_episode(sample, &EpisodeDigest::particles)),
       "the published way made sound");
   row("largest P(unsafe) of a next step, certified", "", std::nullopt,
-      median_of(largest_by_episode(sample, &EpisodeDigest::next_step)), "a bound, the least known");
+      median_of_episodes(largest_by_episode(sample, &EpisodeDigest::next_step)),
+      "a bound, the least known");
   row("drives that arrive and are never unsafe", "", std::nullopt,
       safe_arrivals(sample) / static_cast<double>(sample.episodes.size()),
       share_text(safe_arrivals(sample), sample.episodes.size()));
@@ -79,15 +103,17 @@ void add_drive_rows(const Column& column, const Sample& sample, ExperimentResult
 
 Claim less_on_average(std::string statement, const std::vector<double>& first,
                       const std::vector<double>& second) {
-  const std::vector<double> gain = differences(first, second);
+  const std::vector<std::vector<double>> pairs = complete({first, second});
+  const std::vector<double> gain = differences(pairs[0], pairs[1]);
   return {.statement = std::move(statement),
           .holds = mean_of(gain) < 0.0,
           .evidence = fmt::format("{:.3g} against {:.3g}; difference {:.2g} ± {:.1g} over {} seeds",
-                                  mean_of(first), mean_of(second), mean_of(gain),
+                                  mean_of(pairs[0]), mean_of(pairs[1]), mean_of(gain),
                                   standard_error_of(gain), gain.size())};
 }
 
-Claim falls_within_noise(std::string statement, const std::vector<std::vector<double>>& samples) {
+Claim falls_within_noise(std::string statement, const std::vector<std::vector<double>>& all) {
+  const std::vector<std::vector<double>> samples = complete(all);
   Claim claim{.statement = std::move(statement), .holds = true};
   std::vector<std::string> means;
   for (std::size_t n = 0; n < samples.size(); ++n) {

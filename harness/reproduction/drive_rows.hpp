@@ -23,8 +23,11 @@ struct Column {
 /// The times of the drives that reached the target, s.
 [[nodiscard]] std::vector<double> arrival_times(const Sample& sample);
 
-/// Wall clock of one plan, s: of each episode the mean over its periods.
+/// Wall clock of one plan, s: of each episode the mean over its periods; not a number where it
+/// ended before the first, as in what follows.
 [[nodiscard]] std::vector<double> seconds_a_plan(const Sample& sample);
+/// The median of these.
+[[nodiscard]] double median_plan_seconds(const Sample& sample);
 
 /// The greatest of a series of each episode, and its mean.
 using EpisodeSeries = std::vector<double> EpisodeDigest::*;
@@ -38,6 +41,8 @@ void add_drive_rows(const Column& column, const Sample& sample, ExperimentResult
 /// "k of n (p %)".
 [[nodiscard]] std::string share_text(int count, std::size_t total);
 
+/// Claims leave out the seeds of which one side has no number.
+
 /// The claim that what `first` numbers is less than `second`, episode by episode of the same seed:
 /// their mean difference is below 0. Evidence: both means, the difference and its standard error.
 [[nodiscard]] Claim less_on_average(std::string statement, const std::vector<double>& first,
@@ -48,9 +53,9 @@ void add_drive_rows(const Column& column, const Sample& sample, ExperimentResult
 void add_points_claims(const std::string& solver, const std::vector<const Sample*>& samples,
                        ExperimentResult& result);
 
-/// The claim that the means of `samples` (each as many numbers, of the same seeds) fall from each
+/// The claim that the means of `all` (each as many numbers, of the same seeds) fall from each
 /// to the next, but for two standard errors of their difference.
 [[nodiscard]] Claim falls_within_noise(std::string statement,
-                                       const std::vector<std::vector<double>>& samples);
+                                       const std::vector<std::vector<double>>& all);
 
 }  // namespace qsmpc

@@ -47,7 +47,7 @@ void add_plan_time_rows(const CorridorColumn& entry, const Sample& sample,
                         ExperimentResult& result) {
   const Column& column = entry.column;
   const double periods = *column.reached_s / sample.scenario.time_step;
-  const double here = median_of(seconds_a_plan(sample));
+  const double here = median_plan_seconds(sample);
   result.rows.push_back({.quantity = column.name + ": optimisation time of a problem, as printed",
                          .unit = "s",
                          .published = entry.printed_plan_s,
@@ -83,8 +83,9 @@ double median_time(const Sample& sample, double StepTiming::*time) {
 
 /// The mean size of the inputs.
 std::vector<double> effort_by_episode(const Sample& sample) {
-  return over_episodes(
-      sample, [](const EpisodeDigest& episode) { return episode.inputs.cwiseAbs().mean(); });
+  return over_episodes(sample, [](const EpisodeDigest& episode) {
+    return episode.inputs.cwiseAbs().sum() / static_cast<double>(episode.inputs.size());
+  });
 }
 
 Claim keeps_inside(const std::string& policy, const Sample& sample) {

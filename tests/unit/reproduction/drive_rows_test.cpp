@@ -79,6 +79,29 @@ TEST(LessOnAverage, holds_for_a_smaller_mean_only) {
   EXPECT_FALSE(less_on_average("", {std::nan(""), 2.0}, {2.0, 2.0}).holds);
 }
 
+TEST(LessOnAverage, leaves_out_seeds_without_a_number) {
+  const double none = std::nan("");
+  const Claim claim = less_on_average("", {1.0, none, 3.0}, {4.0, 1.0, 4.0});
+  EXPECT_TRUE(claim.holds);
+  EXPECT_THAT(claim.evidence, HasSubstr("2 against 4; difference -2 ± 1 over 2 seeds"));
+}
+
+TEST(FallsWithinNoise, leaves_out_seeds_without_a_number) {
+  const double none = std::nan("");
+  const Claim claim = falls_within_noise("", {{5.0, 6.0, 1.0}, {3.0, 2.0, none}});
+  EXPECT_TRUE(claim.holds);
+  EXPECT_THAT(claim.evidence, HasSubstr("means over 2 seeds: 5.5"));
+}
+
+TEST(DriveRows, medians_leave_out_drives_that_end_before_their_first_period) {
+  Sample sample = example();
+  sample.episodes.push_back(drive(0.0, "left_safe_set", true, {}));
+  ExperimentResult result;
+  add_drive_rows({.name = "a", .variant = {}}, sample, result);
+  EXPECT_DOUBLE_EQ(row_called(result, "certified").here, 0.35);
+  EXPECT_DOUBLE_EQ(median_plan_seconds(sample), 2.5);
+}
+
 TEST(LessOnAverage, shows_the_numbers) {
   EXPECT_THAT(less_on_average("", {1.0, 3.0}, {4.0, 4.0}).evidence,
               HasSubstr("2 against 4; difference -2 ± 1 over 2 seeds"));
