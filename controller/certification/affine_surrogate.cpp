@@ -71,8 +71,9 @@ StageError where_limited(StageError error) {
 }
 
 /// The recursion from stage to stage: the law, and the error
-///     x − z = Σ_j Φ_{k,j+1} (r_j(x_j) + e_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
-/// with Φ the products of the affine maps' linear parts and e_j the model error, if there is one.
+///     x − z = Σ_j Φ_{k,j+1} (r_j(x_j) + e_j − m_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
+/// with Φ the products of the affine maps' linear parts and e_j the model error, if there is one,
+/// whose known offset m_j moves z, too.
 class SurrogateRecursion {
  public:
   SurrogateRecursion(const PredictedMotion& motion, double core)
@@ -89,10 +90,7 @@ class SurrogateRecursion {
       residual_.emplace(*unicycle, law_.mean.size());
       fits_everywhere_ = true;
     }
-    const Eigen::Index count =
-        motion.policy.horizon() + static_cast<Eigen::Index>(motion.belief_error != nullptr);
-    if (motion.model_error != nullptr) added_ = cut_error(*motion.model_error, count, core);
-    if (motion.belief_error != nullptr) start_from(cut_error(*motion.belief_error, count, core));
+    if (motion.belief_error != nullptr) start_from(*motion.belief_error);
   }
 
   /// The surrogate of the present stage, with `region` as far as the next step tells.
@@ -131,7 +129,12 @@ class SurrogateRecursion {
     }
     if (residual_) residual_->add_stage(law_, fit.transition);
     StageError own{.mean_square = fit.residual, .higher = fit.higher, .largest = fit.largest};
-    if (added_) own = added(own, added_->bound);
+    const ModelError* error = motion_.error_at(stage);
+    CutError cut;
+    if (error != nullptr) {
+      cut = cut_error(*error, error_count(), core_.reach);
+      own = added(own, cut.bound);
+    }
     carry(fit.transition, added(own, difference));
     // Where feedback is clamped and large, the step's own slopes may grow less than the products'.
     if (uses_core) {
@@ -143,18 +146,31 @@ class SurrogateRecursion {
         fit.transition * law_.covariance * fit.transition.transpose() + motion_.noise_covariance;
     law_.covariance = 0.5 * (law_.covariance + law_.covariance.transpose()).eval();
     law_.mean = fit.next_mean;
-    if (added_) outside_ += added_->outside;
+    if (error != nullptr) move_mean(*error);
+    outside_ += cut.outside;
     return law_.mean.allFinite() && law_.covariance.allFinite() && error_.mean_square.allFinite() &&
            error_.largest.allFinite();
   }
 
  private:
-  /// The state has `error` beside the surrogate at stage 0.
-  void start_from(const CutError& error) {
+  /// How many model errors there are along the horizon, that of the belief with them.
+  [[nodiscard]] Eigen::Index error_count() const {
+    return motion_.policy.horizon() + static_cast<Eigen::Index>(motion_.belief_error != nullptr);
+  }
+
+  /// The surrogate takes the known offset of `error` with the state.
+  void move_mean(const ModelError& error) {
+    if (error.offset.size() > 0) law_.mean += error.offset;
+  }
+
+  /// The state has `error` beside the belief at stage 0, and its offset less beside the surrogate.
+  void start_from(const ModelError& error) {
     const Eigen::Index dim = law_.mean.size();
-    error_ = error.bound;
-    outside_ = error.outside;
-    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim), .bound = error.bound});
+    const CutError cut = cut_error(error, error_count(), core_.reach);
+    error_ = cut.bound;
+    outside_ = cut.outside;
+    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim), .bound = cut.bound});
+    move_mean(error);
   }
 
   /// Bounds of r(x) − r(z) where x − z has the bounds `error`; over the region `largest` holds of
@@ -197,8 +213,7 @@ class SurrogateRecursion {
   Gaussian law_;
   StageError error_;
   bool fits_everywhere_ = false;
-  std::optional<CutError> added_;  ///< the model error of a period
-  double outside_ = 0.0;           ///< Σ P(z_j not in its core) + P(an error beyond its cut)
+  double outside_ = 0.0;  ///< Σ P(z_j not in its core) + P(an error beyond its cut)
   double leaving_ = 0.0;
   std::optional<UnicycleResidual> residual_;
   std::vector<Past> past_;

@@ -1,8 +1,8 @@
 // A Gaussian process beside the model's state: z_{k+1} = A_k z_k + b_k + w_k with z_0 = x_0 and the
-// same noise. Its laws are exactly Gaussian; what separates it from the state is bounded in mean
-// square, coordinate by coordinate. Bounds C3 and C4 are made from it, and the regions on which
-// models without a global Lipschitz constant have one. Where the motion has a model error, x is the
-// plant's state. Derivation: docs/theory/surrogate.md.
+// same noise; known offsets of a plant are in b_k. Its laws are exactly Gaussian; what separates it
+// from the state is bounded in mean square, coordinate by coordinate. Bounds C3 and C4 are made
+// from it, and the regions on which models without a global Lipschitz constant have one. Where the
+// motion has a model error, x is the plant's state. Derivation: docs/theory/surrogate.md.
 #pragma once
 
 #include <vector>

@@ -76,7 +76,6 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
   const std::vector<SurrogateStage> surrogates =
       global ? std::vector<SurrogateStage>{} : affine_surrogates(motion);
   std::vector<StageBudget> budgets(horizon + 1);
-  const double model_w2 = radius_of(motion.model_error);
   budgets[0].belief = motion.belief_w2;
   budgets[0].model = radius_of(motion.belief_error);
   budgets[0].total = motion.belief_w2 + budgets[0].model;
@@ -99,6 +98,7 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
     StageBudget& next = budgets[k + 1];
     budgets[k].lipschitz = lipschitz.constant;
     next.leaving = lipschitz.leaving;
+    const double model_w2 = radius_of(motion.error_at(k));
     const double apart = lipschitz.projection + model_w2;
     next.before_noise = stepped(budgets[k].total) + apart;
     next.belief = stepped(budgets[k].belief);

@@ -32,10 +32,10 @@ struct StageBudget {
 /// loop, global or, where there is none, on the region that `affine_surrogates` gives,
 ///     ζ_0 = W_belief,  ζ_{k+1} = √((L_k ζ_k + W_projection + W_model)² + W_noise²) +
 ///     W_compression,
-/// with W_model the model error's radius, which stands in ζ_0, too, where the belief has one. The
-/// noise is independent of the state and of the model error, and its quantiser centroidal, so that
-/// the cross term vanishes; the compression is a triangle inequality. W_projection is what
-/// particles outside of their region cost, zero as a rule.
+/// with W_model the model error's radius in the stage's period; that of the belief's error, where
+/// it has one, stands in ζ_0, too. The noise is independent of the state and of the model error,
+/// and its quantiser centroidal, so that the cross term vanishes; the compression is a triangle
+/// inequality. W_projection is what particles outside of their region cost, zero as a rule.
 [[nodiscard]] std::vector<StageBudget> error_budget(const PredictedMotion& motion);
 
 }  // namespace qsmpc

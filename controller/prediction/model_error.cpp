@@ -1,8 +1,10 @@
 #include "controller/prediction/model_error.hpp"
 
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 namespace qsmpc {
 namespace {
@@ -21,7 +23,15 @@ Eigen::VectorXd sample_norms(const Eigen::Ref<const Eigen::MatrixXd>& values, in
 
 }  // namespace
 
-double ModelError::radius() const { return stated_radius.value_or(root_mean_square.norm()); }
+const ModelError& ModelError::of_period(Eigen::Index period) const {
+  return period < std::ssize(first) ? first[static_cast<std::size_t>(period)] : *this;
+}
+
+double ModelError::radius() const {
+  if (stated_radius) return *stated_radius;
+  if (offset.size() == 0) return root_mean_square.norm();
+  return (offset.cwiseAbs() + root_mean_square).norm();
+}
 
 ModelError model_error_of_size(const Eigen::VectorXd& root_mean_square) {
   return {
@@ -50,6 +60,7 @@ ModelError widened(ModelError error, double factor) {
   error.root_mean_square *= factor;
   for (Eigen::VectorXd& norms : error.higher) norms *= factor;
   if (error.stated_radius) *error.stated_radius *= factor;
+  for (ModelError& own : error.first) own = widened(std::move(own), factor);
   return error;
 }
 

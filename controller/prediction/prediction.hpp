@@ -46,11 +46,20 @@ struct PredictedMotion {
   double belief_w2 = 0.0;                   ///< W2 between the belief and prediction.stages[0]
   const Policy& policy;
   const Prediction& prediction;
-  /// What the plant adds to the model in every period; null where the plant is the model.
+  /// What the plant adds to the model, period by period of a drive; null where the plant is the
+  /// model.
   const ModelError* model_error = nullptr;
   /// What the state at stage 0 has beside a variable with the law `belief`, where that is itself
-  /// the model's prediction for a plant; null where the belief is the state's law.
+  /// the model's prediction for a plant; null where the belief is the state's law. It is said of
+  /// one period: what it may have in `first` does not count.
   const ModelError* belief_error = nullptr;
+  /// The period of a drive that begins at stage 0: that of stage k is `first_period` + k.
+  Eigen::Index first_period = 0;
+
+  /// What the plant adds in the period that begins at `stage`; null where it is the model.
+  [[nodiscard]] const ModelError* error_at(Eigen::Index stage) const {
+    return model_error == nullptr ? nullptr : &model_error->of_period(first_period + stage);
+  }
 };
 
 }  // namespace qsmpc

@@ -8,10 +8,11 @@ std::unique_ptr<const Dynamics> model_of(const Scenario& scenario) {
   return make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
 }
 
-PredictedMotion of_plant(PredictedMotion motion, const Scenario& scenario, BeliefOrigin belief) {
+PredictedMotion of_plant(PredictedMotion motion, const Scenario& scenario, Eigen::Index period) {
   if (!scenario.model_error) return motion;
   motion.model_error = &*scenario.model_error;
-  if (belief == BeliefOrigin::kPredicted) motion.belief_error = &*scenario.model_error;
+  motion.first_period = period;
+  if (period > 0) motion.belief_error = &scenario.model_error->of_period(period - 1);
   return motion;
 }
 

@@ -12,16 +12,12 @@ namespace qsmpc {
 /// The planner's model of `scenario`.
 [[nodiscard]] std::unique_ptr<const Dynamics> model_of(const Scenario& scenario);
 
-/// Whose law the belief of a motion is.
-enum class BeliefOrigin {
-  kGiven,      ///< that of the state itself
-  kPredicted,  ///< the model's prediction from a known state: a plant's state differs from it
-};
-
-/// `motion` for the plant of `scenario`: with its model error, if it states one, which it refers to
-/// and must outlive it.
+/// `motion`, of a plan made in period `period` ≥ 0 of a drive, for the plant of `scenario`: with
+/// its model error, if it states one, which it refers to and must outlive it. In period 0 the
+/// belief is the law of the state itself; later it is the model's prediction from a known state,
+/// from which a plant's state differs by the error of the period before.
 [[nodiscard]] PredictedMotion of_plant(PredictedMotion motion, const Scenario& scenario,
-                                       BeliefOrigin belief);
+                                       Eigen::Index period);
 
 /// The planner's settings of `scenario`.
 [[nodiscard]] PlannerSettings planner_settings(const Scenario& scenario);

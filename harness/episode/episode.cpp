@@ -25,6 +25,8 @@ using Clock = std::chrono::steady_clock;
 
 // The second plan starts from the first, as the plans of an episode do.
 constexpr int kRehearsals = 2;
+// A period of which the belief is predicted, as of all but the first.
+constexpr int kRehearsedPeriod = 1;
 constexpr double kMilliseconds = 1000.0;  // in a second
 
 double milliseconds_since(Clock::time_point start) {
@@ -122,8 +124,7 @@ class Episode {
     for (const Eigen::MatrixXd& covariance : {later.covariance, belief_.covariance}) {
       const Gaussian belief{.mean = belief_.mean, .covariance = covariance};
       for (int n = 0; n < kRehearsals; ++n) {
-        const StepRecord record =
-            certified(belief, BeliefOrigin::kPredicted, planner_.plan(belief));
+        const StepRecord record = certified(belief, kRehearsedPeriod, planner_.plan(belief));
         // What takes longer than a period anyway is not to be waited for twice.
         if (record.timing.total > kMilliseconds * scenario_.time_step) break;
       }
@@ -131,12 +132,11 @@ class Episode {
     planner_.reset();
   }
 
-  /// The certificates of `plan`, made for `belief`, and how long both took.
-  [[nodiscard]] StepRecord certified(const Gaussian& belief, BeliefOrigin origin,
-                                     const Plan& plan) const {
+  /// The certificates of `plan`, made for `belief` in `period`, and how long both took.
+  [[nodiscard]] StepRecord certified(const Gaussian& belief, int period, const Plan& plan) const {
     const auto start = Clock::now();
     StepRecord record;
-    const PredictedMotion motion = of_plant(motion_of(planner_, belief, plan), scenario_, origin);
+    const PredictedMotion motion = of_plant(motion_of(planner_, belief, plan), scenario_, period);
     record.budgets = error_budget(motion);
     const PlannerSettings& settings = planner_.settings();
     record.certificates =
@@ -161,8 +161,7 @@ class Episode {
   /// Plans for the belief, certifies the plan, and evaluates its first stage at the observed state.
   [[nodiscard]] StepRecord decide(int k) {
     const Plan& plan = planner_.plan(belief_);
-    StepRecord record =
-        certified(belief_, k == 0 ? BeliefOrigin::kGiven : BeliefOrigin::kPredicted, plan);
+    StepRecord record = certified(belief_, k, plan);
     record.time = k * scenario_.time_step;
     record.state = state_;
     record.observation = observation(k);

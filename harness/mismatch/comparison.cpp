@@ -31,6 +31,30 @@ std::vector<std::string> without_repeats(const std::vector<std::string>& names) 
   return kept;
 }
 
+/// The residuals of all periods.
+ResidualSample residuals_of(const std::vector<EpisodeResult>& episodes) {
+  ResidualSample sample;
+  for (const EpisodeResult& episode : episodes) sample.units.push_back(episode.residuals);
+  return sample;
+}
+
+/// The residuals of the periods that at least half of the episodes have, as far as they are whole
+/// stretches of a horizon after the first `first` periods: each stretch a sample of its own.
+ResidualSample stretches(const std::vector<EpisodeResult>& episodes, Eigen::Index first,
+                         Eigen::Index horizon) {
+  std::vector<Eigen::Index> lengths;
+  for (const EpisodeResult& episode : episodes) lengths.push_back(episode.residuals.cols());
+  std::sort(lengths.begin(), lengths.end());
+  const Eigen::Index later = std::max<Eigen::Index>(lengths[lengths.size() / 2] - first, 0);
+  const Eigen::Index common = first + later / horizon * horizon;
+  ResidualSample sample{.by_period = true, .stretch = horizon};
+  for (const EpisodeResult& episode : episodes) {
+    sample.units.emplace_back(
+        episode.residuals.leftCols(std::min(common, episode.residuals.cols())));
+  }
+  return sample;
+}
+
 /// A plant that is to be compared.
 struct Candidate {
   std::string name;
@@ -111,7 +135,7 @@ class Comparing {
     const PredictedMotion motion = motion_of(planner, belief_, plan);
     result_.certificates = certificates_of(motion);
     if (scenario_.model_error) {
-      result_.with_error = certificates_of(of_plant(motion, scenario_, BeliefOrigin::kGiven));
+      result_.with_error = certificates_of(of_plant(motion, scenario_, 0));
     }
     result_.w2_paths = w2_paths(result_.particles, options_.paths);
     source_.emplace(result_.policy, belief_, scenario_.disturbance.covariance, path_numbers());
@@ -160,8 +184,6 @@ class Comparing {
   void measure_error() {
     for (const PlantComparison& plant : result_.plants) {
       if (plant.name != options_.error_plant) continue;
-      ResidualSample loop;
-      for (const EpisodeResult& episode : plant.episodes) loop.units.push_back(episode.residuals);
       ResidualSample planned{.by_period = true};
       for (Eigen::Index i = 0; i < options_.paths; ++i) {
         Eigen::MatrixXd path(model_->state_dim(), std::ssize(plant.paths.residuals));
@@ -170,7 +192,13 @@ class Comparing {
         }
         planned.units.push_back(std::move(path));
       }
-      result_.measured_error = measured_model_error({loop, planned}, scenario_.seed);
+      // The plan's last period counts among the later ones.
+      const Eigen::Index horizon = scenario_.controller.horizon;
+      const Eigen::Index first = horizon - 1;
+      result_.measured_error =
+          measured_model_error({residuals_of(plant.episodes),
+                                stretches(plant.episodes, first, horizon), std::move(planned)},
+                               scenario_.seed, first);
     }
   }
 

@@ -103,13 +103,22 @@ Json plant_json(const Comparison& comparison, const PlantComparison& plant) {
 
 Json error_json(const Comparison& comparison) {
   const ModelError& error = *comparison.measured_error;
+  Json first = Json::array();
+  for (const ModelError& own : error.first) {
+    first.push_back({{"offset", vector_json(own.offset)},
+                     {"rms", vector_json(own.root_mean_square)},
+                     {"norm4", vector_json(own.higher[0])},
+                     {"norm8", vector_json(own.higher[1])},
+                     {"radius", own.radius()}});
+  }
   return {{"plant", comparison.error_plant},
           {"rms", vector_json(error.root_mean_square)},
           {"norm4", vector_json(error.higher[0])},
           {"norm8", vector_json(error.higher[1])},
           {"radius", error.radius()},
           {"mean", vector_json(error.mean)},
-          {"covariance", rows_json(error.covariance)}};
+          {"covariance", rows_json(error.covariance)},
+          {"first", std::move(first)}};
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "harness/plant/disturbance.hpp"
 
@@ -11,6 +13,7 @@ namespace qsmpc {
 namespace {
 
 constexpr std::array<int, 3> kOrders = {2, kHigherOrders[0], kHigherOrders[1]};
+constexpr Eigen::Index kAll = std::numeric_limits<Eigen::Index>::max();  // columns
 // Random numbers of replicates are those of paths of such high numbers that there are none.
 constexpr std::uint64_t kFirstReplicate = std::uint64_t{1} << 63;
 
@@ -43,7 +46,7 @@ PowerSums power_sums(const ResidualSample& sample) {
   PowerSums powers{.dim = sample.units.front().rows(), .scale = largest_by_row(sample.units)};
   if (sample.by_period) {
     for (const Eigen::MatrixXd& unit : sample.units) {
-      powers.groups = std::max(powers.groups, unit.cols());
+      powers.groups = std::max(powers.groups, (unit.cols() + sample.stretch - 1) / sample.stretch);
     }
   }
   const auto units = std::ssize(sample.units);
@@ -53,7 +56,7 @@ PowerSums power_sums(const ResidualSample& sample) {
     const Eigen::MatrixXd& unit = sample.units[static_cast<std::size_t>(u)];
     for (Eigen::Index k = 0; k < unit.cols(); ++k) {
       if (!unit.col(k).allFinite()) continue;
-      const Eigen::Index group = sample.by_period ? k : 0;
+      const Eigen::Index group = sample.by_period ? k / sample.stretch : 0;
       powers.counts(u, group) += 1.0;
       for (Eigen::Index i = 0; i < powers.dim; ++i) {
         if (powers.scale[i] == 0.0) continue;
@@ -138,14 +141,10 @@ Eigen::MatrixXd finite_columns(const ResidualSample& sample) {
   return all;
 }
 
-}  // namespace
-
-ModelError measured_model_error(const std::vector<ResidualSample>& samples, std::uint64_t seed) {
-  if (samples.empty() || samples.front().units.empty()) {
-    throw std::invalid_argument("model error: no samples");
-  }
-  ModelError error = model_error_of(finite_columns(samples.front()));
-  Eigen::MatrixXd limits = Eigen::MatrixXd::Zero(error.mean.size(), std::ssize(kOrders));
+/// Sets the norms of `error` to the largest upper limit of any sample.
+void set_norms(ModelError& error, const std::vector<ResidualSample>& samples, std::uint64_t seed) {
+  Eigen::MatrixXd limits =
+      Eigen::MatrixXd::Zero(samples.front().units.front().rows(), std::ssize(kOrders));
   for (const ResidualSample& sample : samples) {
     limits = limits.cwiseMax(norm_limits(sample, seed));
   }
@@ -156,6 +155,72 @@ ModelError measured_model_error(const std::vector<ResidualSample>& samples, std:
   error.root_mean_square = limits.col(0);
   for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
     error.higher[k] = limits.col(static_cast<Eigen::Index>(k) + 1);
+  }
+}
+
+/// `count` columns of every unit from column `begin` on, as far as there are any; samples without
+/// any that is finite are left out.
+std::vector<ResidualSample> columns_of(const std::vector<ResidualSample>& samples,
+                                       Eigen::Index begin, Eigen::Index count) {
+  std::vector<ResidualSample> parts;
+  for (const ResidualSample& sample : samples) {
+    ResidualSample part{.by_period = sample.by_period, .stretch = sample.stretch};
+    bool finite = false;
+    for (const Eigen::MatrixXd& unit : sample.units) {
+      const Eigen::Index from = std::min(begin, unit.cols());
+      part.units.emplace_back(unit.middleCols(from, std::min(count, unit.cols() - from)));
+      for (const auto& column : part.units.back().colwise()) finite |= column.allFinite();
+    }
+    if (finite) parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+/// What `samples`, all of one period, say of it.
+ModelError period_error(std::vector<ResidualSample> samples, std::uint64_t seed) {
+  ModelError error;
+  Eigen::Index fewest = std::numeric_limits<Eigen::Index>::max();
+  Eigen::VectorXd least;
+  Eigen::VectorXd most;
+  for (const ResidualSample& sample : samples) {
+    const Eigen::MatrixXd columns = finite_columns(sample);
+    const Eigen::VectorXd mean = columns.rowwise().mean();
+    least = least.size() == 0 ? mean : Eigen::VectorXd(least.cwiseMin(mean));
+    most = most.size() == 0 ? mean : Eigen::VectorXd(most.cwiseMax(mean));
+    fewest = std::min(fewest, columns.cols());
+  }
+  const bool centred = fewest > 1;
+  if (centred) {
+    error.offset = 0.5 * (least + most);
+    for (ResidualSample& sample : samples) {
+      for (Eigen::MatrixXd& unit : sample.units) unit.colwise() -= error.offset;
+    }
+  }
+  set_norms(error, samples, seed);
+  if (!centred) return error;
+  const auto count = static_cast<double>(fewest);
+  return widened(std::move(error), std::sqrt((count + 1.0) / (count - 1.0)));
+}
+
+}  // namespace
+
+ModelError measured_model_error(const std::vector<ResidualSample>& samples, std::uint64_t seed,
+                                Eigen::Index first) {
+  if (samples.empty() || samples.front().units.empty()) {
+    throw std::invalid_argument("model error: no samples");
+  }
+  for (const ResidualSample& sample : samples) {
+    if (finite_columns(sample).cols() == 0) {
+      throw std::invalid_argument("model error: no samples");
+    }
+  }
+  ModelError error = model_error_of(finite_columns(samples.front()));
+  const std::vector<ResidualSample> later = columns_of(samples, first, kAll);
+  set_norms(error, later.empty() ? samples : later, seed);
+  for (Eigen::Index period = 0; period < first; ++period) {
+    const std::vector<ResidualSample> own = columns_of(samples, period, 1);
+    if (own.empty()) break;  // no drive was that long
+    error.first.push_back(period_error(own, seed));
   }
   return error;
 }

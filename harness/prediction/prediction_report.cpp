@@ -26,8 +26,7 @@ PredictionReport predict_scenario(const Scenario& scenario, const PredictionOpti
   report.policy = plan.policy;
   report.cost = plan.cost;
   report.prediction = plan.prediction;
-  const PredictedMotion motion =
-      of_plant(motion_of(planner, belief, plan), scenario, BeliefOrigin::kGiven);
+  const PredictedMotion motion = of_plant(motion_of(planner, belief, plan), scenario, 0);
   report.budgets = error_budget(motion);
   // All four bounds are reported, so each is to be as good as it gets.
   report.certificates =

@@ -1,9 +1,12 @@
 #include "harness/scenario/model_error_reader.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -21,6 +24,7 @@ namespace fs = std::filesystem;
 constexpr const char* kKey = "model_error";
 constexpr std::size_t kLongestPath = 1024;  // bytes
 constexpr std::size_t kLongestName = 100;   // bytes
+constexpr std::size_t kMostPeriods = 1000;  // with errors of their own
 // Of a norm that is to be at least another one: what printing with ten digits may take away.
 constexpr double kRounding = 1e-9;
 constexpr std::array<const char*, kHigherOrders.size()> kNormKeys = {"norm4", "norm8"};
@@ -56,25 +60,22 @@ void read_radius(Section& section, ModelError& error) {
     (void)section.number("radius", 0.0);  // a known key
     return;
   }
-  const double least = error.root_mean_square.norm();
+  const double least = error.radius();  // as long as none is stated
   const double radius = section.number("radius", least, {.least = 0.0});
   if (radius >= (1.0 - kRounding) * least) {
     error.stated_radius = radius;
   } else {
-    section.note("radius", fmt::format("at least {}, the norm of rms", least));
+    section.note("radius", fmt::format("at least {}, the norm of |offset| + rms", least));
   }
 }
 
-ModelError read_mapping(Section& section, const ModelErrorContext& context) {
-  const std::string system = section.text("system", context.system, kLongestName);
-  if (system != context.system) {
-    section.note("system", context.system + ", the scenario's system");
-  }
-  section.require(
-      "rms", fmt::format("{} numbers, each the root mean square of a state's error", context.dim));
-  const auto rms = read_norms(section, "rms", Eigen::VectorXd::Zero(context.dim), "numbers >= 0");
-  ModelError error = model_error_of_size(rms.value_or(Eigen::VectorXd::Zero(context.dim)));
-  read_moments(section, context.dim, error);
+/// What bounds the error of one period, or of all.
+ModelError read_bounds(Section& section, Eigen::Index dim) {
+  section.require("rms",
+                  fmt::format("{} numbers, each the root mean square of a state's error", dim));
+  const auto rms = read_norms(section, "rms", Eigen::VectorXd::Zero(dim), "numbers >= 0");
+  ModelError error = model_error_of_size(rms.value_or(Eigen::VectorXd::Zero(dim)));
+  error.offset = section.vector("offset", dim).value_or(Eigen::VectorXd());
   Eigen::VectorXd least = error.root_mean_square;
   for (std::size_t k = 0; k < kNormKeys.size(); ++k) {
     const auto norms = read_norms(section, kNormKeys[k], least,
@@ -84,6 +85,25 @@ ModelError read_mapping(Section& section, const ModelErrorContext& context) {
     least = *norms;
   }
   read_radius(section, error);
+  return error;
+}
+
+ModelError read_mapping(Section& section, const ModelErrorContext& context) {
+  const std::string system = section.text("system", context.system, kLongestName);
+  if (system != context.system) {
+    section.note("system", context.system + ", the scenario's system");
+  }
+  ModelError error = read_bounds(section, context.dim);
+  read_moments(section, context.dim, error);
+  const std::size_t periods = section.list_size("first");
+  if (periods > kMostPeriods) {
+    section.note("first", fmt::format("at most {} periods", kMostPeriods));
+  }
+  for (std::size_t k = 0; k < std::min(periods, kMostPeriods); ++k) {
+    Section item = section.item("first", k);
+    error.first.push_back(read_bounds(item, context.dim));
+    item.refuse_unread();
+  }
   section.refuse_unread();
   return error;
 }
@@ -108,6 +128,18 @@ ModelError read_file(const std::string& path, Problems& problems,
     problems.add(error.where());
     return model_error_of_size(Eigen::VectorXd::Zero(context.dim));
   }
+}
+
+/// Keys and values of what bounds the error of one period, or of all.
+std::vector<std::pair<std::string, std::string>> bounds_text(const ModelError& error) {
+  std::vector<std::pair<std::string, std::string>> lines;
+  if (error.offset.size() > 0) lines.emplace_back("offset", yaml_list(error.offset));
+  lines.emplace_back("rms", yaml_list(error.root_mean_square));
+  for (std::size_t k = 0; k < kNormKeys.size(); ++k) {
+    if (error.higher[k].allFinite()) lines.emplace_back(kNormKeys[k], yaml_list(error.higher[k]));
+  }
+  if (error.stated_radius) lines.emplace_back("radius", yaml_number(*error.stated_radius));
+  return lines;
 }
 
 }  // namespace
@@ -138,11 +170,15 @@ std::string model_error_text(const ModelError& error, const std::string& indent)
   };
   if (error.mean.size() > 0) line("mean", yaml_list(error.mean));
   if (error.covariance.size() > 0) line("covariance", yaml_square(error.covariance));
-  line("rms", yaml_list(error.root_mean_square));
-  for (std::size_t k = 0; k < kNormKeys.size(); ++k) {
-    if (error.higher[k].allFinite()) line(kNormKeys[k], yaml_list(error.higher[k]));
+  for (const auto& [key, value] : bounds_text(error)) line(key, value);
+  if (!error.first.empty()) out += indent + "first:\n";
+  for (const ModelError& own : error.first) {
+    std::string start = "  - ";
+    for (const auto& [key, value] : bounds_text(own)) {
+      out += fmt::format("{}{}{}: {}\n", indent, start, key, value);
+      start = "    ";
+    }
   }
-  if (error.stated_radius) line("radius", yaml_number(*error.stated_radius));
   return out;
 }
 

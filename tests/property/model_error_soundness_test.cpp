@@ -51,7 +51,8 @@ double uniform(Generator& generator, double lower, double upper) {
   return std::uniform_real_distribution<double>(lower, upper)(generator);
 }
 
-/// A plant's error and what is known of it. The norms hold at every moment, whatever happened.
+/// A plant's error and what is known of it. The norms hold at every moment, or those of a period at
+/// its moments, whatever happened.
 struct Plant {
   std::string kind;
   ModelError norms;
@@ -247,8 +248,35 @@ Plant random_plant(const Problem& problem, const PredictedMotion& motion, Genera
   }
 }
 
+/// `plant`, whose norms hold whatever its error did before, with errors of another size about an
+/// offset in each of the first periods of a drive, and small ones later. Its stages begin with
+/// period `begin`.
+Plant setting_out(Plant plant, Eigen::Index begin, Generator& generator) {
+  const int periods = std::uniform_int_distribution<int>(1, 4)(generator);
+  const double later = std::pow(10.0, uniform(generator, -1.5, 0.0));
+  std::vector<double> factors;
+  std::vector<ModelError> first;
+  for (int k = 0; k < periods; ++k) {
+    const double exponent = k == 0 ? uniform(generator, 0.5, 1.3) : uniform(generator, -0.5, 0.5);
+    factors.push_back(std::pow(10.0, exponent));
+    first.push_back(widened(plant.norms, factors.back()));
+    first.back().offset = plant.norms.root_mean_square.unaryExpr(
+        [&](double one) { return uniform(generator, -5.0, 5.0) * one; });
+  }
+  plant.norms = widened(plant.norms, later);
+  plant.norms.first = first;
+  plant.error = [=, error = plant.error](const PlantMoment& moment) {
+    const Points one = error(moment);
+    const auto period = static_cast<std::size_t>(begin + moment.stage);
+    if (period >= first.size()) return Points(later * one);
+    return Points((factors[period] * one).colwise() + first[period].offset);
+  };
+  return plant;
+}
+
 /// Forgets, in one of three cases each, the norms of order 8 or all but the mean square.
 ModelError as_known(ModelError norms, Generator& generator) {
+  for (ModelError& own : norms.first) own = as_known(own, generator);
   const int forgotten = std::uniform_int_distribution<int>(0, 2)(generator);
   if (forgotten >= 1) norms.higher[1].setConstant(kInfinity);
   if (forgotten == 2) norms.higher[0].setConstant(kInfinity);
@@ -261,7 +289,9 @@ struct Tally {
   int informative = 0;  // truth in 1e-3 … 0.5
   int nontrivial = 0;   // certificate below one half there
   int finite_w2 = 0;
-  int violated = 0;  // problems in which certificates that know no model error are wrong
+  int violated = 0;        // problems in which certificates that know no model error are wrong
+  int setting_out = 0;     // problems with a plant that errs by other norms at first
+  int violated_later = 0;  // of these, in which certificates that know the later norms alone are
   std::map<std::string, int> violated_by;
 };
 
@@ -284,6 +314,15 @@ void compare_w2(const StageBudget& budget, const DiscreteMeasure& particles, con
   }
 }
 
+/// Certificates that take the norms of later periods for those of all.
+std::vector<StageCertificate> later_certificates(PredictedMotion motion, const SafeSet& safe_set) {
+  ModelError later = *motion.model_error;
+  later.first.clear();
+  motion.model_error = &later;
+  if (motion.belief_error != nullptr) motion.belief_error = &later;
+  return certify(motion, safe_set, error_budget(motion));
+}
+
 void check_problem(const Problem& problem, const std::string& name, Generator& generator,
                    Tally& tally) {
   Planner planner(*problem.dynamics, problem.settings);
@@ -292,24 +331,37 @@ void check_problem(const Problem& problem, const std::string& name, Generator& g
   const PredictedMotion model = motion;
   ModelError known;
   motion.model_error = &known;
-  if (uniform(generator, 0.0, 1.0) < 0.3) motion.belief_error = &known;
-  const Plant plant = random_plant(problem, motion, generator);
+  if (uniform(generator, 0.0, 1.0) < 0.3) {
+    motion.belief_error = &known;
+    motion.first_period = std::uniform_int_distribution<Eigen::Index>(1, 3)(generator);
+  }
+  Plant plant = random_plant(problem, motion, generator);
+  // What lurks counts on where its own error has led.
+  if (plant.kind != "lurking" && uniform(generator, 0.0, 1.0) < 0.5) {
+    plant = setting_out(plant, motion.first_period, generator);
+  }
   known = as_known(plant.norms, generator);
+  if (motion.belief_error != nullptr) {
+    motion.belief_error = &known.of_period(motion.first_period - 1);
+  }
   const SafeSet& safe_set = problem.settings.safe_set;
   const CertificateEffort effort =
       uniform(generator, 0.0, 1.0) < 0.5 ? CertificateEffort::kLeast : CertificateEffort::kEvery;
   const std::vector<StageBudget> budgets = error_budget(motion);
   const std::vector<StageCertificate> certificates = certify(motion, safe_set, budgets, effort);
   const std::vector<StageCertificate> of_model = certify(model, safe_set, error_budget(model));
+  const std::vector<StageCertificate> of_later = later_certificates(motion, safe_set);
   std::vector<Points> states;
   const UnsafeCounts truth = simulate(motion, safe_set, kPaths, generator, &states, plant.error);
   bool violated = false;
+  bool violated_later = false;
   for (std::size_t k = 0; k < certificates.size(); ++k) {
     const std::string where = name + ", " + plant.kind + ", stage " + std::to_string(k + 1);
     const double least = lower_limit(truth.stages[k]);
     compare(certificates[k], least, where);
     compare_w2(budgets[k + 1], plan.prediction.stages[k + 1], states[k], where, tally);
     violated = violated || of_model[k].value < least;
+    violated_later = violated_later || of_later[k].value < least;
     ++tally.stages;
     const double rate = static_cast<double>(truth.stages[k]) / kPaths;
     if (rate < 1e-3 || rate > 0.5) continue;
@@ -317,6 +369,10 @@ void check_problem(const Problem& problem, const std::string& name, Generator& g
     if (certificates[k].value < 0.5) ++tally.nontrivial;
   }
   EXPECT_GE(horizon_bound(certificates), lower_limit(truth.any)) << name;
+  if (!known.first.empty()) {
+    ++tally.setting_out;
+    if (violated_later) ++tally.violated_later;
+  }
   if (!violated) return;
   ++tally.violated;
   ++tally.violated_by[plant.kind];
@@ -335,6 +391,8 @@ TEST_P(ModelErrorBounds, hold_for_plants_with_the_error) {
   // The plants can tell a certificate that knows of them from one that does not.
   EXPECT_GT(tally.violated, 0);
   EXPECT_GT(tally.violated_by.size(), 1U);
+  // And one that knows what the plant does at first from one that does not.
+  EXPECT_GT(tally.violated_later, 0);
   EXPECT_GT(tally.informative, tally.stages / 5);
   EXPECT_GT(tally.nontrivial, 0);
   EXPECT_GT(tally.finite_w2, tally.stages / 2);
@@ -343,6 +401,8 @@ TEST_P(ModelErrorBounds, hold_for_plants_with_the_error) {
   RecordProperty("nontrivial", tally.nontrivial);
   RecordProperty("finite_w2", tally.finite_w2);
   RecordProperty("violated", tally.violated);
+  RecordProperty("setting_out", tally.setting_out);
+  RecordProperty("violated_later", tally.violated_later);
   for (const auto& [kind, count] : tally.violated_by) RecordProperty(kind, count);
 }
 

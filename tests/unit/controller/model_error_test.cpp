@@ -60,6 +60,22 @@ TEST(model_error, widening_scales_every_norm_and_the_radius_and_no_moment) {
   EXPECT_EQ(wide.covariance, error.covariance);
 }
 
+TEST(model_error, an_offset_adds_to_the_radius_coordinate_by_coordinate) {
+  ModelError error = model_error_of_size(Eigen::Vector2d(1.0, 2.0));
+  error.offset = Eigen::Vector2d(-2.0, 2.0);
+  EXPECT_NEAR(error.radius(), 5.0, kRounding);
+}
+
+TEST(model_error, widening_reaches_the_first_periods_and_leaves_offsets_alone) {
+  ModelError error = model_error_of(two_by_four());
+  error.first = {error};
+  error.first[0].offset = Eigen::Vector2d(0.1, -0.2);
+  const ModelError wide = widened(error, 2.0);
+  EXPECT_EQ(wide.first[0].root_mean_square, 2.0 * error.root_mean_square);
+  EXPECT_EQ(wide.first[0].higher[1], 2.0 * error.higher[1]);
+  EXPECT_EQ(wide.first[0].offset, error.first[0].offset);
+}
+
 TEST(model_error, without_higher_norms_they_are_unknown) {
   const ModelError error = model_error_of_size(Eigen::Vector2d(0.3, 0.4));
   EXPECT_NEAR(error.radius(), 0.5, kRounding);

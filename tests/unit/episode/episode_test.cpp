@@ -80,6 +80,25 @@ TEST(Episode, a_model_error_is_in_every_certificate_and_in_every_belief_that_was
   }
 }
 
+TEST(Episode, every_plan_takes_the_model_error_of_its_own_periods) {
+  const Trace trace =
+      run_episode(small_scenario({"model_error={rms: [0.01, 0, 0], first: [{rms: [0.3, 0, 0]}, "
+                                  "{offset: [0, 0.1, 0], rms: [0, 0.1, 0]}]}"}),
+                  {.seed = 7});
+  const std::vector<double> radii{0.3, 0.2};
+  const auto radius = [&](std::size_t period) { return period < 2 ? radii[period] : 0.01; };
+  ASSERT_GE(trace.steps.size(), 5U);
+  for (std::size_t k = 0; k < 5; ++k) {
+    const std::vector<StageBudget>& budgets = trace.steps[k].budgets;
+    EXPECT_NEAR(budgets[0].model, k == 0 ? 0.0 : radius(k - 1), 1e-15) << k;
+    for (std::size_t s = 0; s + 1 < budgets.size(); ++s) {
+      EXPECT_NEAR(budgets[s + 1].model, budgets[s].lipschitz * budgets[s].model + radius(k + s),
+                  1e-12)
+          << "step " << k << ", stage " << s;
+    }
+  }
+}
+
 TEST(Episode, another_seed_gives_another_trace) {
   const Scenario scenario = small_scenario();
   const Trace first = run_episode(scenario, {.seed = 7});

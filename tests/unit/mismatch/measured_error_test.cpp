@@ -67,6 +67,81 @@ TEST(MeasuredModelError, takes_the_worst_sample_and_the_worst_period) {
   EXPECT_NEAR(error.mean[0], 0.1, 1e-12) << "information on the first sample";
 }
 
+/// Two units of three periods: 0.5 ± 0.1, then 0.2, then 0.05.
+std::vector<Eigen::MatrixXd> setting_out() {
+  Eigen::MatrixXd one(1, 3);
+  Eigen::MatrixXd other(1, 3);
+  one << 0.6, 0.2, 0.05;
+  other << 0.4, 0.2, 0.05;
+  return {one, other};
+}
+
+TEST(MeasuredModelError, of_first_periods_is_their_own_about_their_mean) {
+  const ModelError error = measured_model_error({{.units = setting_out()}}, 1, 2);
+  EXPECT_NEAR(error.root_mean_square[0], 0.05, 1e-12) << "of the third period alone";
+  EXPECT_EQ(error.offset.size(), 0);
+  ASSERT_EQ(error.first.size(), 2U);
+  EXPECT_NEAR(error.first[0].offset[0], 0.5, 1e-12);
+  // Both are 0.1 away from it, in every replicate; the mean is one of two.
+  EXPECT_NEAR(error.first[0].root_mean_square[0], 0.1 * std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(error.first[0].higher[1][0], 0.1 * std::sqrt(3.0), 1e-12);
+  EXPECT_NEAR(error.first[1].offset[0], 0.2, 1e-12);
+  EXPECT_NEAR(error.first[1].root_mean_square[0], 0.0, 1e-12);
+}
+
+TEST(MeasuredModelError, of_a_first_period_covers_every_sample_about_one_offset) {
+  const ResidualSample loop{
+      .units = std::vector<Eigen::MatrixXd>(7, Eigen::MatrixXd::Constant(1, 2, 0.3))};
+  const ResidualSample planned{
+      .units = std::vector<Eigen::MatrixXd>(9, Eigen::MatrixXd::Constant(1, 1, 0.1))};
+  const ModelError error = measured_model_error({loop, planned}, 1, 1);
+  ASSERT_EQ(error.first.size(), 1U);
+  EXPECT_NEAR(error.first[0].offset[0], 0.2, 1e-12);
+  EXPECT_NEAR(error.first[0].root_mean_square[0], 0.1 * std::sqrt(8.0 / 6.0), 1e-12);
+  EXPECT_NEAR(error.root_mean_square[0], 0.3, 1e-12) << "the other sample has no second period";
+}
+
+TEST(MeasuredModelError, of_later_periods_is_that_of_the_worst_stretch) {
+  Eigen::MatrixXd unit(1, 6);
+  unit << 0.9, 0.1, 0.1, 0.1, 0.7, 0.2;
+  const ResidualSample sample{
+      .units = std::vector<Eigen::MatrixXd>(5, unit), .by_period = true, .stretch = 2};
+  const ModelError error = measured_model_error({sample}, 1, 1);
+  // After the first period: (0.1, 0.1), (0.1, 0.7), (0.2).
+  EXPECT_NEAR(error.root_mean_square[0], 0.5, 1e-12);
+  EXPECT_NEAR(error.first[0].offset[0], 0.9, 1e-12);
+}
+
+TEST(MeasuredModelError, of_later_periods_is_that_of_all_where_none_is_later) {
+  const ModelError error =
+      measured_model_error({{.units = setting_out(), .by_period = true}}, 1, 5);
+  EXPECT_EQ(error.first.size(), 3U);
+  EXPECT_GT(error.root_mean_square[0], 0.5);
+}
+
+TEST(MeasuredModelError, of_a_single_unit_has_no_offset) {
+  const ModelError error = measured_model_error({{.units = {setting_out()[0]}}}, 1, 1);
+  EXPECT_EQ(error.first[0].offset.size(), 0);
+  EXPECT_NEAR(error.first[0].root_mean_square[0], 0.6, 1e-12);
+}
+
+// About the mean of the very units that it is measured from.
+TEST(MeasuredModelError, about_an_offset_is_above_the_true_norms_about_as_often_as_it_says) {
+  int too_small = 0;
+  constexpr int kRuns = 100;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    ResidualSample sample;
+    for (std::uint64_t n = 0; n < 50; ++n) {
+      sample.units.push_back(normal_residuals(run, n, 1, 0.3).array() + 2.0);
+    }
+    const ModelError own = measured_model_error({sample}, run, 1).first[0];
+    const double truth = std::hypot(0.3, own.offset[0] - 2.0);
+    too_small += own.root_mean_square[0] < truth ? 1 : 0;
+  }
+  // One is expected of 100; 6 or more have a probability of 5e-4.
+  EXPECT_LE(too_small, 5);
+}
+
 TEST(MeasuredModelError, periods_of_a_plant_that_broke_do_not_count) {
   Eigen::MatrixXd broken(1, 2);
   broken << 0.1, std::numeric_limits<double>::quiet_NaN();

@@ -35,7 +35,8 @@ TEST(Documentation, describes_every_key_that_a_resolved_scenario_has) {
       minimal_text,
       {.overrides = {"controller.feedback_gain=[1, 2, 3]", "controller.deadline=1",
                      "model_error={mean: [0, 0, 0], covariance: [0, 0, 0], rms: [0, 0, 0], "
-                     "norm4: [0, 0, 0], norm8: [0, 0, 0], radius: 0}"}});
+                     "norm4: [0, 0, 0], norm8: [0, 0, 0], offset: [0, 0, 0], radius: 0, "
+                     "first: [{rms: [0, 0, 0]}]}"}});
   std::vector<std::string> keys;
   collect_keys(parse_yaml(to_yaml(scenario), "resolved"), "", keys);
   EXPECT_GT(keys.size(), 35U);

@@ -22,6 +22,15 @@ const std::string whole_text =
     "norm8: [0.02, 0.03, 0.002]\n"
     "radius: 0.025\n";
 
+const std::string drive_text = whole_text +
+                               "first:\n"
+                               "  - offset: [0.1, -0.2, 0.3]\n"
+                               "    rms: [0.1, 0.2, 0.01]\n"
+                               "    norm4: [0.12, 0.25, 0.01]\n"
+                               "  - rms: [0.03, 0.04, 0]\n"
+                               "    norm8: [0.05, 0.05, 0.01]\n"
+                               "    radius: 0.06\n";
+
 /// Each line of `text` further to the right, as what a key holds.
 std::string indented(const std::string& text) {
   std::string out = "  ";
@@ -44,6 +53,9 @@ void expect_same(const ModelError& one, const ModelError& other) {
   EXPECT_EQ(one.root_mean_square, other.root_mean_square);
   EXPECT_EQ(one.higher, other.higher);
   EXPECT_EQ(one.stated_radius, other.stated_radius);
+  EXPECT_EQ(one.offset, other.offset);
+  ASSERT_EQ(one.first.size(), other.first.size());
+  for (std::size_t k = 0; k < one.first.size(); ++k) expect_same(one.first[k], other.first[k]);
 }
 
 TEST(ModelErrorKey, every_key_reaches_its_value) {
@@ -54,6 +66,21 @@ TEST(ModelErrorKey, every_key_reaches_its_value) {
   EXPECT_EQ(error.higher[0], Eigen::Vector3d(0.012, 0.025, 0.001));
   EXPECT_EQ(error.higher[1], Eigen::Vector3d(0.02, 0.03, 0.002));
   EXPECT_EQ(error.radius(), 0.025);
+}
+
+TEST(ModelErrorKey, first_periods_of_a_drive_have_keys_of_their_own) {
+  const ModelError error = loaded(drive_text);
+  EXPECT_EQ(error.root_mean_square, Eigen::Vector3d(0.01, 0.02, 0.001));
+  EXPECT_EQ(error.offset.size(), 0);
+  ASSERT_EQ(error.first.size(), 2U);
+  EXPECT_EQ(error.first[0].offset, Eigen::Vector3d(0.1, -0.2, 0.3));
+  EXPECT_EQ(error.first[0].root_mean_square, Eigen::Vector3d(0.1, 0.2, 0.01));
+  EXPECT_EQ(error.first[0].higher[0], Eigen::Vector3d(0.12, 0.25, 0.01));
+  EXPECT_EQ(error.first[0].higher[1][0], std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(error.first[0].radius(), Eigen::Vector3d(0.2, 0.4, 0.31).norm(), 1e-15);
+  EXPECT_EQ(error.first[1].offset.size(), 0);
+  EXPECT_EQ(error.first[1].higher[1], Eigen::Vector3d(0.05, 0.05, 0.01));
+  EXPECT_EQ(error.first[1].radius(), 0.06);
 }
 
 TEST(ModelErrorKey, what_is_left_out_is_unknown) {
@@ -67,7 +94,8 @@ TEST(ModelErrorKey, what_is_left_out_is_unknown) {
 }
 
 TEST(ModelErrorKey, resolved_scenarios_hold_it_and_read_it_back_bit_for_bit) {
-  for (const std::string& text : {whole_text, std::string("rms: [0.1, 0.3, 1e-300]\n")}) {
+  for (const std::string& text :
+       {whole_text, drive_text, std::string("rms: [0.1, 0.3, 1e-300]\noffset: [0, -0.0, 1]\n")}) {
     const Scenario scenario = parse_scenario(minimal_text + "model_error:\n" + indented(text));
     const std::string written = to_yaml(scenario);
     const Scenario read = parse_scenario(written);
@@ -88,6 +116,14 @@ TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
   expect_same(parse_scenario(to_yaml(load_scenario(path))).model_error.value(), error);
   const std::string absolute = "model_error=" + (folder / "error.yaml");
   expect_same(load_scenario(path, {absolute}).model_error.value(), error);
+}
+
+TEST(ModelErrorKey, of_a_drive_is_read_back_from_a_file) {
+  const TemporaryFolder folder;
+  const ModelError error = loaded(drive_text);
+  (void)folder.file("error.yaml", model_error_yaml(error, "dubins", "of a drive"));
+  const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
+  expect_same(load_scenario(path).model_error.value(), error);
 }
 
 TEST(ModelErrorKey, of_the_command_line_is_found_in_the_working_folder_too) {
@@ -167,6 +203,17 @@ INSTANTIATE_TEST_SUITE_P(
                 "model_error.system", "dubins"},
         Refused{"unknown_key", "model_error: {rms: [1, 1, 1], norm6: [1, 1, 1]}\n",
                 "model_error.norm6", "norm4"},
+        Refused{"period_without_rms",
+                "model_error: {rms: [1, 1, 1], first: [{norm4: [1, 1, 1]}]}\n",
+                "model_error.first.0.rms", "3 numbers"},
+        Refused{"unknown_key_of_a_period",
+                "model_error: {rms: [1, 1, 1], first: [{rms: [1, 1, 1], norm6: [1, 1, 1]}]}\n",
+                "model_error.first.0.norm6", "norm4"},
+        Refused{"first_is_no_list", "model_error: {rms: [1, 1, 1], first: {rms: [1, 1, 1]}}\n",
+                "model_error.first", "a list"},
+        Refused{"radius_below_the_offset",
+                "model_error: {rms: [0, 0, 0], offset: [3, -4, 0], radius: 4.9}\n",
+                "model_error.radius", "at least 5"},
         Refused{"no_file", "model_error: nowhere.yaml\n", "model_error", "the path of a YAML file"},
         Refused{"a_list", "model_error: [1, 2, 3]\n", "model_error", "a mapping"}),
     name_of);
