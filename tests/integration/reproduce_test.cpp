@@ -72,17 +72,20 @@ TEST(Reproduce, an_unknown_experiment_is_refused_before_anything_is_written) {
   EXPECT_FALSE(fs::exists(folder.path() + "/new"));
 }
 
+/// Sends `signal` once the first experiment is written; many drives follow it.
+ProcessResult stop_after_first(const std::string& out, int signal) {
+  return reproduce(out, {"figure-4-1", "table-5-4", "--seeds", "2000", "--quiet"},
+                   {.meanwhile = [&](pid_t process) {
+                     if (!fs::exists(out + "/results.json")) return false;
+                     kill(process, signal);
+                     return true;
+                   }});
+}
+
 TEST(Reproduce, interrupted_keeps_the_experiments_that_are_finished) {
   const TemporaryFolder folder;
   const std::string numbers = folder.path() + "/results.json";
-  // Many drives follow the first experiment: the signal comes while they are under way.
-  const ProcessResult result =
-      reproduce(folder.path(), {"figure-4-1", "table-5-4", "--seeds", "2000", "--quiet"},
-                {.meanwhile = [&](pid_t process) {
-                  if (!fs::exists(numbers)) return false;
-                  kill(process, SIGINT);
-                  return true;
-                }});
+  const ProcessResult result = stop_after_first(folder.path(), SIGINT);
   EXPECT_EQ(result.exit_code, 130) << result.errors;
   EXPECT_THAT(result.errors, HasSubstr("1 of 2 experiments are finished and kept"));
   const auto json = nlohmann::json::parse(read_text(numbers));
@@ -95,13 +98,7 @@ TEST(Reproduce, interrupted_keeps_the_experiments_that_are_finished) {
 TEST(Reproduce, killed_it_leaves_whole_files_only) {
   const TemporaryFolder folder;
   const std::string numbers = folder.path() + "/results.json";
-  const ProcessResult result =
-      reproduce(folder.path(), {"figure-4-1", "table-5-4", "--seeds", "2000", "--quiet"},
-                {.meanwhile = [&](pid_t process) {
-                  if (!fs::exists(numbers)) return false;
-                  kill(process, SIGKILL);
-                  return true;
-                }});
+  const ProcessResult result = stop_after_first(folder.path(), SIGKILL);
   EXPECT_EQ(result.exit_code, 128 + SIGKILL);
   EXPECT_EQ(nlohmann::json::parse(read_text(numbers))["experiments"].size(), 1U);
   EXPECT_THAT(files_in(folder.path()),
