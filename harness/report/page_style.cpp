@@ -123,7 +123,7 @@ table.results { max-width: none; }
   display: grid; gap: 12px; margin: 12px 0;
   grid-template-columns: repeat(auto-fill, minmax(min(100%, 360px), 1fr));
 }
-section h3 { margin-top: 18px; }
+section[id] h3 { margin-top: 18px; }
 nav ul { margin: 0; padding-left: 20px; }
 details { margin-top: 28px; }
 summary { cursor: pointer; font-weight: 650; }
