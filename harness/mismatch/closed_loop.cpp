@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "harness/episode/episode.hpp"
-#include "harness/mismatch/exceedance.hpp"
+#include "harness/exceedance.hpp"
 #include "harness/mismatch/horizon_comparison.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/summary.hpp"

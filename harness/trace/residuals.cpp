@@ -18,12 +18,15 @@ Eigen::MatrixXd true_states(const Trace& trace) {
   return states;
 }
 
+Eigen::Index completed_periods(const Trace& trace) {
+  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
+  const bool end_is_known = trace.final_state.size() > 0 && trace.outcome != Outcome::kFault;
+  return end_is_known || steps == 0 ? steps : steps - 1;
+}
+
 Eigen::MatrixXd one_step_residuals(const Trace& trace, const Dynamics& model) {
   const Eigen::MatrixXd states = true_states(trace);
-  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
-  Eigen::Index periods = states.cols() > 0 ? states.cols() - 1 : 0;
-  // A period that broke has no result.
-  if (trace.outcome == Outcome::kFault && periods == steps && periods > 0) --periods;
+  const Eigen::Index periods = completed_periods(trace);
   Eigen::MatrixXd residuals(model.state_dim(), periods);
   StateBatch predicted(model.state_dim(), 1);
   for (Eigen::Index k = 0; k < periods; ++k) {

@@ -12,6 +12,9 @@ namespace qsmpc {
 /// columns as there are steps where the state after the last one is not known.
 [[nodiscard]] Eigen::MatrixXd true_states(const Trace& trace);
 
+/// How many periods the plant came through: those of which the state at the end is a result.
+[[nodiscard]] Eigen::Index completed_periods(const Trace& trace);
+
 /// x_{k+1} − w_k − f(x_k, u_k) of every period that the plant came through, one a column, in the
 /// units of the states: state_dim x periods. w is the disturbance that was added, so that an exact
 /// model leaves only rounding. `model` is f.

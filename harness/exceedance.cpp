@@ -1,4 +1,4 @@
-#include "harness/mismatch/exceedance.hpp"
+#include "harness/exceedance.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,61 @@
+// A campaign: which episodes are driven, and what is kept of them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/scenario/scenario.hpp"
+
+namespace qsmpc {
+
+/// Which episodes keep their trace file. A failure is an episode that did not reach the target, or
+/// whose true state entered the unsafe set.
+enum class TraceKeeping { kNone, kFailures, kAll };
+
+/// "none", "failures" or "all".
+[[nodiscard]] const char* trace_keeping_name(TraceKeeping keeping);
+
+/// The seeds of a campaign, each once: first, first + 1, … or those listed.
+struct SeedSet {
+  std::uint64_t first = 0;
+  std::int64_t count = 0;               ///< ≥ 1 where `listed` is empty
+  std::vector<std::uint64_t> listed{};  ///< instead of first and count
+
+  [[nodiscard]] std::int64_t size() const {
+    return listed.empty() ? count : static_cast<std::int64_t>(listed.size());
+  }
+  /// Seed `index`, 0 ≤ index < size().
+  [[nodiscard]] std::uint64_t at(std::int64_t index) const {
+    return listed.empty() ? first + static_cast<std::uint64_t>(index)
+                          : listed[static_cast<std::size_t>(index)];
+  }
+  friend bool operator==(const SeedSet&, const SeedSet&) = default;
+};
+
+/// One way to drive: a scenario with settings on a plant.
+struct CampaignVariant {
+  std::string name;      ///< of all that makes it differ; unique in the campaign
+  std::string scenario;  ///< as the campaign file names it
+  std::string settings;  ///< label of the file's variant and grid point; may be empty
+  std::vector<std::string> overrides{};  ///< KEY=VALUE, in the order in which they are applied
+  std::string plant;                     ///< as `with_plant` takes it; empty: the scenario's own
+  Scenario resolved;                     ///< with all of it applied; its seed is 0
+};
+
+/// Every variant is driven with every seed. The same seed gives every variant the same random
+/// numbers: what differs between variants is paired by seed.
+struct Campaign {
+  std::string name;
+  std::vector<CampaignVariant> variants;  ///< at least one; by scenario, settings, plant
+  SeedSet seeds;
+  TraceKeeping traces = TraceKeeping::kNone;
+  /// With kFailures: of each variant, the first this many seeds keep their trace, too.
+  std::int64_t trace_sample = 0;
+
+  [[nodiscard]] std::int64_t episodes() const {
+    return static_cast<std::int64_t>(variants.size()) * seeds.size();
+  }
+};
+
+}  // namespace qsmpc

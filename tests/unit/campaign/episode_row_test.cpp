@@ -1,0 +1,51 @@
+#include "harness/campaign/episode_row.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/example_trace.hpp"
+
+namespace qsmpc {
+namespace {
+
+TEST(EpisodeRow, has_a_period_for_every_step_that_the_plant_came_through) {
+  Trace trace = testing::example_trace({.steps = 6});
+  EXPECT_EQ(episode_row(trace, 0).periods.size(), 6U);
+  trace.outcome = Outcome::kFault;
+  EXPECT_EQ(episode_row(trace, 0).periods.size(), 5U);
+  trace.final_state.resize(0);
+  EXPECT_EQ(episode_row(trace, 0).periods.size(), 5U);
+}
+
+TEST(EpisodeRow, says_of_a_period_whether_the_state_at_its_end_was_unsafe) {
+  Trace trace = testing::example_trace({.steps = 3});
+  for (StepRecord& step : trace.steps) step.state << 0.0, 0.0, 0.0;
+  trace.final_state = trace.steps.front().state;
+  trace.steps[2].state << 3.0, 4.0, 0.0;  // within an obstacle
+  const EpisodeRow row = episode_row(trace, 0);
+  ASSERT_EQ(row.periods.size(), 3U);
+  EXPECT_FALSE(row.periods[0].unsafe);
+  EXPECT_TRUE(row.periods[1].unsafe);
+  EXPECT_FALSE(row.periods[2].unsafe);
+  EXPECT_TRUE(row.unsafe);
+}
+
+TEST(EpisodeRow, takes_the_certificate_of_the_next_step) {
+  const Trace trace = testing::example_trace({});
+  const EpisodeRow row = episode_row(trace, 7);
+  EXPECT_EQ(row.variant, 7);
+  for (std::size_t k = 0; k < row.periods.size(); ++k) {
+    EXPECT_EQ(row.periods[k].certified, trace.steps[k].certificates.front().value);
+    EXPECT_EQ(row.periods[k].published, trace.steps[k].certificates.front().thesis);
+    EXPECT_EQ(row.periods[k].ocp_ms, trace.steps[k].timing.total);
+  }
+}
+
+TEST(EpisodeRow, is_a_failure_unless_the_target_was_reached_and_no_state_was_unsafe) {
+  EXPECT_FALSE(is_failure({.outcome = "reached", .unsafe = false}));
+  EXPECT_TRUE(is_failure({.outcome = "reached", .unsafe = true}));
+  EXPECT_TRUE(is_failure({.outcome = "timeout", .unsafe = false}));
+  EXPECT_TRUE(is_failure({.outcome = "fault", .unsafe = false}));
+}
+
+}  // namespace
+}  // namespace qsmpc
