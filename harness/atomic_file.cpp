@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "harness/errors.hpp"
@@ -14,6 +15,7 @@ namespace qsmpc {
 namespace {
 
 constexpr mode_t kFileMode = 0666;  // what the user's umask leaves of it
+constexpr mode_t kFolderMode = 0777;
 
 [[noreturn]] void fail(const std::string& path, const std::string& doing, int error) {
   throw IoError(printable(path, 400) + ": cannot " + doing + ": " +
@@ -102,6 +104,18 @@ void make_output_folder(const std::string& path) {
   if (error) fail(path, "be made a folder", error.value());
   if (!std::filesystem::is_directory(path, error)) fail(path, "be used as a folder", ENOTDIR);
   if (::access(path.c_str(), W_OK | X_OK) != 0) fail(path, "be written into", errno);
+}
+
+void make_durable_folder(const std::string& path, const std::string& base) {
+  std::error_code error;
+  if (path == base || std::filesystem::is_directory(path, error)) return;
+  const std::string parent = folder_of(path);
+  make_durable_folder(parent, base);
+  // Another may have made it meanwhile.
+  if (::mkdir(path.c_str(), kFolderMode) != 0 && errno != EEXIST) {
+    fail(path, "be made a folder", errno);
+  }
+  sync_path(parent, O_DIRECTORY);
 }
 
 void remove_file(const std::string& path) {

@@ -50,6 +50,11 @@ void write_file(const std::string& path, std::string_view text);
 /// fails, when something else has that name, or when nothing can be written into it.
 void make_output_folder(const std::string& path);
 
+/// Makes the folder `path`, which is within the folder `base`, which is there; and the folders
+/// between them. They are on the disk when it returns, so that files in them can be. Throws
+/// IoError.
+void make_durable_folder(const std::string& path, const std::string& base);
+
 /// Removes the file at `path`, which need not exist. Throws IoError with the system's words.
 void remove_file(const std::string& path);
 

@@ -1,8 +1,29 @@
 #include "harness/campaign/campaign.hpp"
 
+#include <charconv>
 #include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace qsmpc {
+namespace {
+
+constexpr std::string_view kTo = " to ";
+constexpr std::string_view kComma = ", ";
+
+std::uint64_t seed_from_text(std::string_view text) {
+  std::uint64_t seed = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
+  if (error != std::errc{} || end != text.data() + text.size()) {
+    throw std::invalid_argument("seeds: no seed is \"" + std::string(text) + "\"");
+  }
+  return seed;
+}
+
+}  // namespace
 
 const char* trace_keeping_name(TraceKeeping keeping) {
   switch (keeping) {
@@ -14,6 +35,34 @@ const char* trace_keeping_name(TraceKeeping keeping) {
       return "all";
   }
   throw std::invalid_argument("trace keeping: a value that has no name");
+}
+
+std::string seeds_text(const SeedSet& seeds) {
+  if (!seeds.listed.empty()) return fmt::format("{}", fmt::join(seeds.listed, kComma));
+  return fmt::format("{}{}{}", seeds.first, kTo, seeds.at(seeds.count - 1));
+}
+
+SeedSet seeds_from_text(const std::string& text) {
+  std::string_view rest = text;
+  if (const std::size_t to = rest.find(kTo); to != std::string_view::npos) {
+    const std::uint64_t first = seed_from_text(rest.substr(0, to));
+    const std::uint64_t last = seed_from_text(rest.substr(to + kTo.size()));
+    if (last < first) throw std::invalid_argument("seeds: the last is before the first");
+    return {.first = first, .count = static_cast<std::int64_t>(last - first + 1)};
+  }
+  SeedSet seeds;
+  for (std::size_t comma = 0; comma != std::string_view::npos;) {
+    comma = rest.find(kComma);
+    seeds.listed.push_back(seed_from_text(rest.substr(0, comma)));
+    if (comma != std::string_view::npos) rest.remove_prefix(comma + kComma.size());
+  }
+  return seeds;
+}
+
+std::string traces_text(const Campaign& campaign) {
+  const char* name = trace_keeping_name(campaign.traces);
+  if (campaign.traces != TraceKeeping::kFailures) return name;
+  return fmt::format("{}, sample {}", name, campaign.trace_sample);
 }
 
 }  // namespace qsmpc

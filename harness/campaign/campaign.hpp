@@ -33,6 +33,25 @@ struct SeedSet {
   friend bool operator==(const SeedSet&, const SeedSet&) = default;
 };
 
+/// "0 to 999", or "3, 5, 8" for those that are listed.
+[[nodiscard]] std::string seeds_text(const SeedSet& seeds);
+/// The inverse of `seeds_text`. Throws std::invalid_argument on something else.
+[[nodiscard]] SeedSet seeds_from_text(const std::string& text);
+
+/// Which part of a campaign is driven: every `count`-th seed from the `index`-th on.
+struct Shard {
+  std::int64_t index = 1;  ///< 1 … count
+  std::int64_t count = 1;
+
+  /// Whether it has the seed at `seed_index` of the campaign.
+  [[nodiscard]] bool has(std::int64_t seed_index) const { return seed_index % count == index - 1; }
+  /// How many of `seeds` seeds it has.
+  [[nodiscard]] std::int64_t share(std::int64_t seeds) const {
+    return (seeds - index + count) / count;
+  }
+  friend bool operator==(const Shard&, const Shard&) = default;
+};
+
 /// One way to drive: a scenario with settings on a plant.
 struct CampaignVariant {
   std::string name;      ///< of all that makes it differ; unique in the campaign
@@ -57,5 +76,8 @@ struct Campaign {
     return static_cast<std::int64_t>(variants.size()) * seeds.size();
   }
 };
+
+/// "none", "all", or "failures, sample N".
+[[nodiscard]] std::string traces_text(const Campaign& campaign);
 
 }  // namespace qsmpc

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/campaign/campaign.hpp"
 #include "harness/campaign/episode_row.hpp"
 
 namespace qsmpc {
@@ -33,20 +34,12 @@ struct StoredVariant {
   friend bool operator==(const StoredVariant&, const StoredVariant&) = default;
 };
 
-/// Which part of a campaign a store is: every `count`-th seed from the `index`-th on.
-struct Shard {
-  std::int64_t index = 1;  ///< 1 … count
-  std::int64_t count = 1;
-
-  friend bool operator==(const Shard&, const Shard&) = default;
-};
-
 /// What is asked for besides the variants.
 struct StoredCampaign {
   std::string name;
   std::string version;  ///< of the program that made the store
-  std::string seeds;    ///< as text: "0 … 999" or "3, 5, 8"
-  std::string traces;   ///< as text: "none", "all", "failures, sample 5"
+  std::string seeds;    ///< seeds_text of the campaign's
+  std::string traces;   ///< traces_text of the campaign
   Shard shard{};
   std::int64_t episodes = 0;  ///< of this shard, when all are done
 
@@ -70,6 +63,8 @@ class StoreReader {
 
   /// Episodes done, by outcome.
   [[nodiscard]] std::map<std::string, std::int64_t> outcomes() const;
+  /// How many were finished at `time` (s since 1970-01-01 00:00 UTC) or later.
+  [[nodiscard]] std::int64_t finished_since(double time) const;
 
   /// The episodes of a variant by seed, without their periods.
   void for_each_episode(std::int64_t variant,

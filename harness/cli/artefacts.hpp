@@ -8,7 +8,6 @@
 
 namespace qsmpc {
 
-inline constexpr const char* kTraceFile = "episode.h5";
 inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kVideoFile = "episode.mp4";
 inline constexpr const char* kPageFile = "report.html";

@@ -6,6 +6,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/plant/analytic_plant.hpp"
+#include "harness/plant/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 
 namespace qsmpc {
@@ -88,6 +89,10 @@ std::unique_ptr<Plant> make_plant(const Scenario& scenario, const PlantVariation
   std::string known;
   for (const PlantEntry& entry : plants()) known += (known.empty() ? "" : ", ") + entry.name;
   throw InputError({.key = "plant.kind", .found = kind, .expected = "one of " + known});
+}
+
+std::string plant_digest(const Scenario& scenario) {
+  return scenario.plant.kind == "mujoco" ? mujoco_model_digest(scenario.plant.mjcf) : "";
 }
 
 }  // namespace qsmpc

@@ -26,4 +26,8 @@ struct PlantEntry {
 [[nodiscard]] std::unique_ptr<Plant> make_plant(const Scenario& scenario,
                                                 const PlantVariation& variation = {});
 
+/// What a plant's own files come down to: `mujoco_model_digest` of its vehicle; empty for a plant
+/// without files. Throws as it does.
+[[nodiscard]] std::string plant_digest(const Scenario& scenario);
+
 }  // namespace qsmpc

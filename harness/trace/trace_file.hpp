@@ -17,6 +17,9 @@
 
 namespace qsmpc {
 
+/// What the trace of an episode is called within its folder.
+inline constexpr const char* kTraceFile = "episode.h5";
+
 /// Streams one episode to `PATH.partial`, which `finish` gives its name. Destroyed without
 /// `finish`, or killed, it leaves the partial file with every step that `append` returned from,
 /// which `read_trace` reads as an interrupted episode; whatever stood under PATH stays.

@@ -8,6 +8,8 @@
 
 #include <sys/types.h>
 
+#include "tests/support/temporary_folder.hpp"
+
 namespace qsmpc::testing {
 
 struct ProcessResult {
@@ -27,21 +29,6 @@ struct ProcessOptions {
 /// Starts qsmpc with `arguments` and waits for its end.
 [[nodiscard]] ProcessResult run_qsmpc(const std::vector<std::string>& arguments,
                                       const ProcessOptions& options = {});
-
-/// A folder that is removed with all that is in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  [[nodiscard]] const std::string& path() const { return path_; }
-  /// Writes `text` to a file in it and returns its path.
-  [[nodiscard]] std::string file(const std::string& name, const std::string& text) const;
-
- private:
-  std::string path_;
-};
 
 /// Names of what is in a folder; none where there is no such folder.
 [[nodiscard]] std::set<std::string> files_in(const std::string& folder);

@@ -1,10 +1,14 @@
 #include "harness/plant/mujoco/mujoco_model.hpp"
 
 #include <array>
+#include <cstddef>
 #include <fstream>
 #include <mutex>
 #include <regex>
+#include <vector>
 
+#include <boost/crc.hpp>
+#include <fmt/format.h>
 #include <mujoco/mujoco.h>
 
 #include "harness/errors.hpp"
@@ -53,6 +57,16 @@ MujocoModelPtr load_mujoco_model(const std::string& path) {
   }
   if (model == nullptr || text.front() != '\0') throw model_error(path, text.data());
   return model;
+}
+
+std::string mujoco_model_digest(const std::string& path) {
+  const MujocoModelPtr model = load_mujoco_model(path);
+  std::vector<unsigned char> bytes(static_cast<std::size_t>(mj_sizeModel(model.get())));
+  mj_saveModel(model.get(), nullptr, bytes.data(), static_cast<int>(bytes.size()));
+  // CRC-64 of ECMA-182, as xz has it.
+  boost::crc_optimal<64, 0x42F0E1EBA9EA3693, ~0ULL, ~0ULL, true, true> crc;
+  crc.process_bytes(bytes.data(), bytes.size());
+  return fmt::format("{:016x}", crc.checksum());
 }
 
 }  // namespace qsmpc

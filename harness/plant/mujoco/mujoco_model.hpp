@@ -19,4 +19,9 @@ using MujocoModelPtr = std::unique_ptr<mjModel_, MujocoModelDeleter>;
 /// no valid model, or that MuJoCo warns of.
 [[nodiscard]] MujocoModelPtr load_mujoco_model(const std::string& path);
 
+/// A digest of the model that `path` compiles to, with all that it includes: the same for the same
+/// model, and different for others but by chance. 16 hexadecimal digits. Throws as
+/// load_mujoco_model.
+[[nodiscard]] std::string mujoco_model_digest(const std::string& path);
+
 }  // namespace qsmpc

@@ -1,15 +1,14 @@
 // Small scenarios and folders for tests of predictions.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "harness/prediction/prediction_report.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc::testing {
 
@@ -32,20 +31,5 @@ inline Scenario small_scenario(const std::vector<std::string>& overrides = {}) {
       {.overrides = overrides});
 }
 
-/// A folder that is removed with all that is in it.
-class PredictionFolder {
- public:
-  PredictionFolder() {
-    std::string name = ::testing::TempDir() + "prediction_XXXXXX";
-    path_ = ::mkdtemp(name.data());
-  }
-  PredictionFolder(const PredictionFolder&) = delete;
-  PredictionFolder& operator=(const PredictionFolder&) = delete;
-  ~PredictionFolder() { std::filesystem::remove_all(path_); }
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
 
 }  // namespace qsmpc::testing

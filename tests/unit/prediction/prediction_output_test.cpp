@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::PredictionFolder;
+using testing::TemporaryFolder;
 using testing::small_scenario;
 
 const PredictionReport& simulated() {
@@ -97,7 +97,7 @@ TEST(PredictionJson, without_simulation_has_no_block_for_it_and_infinity_is_null
 }
 
 TEST(PredictionFile, holds_particles_policy_and_certificates) {
-  const PredictionFolder folder;
+  const TemporaryFolder folder;
   const PredictionReport& report = simulated();
   write_prediction(report, folder.path());
   const Hdf5File file = Hdf5File::open(folder.path() + "/predict.h5");
@@ -135,7 +135,7 @@ TEST(PredictionFile, holds_particles_policy_and_certificates) {
 }
 
 TEST(PredictionFile, every_dataset_says_its_units_and_axes_and_is_documented) {
-  const PredictionFolder folder;
+  const TemporaryFolder folder;
   write_prediction(simulated(), folder.path());
   const Hdf5File file = Hdf5File::open(folder.path() + "/predict.h5");
   const std::string document = content_of(std::string(QSMPC_SOURCE_DIR) + "/docs/predict.md");
@@ -155,8 +155,8 @@ TEST(PredictionFile, every_dataset_says_its_units_and_axes_and_is_documented) {
 }
 
 TEST(PredictionFile, equal_reports_give_equal_numbers_and_the_scenario_predicts_them_again) {
-  const PredictionFolder first;
-  const PredictionFolder second;
+  const TemporaryFolder first;
+  const TemporaryFolder second;
   write_prediction(simulated(), first.path());
   const Scenario again = load_scenario(first.path() + "/scenario.yaml");
   write_prediction(predict_scenario(again, {.monte_carlo = {.samples = 2000, .threads = 1}}),
@@ -167,7 +167,7 @@ TEST(PredictionFile, equal_reports_give_equal_numbers_and_the_scenario_predicts_
 }
 
 TEST(PredictionFile, what_cannot_be_written_leaves_nothing_unfinished) {
-  const PredictionFolder folder;
+  const TemporaryFolder folder;
   fs::create_directories(folder.path() + "/predict.h5/occupied");
   EXPECT_THROW(write_prediction(simulated(), folder.path()), IoError);
   EXPECT_FALSE(fs::exists(folder.path() + "/predict.json"));

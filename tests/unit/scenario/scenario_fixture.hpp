@@ -1,5 +1,4 @@
-// What the scenario tests share: a short valid scenario, and folders that clean up after
-// themselves.
+// What the scenario tests share: a short valid scenario.
 #pragma once
 
 #include <filesystem>
@@ -12,6 +11,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc {
 
@@ -36,35 +36,7 @@ inline InputError::Where refusal_of(const std::string& text,
   return {};
 }
 
-/// An empty folder that is removed with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "qsmpc_scenario_XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    path_ = name;
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  TemporaryFolder(TemporaryFolder&&) = delete;
-  TemporaryFolder& operator=(TemporaryFolder&&) = delete;
-  ~TemporaryFolder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-
-  [[nodiscard]] std::string operator/(const std::string& name) const { return path_ + "/" + name; }
-  [[nodiscard]] const std::string& path() const { return path_; }
-
-  /// Writes a file into it and returns its path.
-  [[nodiscard]] std::string file(const std::string& name, const std::string& text) const {
-    std::ofstream(*this / name, std::ios::binary) << text;
-    return *this / name;
-  }
-
- private:
-  std::string path_;
-};
+using testing::TemporaryFolder;
 
 inline std::string content_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

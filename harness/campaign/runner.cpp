@@ -1,0 +1,219 @@
+#include "harness/campaign/runner.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstddef>
+#include <exception>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <system_error>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/campaign/episode_row.hpp"
+#include "harness/campaign/folder_lock.hpp"
+#include "harness/episode/episode.hpp"
+#include "harness/errors.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/trace/trace_file.hpp"
+
+namespace qsmpc {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+double unix_time() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::vector<std::string> digests_of(const Campaign& campaign) {
+  std::vector<std::string> digests;
+  std::map<std::string, std::string> known;
+  for (const CampaignVariant& variant : campaign.variants) {
+    const Scenario::Plant& plant = variant.resolved.plant;
+    const auto [entry, is_new] = known.try_emplace(plant.kind + " " + plant.mjcf);
+    if (is_new) entry->second = plant_digest(variant.resolved);
+    digests.push_back(entry->second);
+  }
+  return digests;
+}
+
+/// Where the trace of an episode is kept, within the campaign's folder.
+std::string trace_folder(std::int64_t variant, std::uint64_t seed) {
+  return fmt::format("episodes/{}/{}", variant, seed);
+}
+
+void remove_traces(const std::string& folder, const std::vector<std::string>& traces) {
+  for (const std::string& trace : traces) {
+    std::error_code error;
+    std::filesystem::remove_all(folder + "/" + trace, error);
+    if (error) throw IoError(folder + "/" + trace + ": cannot be removed: " + error.message());
+  }
+}
+
+/// An episode to be driven.
+struct Task {
+  std::size_t variant = 0;      ///< index in the campaign
+  std::int64_t seed_index = 0;  ///< in its seeds
+  bool again = false;           ///< it is in the store, and is to be replaced
+};
+
+class CampaignRun {
+ public:
+  CampaignRun(const Campaign& campaign, std::string folder, const CampaignOptions& options,
+              Store& store)
+      : campaign_(campaign),
+        folder_(std::move(folder)),
+        options_(options),
+        store_(store),
+        seed_index_(options.shard.index - 1) {
+    progress_.total = static_cast<std::int64_t>(campaign.variants.size()) *
+                      options.shard.share(campaign.seeds.size());
+    progress_.outcomes = store.outcomes();
+    for (const auto& [outcome, count] : progress_.outcomes) progress_.done += count;
+  }
+
+  CampaignProgress run() {
+    tell();
+    std::vector<std::jthread> threads;
+    for (int job = 1; job < options_.jobs; ++job) threads.emplace_back([this] { work(); });
+    work();
+    threads.clear();  // joins them
+    if (error_) std::rethrow_exception(error_);
+    progress_.elapsed = seconds_since(start_);
+    return progress_;
+  }
+
+ private:
+  void work() noexcept {
+    try {
+      while (const std::optional<Task> task = next()) drive(*task);
+    } catch (...) {
+      const std::lock_guard lock(mutex_);
+      if (!error_) error_ = std::current_exception();
+      failed_ = true;
+    }
+  }
+
+  [[nodiscard]] bool stopped() const {
+    return failed_ || (options_.should_stop && options_.should_stop());
+  }
+
+  /// The next episode that is to be driven. All variants of a seed come before the next seed, so
+  /// that what is done at any time can be compared in pairs.
+  std::optional<Task> next() {
+    const std::lock_guard lock(next_mutex_);
+    while (!stopped() && seed_index_ < campaign_.seeds.size()) {
+      const Task task{.variant = variant_, .seed_index = seed_index_};
+      if (++variant_ == campaign_.variants.size()) {
+        variant_ = 0;
+        seed_index_ += options_.shard.count;
+      }
+      const std::optional<std::string> outcome =
+          store_.outcome(store_.variant_ids()[task.variant], campaign_.seeds.at(task.seed_index));
+      if (!outcome) return task;
+      if (options_.retry_faults && *outcome == outcome_name(Outcome::kFault)) {
+        return Task{.variant = task.variant, .seed_index = task.seed_index, .again = true};
+      }
+    }
+    return std::nullopt;
+  }
+
+  void drive(const Task& task) {
+    const auto start = Clock::now();
+    EpisodeOptions options;
+    options.seed = campaign_.seeds.at(task.seed_index);
+    options.should_stop = [this] {
+      return failed_ || (options_.should_hurry && options_.should_hurry());
+    };
+    const Trace trace = run_episode(campaign_.variants[task.variant].resolved, options);
+    // What was cut short says nothing, and will be driven again.
+    if (trace.outcome == Outcome::kInterrupted) return;
+    EpisodeRow row = episode_row(trace, store_.variant_ids()[task.variant]);
+    if (keeps_trace(task, row)) keep(trace, row);
+    row.timing.wall_ms = 1e3 * seconds_since(start);
+    row.timing.finished_at = unix_time();
+    store_.add(row, task.again);
+    count(row, task.again);
+  }
+
+  [[nodiscard]] bool keeps_trace(const Task& task, const EpisodeRow& row) const {
+    switch (campaign_.traces) {
+      case TraceKeeping::kAll:
+        return true;
+      case TraceKeeping::kNone:
+        return false;
+      case TraceKeeping::kFailures:
+        return is_failure(row) || task.seed_index < campaign_.trace_sample;
+    }
+    return false;
+  }
+
+  /// Writes the trace to the disk, before the row that speaks of it.
+  void keep(const Trace& trace, EpisodeRow& row) {
+    row.trace = trace_folder(row.variant, row.seed);
+    const std::string target = folder_ + "/" + row.trace;
+    // The library of the traces' format is not made for several threads.
+    const std::lock_guard lock(trace_mutex_);
+    make_durable_folder(target, folder_);
+    write_trace(target + "/" + kTraceFile, trace);
+  }
+
+  void count(const EpisodeRow& row, bool again) {
+    const std::lock_guard lock(mutex_);
+    if (again) {
+      --progress_.outcomes[outcome_name(Outcome::kFault)];
+    } else {
+      ++progress_.done;
+    }
+    ++progress_.fresh;
+    ++progress_.outcomes[row.outcome];
+    tell();
+  }
+
+  void tell() {
+    progress_.elapsed = seconds_since(start_);
+    if (options_.on_progress) options_.on_progress(progress_);
+  }
+
+  const Campaign& campaign_;
+  const std::string folder_;
+  const CampaignOptions& options_;
+  Store& store_;
+  const Clock::time_point start_ = Clock::now();
+  std::atomic<bool> failed_ = false;
+  std::mutex next_mutex_;  // of what is next
+  std::size_t variant_ = 0;
+  std::int64_t seed_index_;
+  std::mutex trace_mutex_;
+  std::mutex mutex_;  // of what follows
+  CampaignProgress progress_;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+CampaignProgress run_campaign(const Campaign& campaign, const std::string& folder,
+                              const CampaignOptions& options) {
+  const std::vector<std::string> digests = digests_of(campaign);
+  make_output_folder(folder);
+  const FolderLock lock(folder);
+  Store store(folder, stored_campaign(campaign, options.shard), stored_variants(campaign, digests),
+              campaign.seeds, options.update);
+  remove_traces(folder, store.update().traces);
+  if (store.update().changed && options.on_update) options.on_update(store.update());
+  const CampaignProgress progress = CampaignRun(campaign, folder, options, store).run();
+  store.fold();
+  return progress;
+}
+
+}  // namespace qsmpc

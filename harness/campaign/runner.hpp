@@ -1,0 +1,48 @@
+// Drives the episodes that a campaign's folder does not have yet.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "harness/campaign/campaign.hpp"
+#include "harness/campaign/store.hpp"
+
+namespace qsmpc {
+
+/// How far a campaign is.
+struct CampaignProgress {
+  std::int64_t done = 0;   ///< episodes in the store
+  std::int64_t total = 0;  ///< episodes of the shard
+  std::int64_t fresh = 0;  ///< of those done, the ones driven since the start of this run
+  double elapsed = 0.0;    ///< s, of this run
+  std::map<std::string, std::int64_t> outcomes{};  ///< of those done
+};
+
+struct CampaignOptions {
+  int jobs = 1;  ///< ≥ 1, episodes at the same time
+  Shard shard{};
+  bool update = false;        ///< go on although the campaign changed; see Store
+  bool retry_faults = false;  ///< drive the episodes that faulted again
+  /// Asked by several threads: true begins no further episode.
+  std::function<bool()> should_stop{};
+  /// Asked by several threads: true gives up those that have begun, too.
+  std::function<bool()> should_hurry{};
+  /// Told what became of a changed campaign, before anything runs.
+  std::function<void(const StoreUpdate&)> on_update{};
+  /// Told once at the start and after each episode, by one thread at a time.
+  std::function<void(const CampaignProgress&)> on_progress{};
+};
+
+/// Drives what is missing of `campaign` in `folder`, which is made if need be, and stores it as it
+/// is done. Every episode runs on one thread; its row and trace depend on its variant and seed
+/// alone, timings aside, for any number of jobs.
+///
+/// Returns how far it is at the end; done < total if it was stopped. Throws InputError for what is
+/// wrong with the campaign, its plants or the store (see Store), IoError when another process works
+/// in the folder or something cannot be written; what was stored before stays.
+[[nodiscard]] CampaignProgress run_campaign(const Campaign& campaign, const std::string& folder,
+                                            const CampaignOptions& options);
+
+}  // namespace qsmpc

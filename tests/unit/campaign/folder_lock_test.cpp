@@ -1,0 +1,70 @@
+#include "harness/campaign/folder_lock.hpp"
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "harness/errors.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace qsmpc {
+namespace {
+
+using ::testing::HasSubstr;
+
+TEST(FolderLock, tells_the_second_who_holds_the_folder) {
+  const testing::TemporaryFolder folder;
+  const FolderLock first(folder.path());
+  try {
+    const FolderLock second(folder.path());
+    FAIL() << "both hold it";
+  } catch (const IoError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("process " + std::to_string(::getpid())));
+    EXPECT_THAT(error.what(), HasSubstr(folder.path()));
+  }
+}
+
+TEST(FolderLock, is_seen_by_those_who_only_ask) {
+  const testing::TemporaryFolder folder;
+  EXPECT_FALSE(lock_holder(folder.path()));
+  {
+    const FolderLock lock(folder.path());
+    const std::optional<LockHolder> holder = lock_holder(folder.path());
+    ASSERT_TRUE(holder);
+    EXPECT_EQ(holder->process, ::getpid());
+    EXPECT_FALSE(holder->host.empty());
+    EXPECT_THAT(holder->since, HasSubstr("UTC"));
+    EXPECT_TRUE(lock_holder(folder.path())) << "asking took it";
+  }
+  EXPECT_FALSE(lock_holder(folder.path()));
+}
+
+TEST(FolderLock, is_free_again_when_its_holder_was_killed) {
+  const testing::TemporaryFolder folder;
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    const FolderLock lock(folder.path());
+    (void)!::write(ready[1], "x", 1);
+    for (;;) ::pause();
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+  EXPECT_THROW(FolderLock{folder.path()}, IoError);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_FALSE(lock_holder(folder.path()));
+  EXPECT_NO_THROW(FolderLock{folder.path()});
+}
+
+TEST(FolderLock, says_where_it_cannot_be) { EXPECT_THROW(FolderLock{"/no/such/folder"}, IoError); }
+
+}  // namespace
+}  // namespace qsmpc

@@ -1,0 +1,341 @@
+#include "harness/campaign/store.hpp"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/campaign/store_schema.hpp"
+#include "harness/errors.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/campaign/campaign_fixture.hpp"
+
+namespace qsmpc {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::example_row;
+using ::testing::HasSubstr;
+using ::testing::Pair;
+using testing::quick_campaign;
+
+class StoreTest : public ::testing::Test {
+ protected:
+  Store open(const Campaign& campaign, bool update = false, const Shard& shard = {}) const {
+    return {folder.path(), stored_campaign(campaign, shard),
+            stored_variants(campaign, digests(campaign)), campaign.seeds, update};
+  }
+  static std::vector<std::string> digests(const Campaign& campaign) {
+    return std::vector<std::string>(campaign.variants.size());
+  }
+  std::string refusal(const Campaign& campaign, const Shard& shard = {}) const {
+    try {
+      (void)open(campaign, false, shard);
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "not refused";
+  }
+  std::vector<EpisodeRow> rows_of(std::int64_t variant) const {
+    std::vector<EpisodeRow> rows;
+    StoreReader(folder.path()).for_each_episode(variant, [&](const EpisodeRow& row) {
+      rows.push_back(row);
+    });
+    return rows;
+  }
+  SQLite::Database database() const {
+    return {folder.path() + "/" + kStoreFile, SQLite::OPEN_READWRITE};
+  }
+  std::string path() const { return folder.path() + "/" + kStoreFile; }
+
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(StoreTest, gives_back_the_episodes_that_were_added_by_seed) {
+  {
+    Store store = open(quick_campaign());
+    store.add(example_row(0, 7), false);
+    store.add(example_row(0, 5, "fault"), false);
+    store.add(example_row(1, 5, "timeout"), false);
+  }
+  EpisodeRow fifth = example_row(0, 5, "fault");
+  EpisodeRow seventh = example_row(0, 7);
+  fifth.periods.clear();
+  seventh.periods.clear();
+  EXPECT_THAT(rows_of(0), ElementsAre(fifth, seventh));
+}
+
+TEST_F(StoreTest, gives_back_the_periods_in_their_order) {
+  open(quick_campaign()).add(example_row(1, 6), false);
+  std::vector<PeriodRow> periods;
+  StoreReader(folder.path())
+      .for_each_period(1, [&](std::uint64_t seed, std::int64_t period, const PeriodRow& row) {
+        EXPECT_EQ(seed, 6U);
+        EXPECT_EQ(period, std::ssize(periods));
+        periods.push_back(row);
+      });
+  EXPECT_EQ(periods, example_row(1, 6).periods);
+}
+
+TEST_F(StoreTest, keeps_infinities_and_what_is_not_a_number) {
+  EpisodeRow row = example_row(0, 5);
+  row.min_clearance = std::numeric_limits<double>::infinity();
+  row.cost = std::numeric_limits<double>::quiet_NaN();
+  open(quick_campaign()).add(row, false);
+  const EpisodeRow again = rows_of(0).front();
+  EXPECT_EQ(again.min_clearance, row.min_clearance);
+  EXPECT_TRUE(std::isnan(again.cost));
+}
+
+TEST_F(StoreTest, pairs_the_episodes_of_two_variants_by_seed) {
+  Store store = open(quick_campaign());
+  for (const std::uint64_t seed : {8U, 5U, 6U}) store.add(example_row(0, seed), false);
+  for (const std::uint64_t seed : {7U, 6U, 8U}) store.add(example_row(1, seed), false);
+  std::vector<std::uint64_t> seeds;
+  StoreReader(folder.path()).for_each_pair(1, 0, [&](const EpisodeRow& a, const EpisodeRow& b) {
+    EXPECT_EQ(a.seed, b.seed);
+    EXPECT_EQ(a.variant, 1);
+    EXPECT_EQ(b.variant, 0);
+    EXPECT_EQ(b.cost, example_row(0, b.seed).cost);
+    seeds.push_back(a.seed);
+  });
+  EXPECT_THAT(seeds, ElementsAre(6U, 8U));
+}
+
+TEST_F(StoreTest, sorts_numbers_of_the_episodes_that_have_them) {
+  Store store = open(quick_campaign());
+  store.add(example_row(0, 7), false);
+  store.add(example_row(0, 5), false);
+  store.add(example_row(0, 6, "fault"), false);
+  store.add(example_row(0, 8, "timeout"), false);
+  const StoreReader reader(folder.path());
+  std::vector<double> times;
+  reader.for_each_sorted(0, EpisodeNumber::kTimeToTarget, [&](double t) { times.push_back(t); });
+  EXPECT_THAT(times, ElementsAre(0.5, *example_row(0, 7).time_to_target));
+  std::vector<double> clearances;
+  reader.for_each_sorted(0, EpisodeNumber::kMinClearance,
+                         [&](double c) { clearances.push_back(c); });
+  EXPECT_TRUE(std::ranges::is_sorted(clearances));
+  EXPECT_EQ(clearances.size(), 3U);
+  std::vector<double> times_ms;
+  reader.for_each_sorted_ocp_ms(0, [&](double t) { times_ms.push_back(t); });
+  EXPECT_TRUE(std::ranges::is_sorted(times_ms));
+  EXPECT_EQ(times_ms.size(), 8U);
+}
+
+TEST_F(StoreTest, never_holds_an_episode_twice) {
+  Store store = open(quick_campaign());
+  store.add(example_row(0, 5), false);
+  EXPECT_THROW(store.add(example_row(0, 5), false), IoError);
+  EXPECT_EQ(rows_of(0).size(), 1U);
+}
+
+TEST_F(StoreTest, replaces_an_episode_with_its_periods_when_told) {
+  Store store = open(quick_campaign());
+  store.add(example_row(0, 5, "fault"), false);
+  EpisodeRow shorter = example_row(0, 5);
+  shorter.periods.pop_back();
+  store.add(shorter, true);
+  EXPECT_THAT(store.outcomes(), ElementsAre(Pair("reached", 1)));
+  int periods = 0;
+  StoreReader(folder.path()).for_each_period(0, [&](auto, auto, const PeriodRow&) { ++periods; });
+  EXPECT_EQ(periods, 1);
+}
+
+TEST_F(StoreTest, a_reader_sees_one_state_while_episodes_are_added) {
+  Store store = open(quick_campaign());
+  store.add(example_row(0, 5), false);
+  const StoreReader reader(folder.path());
+  store.add(example_row(0, 6), false);
+  EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
+  EXPECT_THAT(StoreReader(folder.path()).outcomes(), ElementsAre(Pair("reached", 2)));
+}
+
+TEST_F(StoreTest, counts_what_was_finished_lately) {
+  Store store = open(quick_campaign());
+  for (const std::uint64_t seed : {5U, 6U, 7U}) store.add(example_row(0, seed), false);
+  const StoreReader reader(folder.path());
+  EXPECT_EQ(reader.finished_since(0.0), 3);
+  EXPECT_EQ(reader.finished_since(example_row(0, 6).timing.finished_at), 2);
+}
+
+TEST_F(StoreTest, goes_on_with_the_same_campaign) {
+  open(quick_campaign()).add(example_row(0, 5), false);
+  const Store again = open(quick_campaign());
+  EXPECT_FALSE(again.update().changed);
+  EXPECT_EQ(again.outcome(0, 5), "reached");
+  EXPECT_EQ(again.outcome(0, 6), std::nullopt);
+}
+
+TEST_F(StoreTest, refuses_a_changed_campaign_and_says_what_changed) {
+  open(quick_campaign());
+  Campaign other = quick_campaign();
+  other.name = "slow";
+  EXPECT_THAT(refusal(other), HasSubstr("name: found quick, expected slow"));
+  EXPECT_THAT(refusal(quick_campaign(9)), HasSubstr("seeds: found 5 to 8, expected 5 to 13"));
+  EXPECT_THAT(refusal(quick_campaign(), {.index = 1, .count = 2}),
+              HasSubstr("--shard: found 1/1, expected 1/2"));
+  other = quick_campaign();
+  other.traces = TraceKeeping::kAll;
+  EXPECT_THAT(refusal(other), HasSubstr("traces: found none, expected all"));
+  other = quick_campaign();
+  other.variants.pop_back();
+  EXPECT_THAT(refusal(other), HasSubstr("variants: found 2 of them, expected 1"));
+  other = quick_campaign();
+  other.variants[1] = testing::quick_variant("two", 4);
+  EXPECT_THAT(refusal(other), HasSubstr("variant two: found   horizon: 2, expected   horizon: 4"));
+  EXPECT_THAT(refusal(other), HasSubstr("--update"));
+}
+
+TEST_F(StoreTest, refuses_a_vehicle_that_changed) {
+  const Campaign campaign = quick_campaign();
+  const auto open_with = [&](const std::string& digest) {
+    (void)Store(folder.path(), stored_campaign(campaign, {}),
+                stored_variants(campaign, {digest, digest}), campaign.seeds, false);
+  };
+  open_with("aa");
+  EXPECT_NO_THROW(open_with("aa"));
+  EXPECT_THROW(open_with("bb"), InputError);
+}
+
+TEST_F(StoreTest, an_update_keeps_what_both_campaigns_ask_for_and_drops_the_rest) {
+  {
+    Store store = open(quick_campaign());
+    for (const std::uint64_t seed : {5U, 6U, 8U}) {
+      EpisodeRow row = example_row(0, seed);
+      row.trace = fmt::format("episodes/0/{}", seed);
+      store.add(row, false);
+      store.add(example_row(1, seed), false);
+    }
+  }
+  Campaign other = quick_campaign();
+  other.seeds = {.first = 6, .count = 2};
+  other.variants[1] = testing::quick_variant("two", 4);  // other settings of the same name
+  other.variants.insert(other.variants.begin(), testing::quick_variant("new", 5));
+  const Store store = open(other, /*update=*/true);
+  EXPECT_TRUE(store.update().changed);
+  EXPECT_EQ(store.update().kept, 1);
+  EXPECT_EQ(store.update().dropped, 5);
+  EXPECT_THAT(store.update().traces, ElementsAre("episodes/0/5", "episodes/0/8"));
+  ASSERT_EQ(store.variant_ids().size(), 3U);
+  EXPECT_EQ(store.variant_ids()[1], 0);  // as before
+  EXPECT_EQ(store.outcome(0, 6), "reached");
+  EXPECT_EQ(store.outcome(store.variant_ids()[0], 6), std::nullopt);
+  EXPECT_EQ(store.outcome(store.variant_ids()[2], 6), std::nullopt);
+  const StoreReader reader(folder.path());
+  EXPECT_EQ(reader.variants()[0].name, "new");
+  EXPECT_EQ(reader.campaign().seeds, "6 to 7");
+  EXPECT_EQ(reader.campaign().episodes, 6);
+}
+
+TEST_F(StoreTest, an_update_keeps_the_listed_seeds_of_a_shard) {
+  Campaign listed = quick_campaign();
+  listed.seeds = {.listed = {9, 5, 7, 6}};
+  {
+    Store store = open(listed);
+    for (const std::uint64_t seed : listed.seeds.listed) store.add(example_row(0, seed), false);
+  }
+  const Store store = open(listed, /*update=*/true, {.index = 2, .count = 2});
+  EXPECT_EQ(store.update().kept, 2);
+  EXPECT_EQ(store.outcome(0, 5), "reached");
+  EXPECT_EQ(store.outcome(0, 6), "reached");
+  EXPECT_EQ(store.outcome(0, 9), std::nullopt);
+}
+
+TEST_F(StoreTest, refuses_a_newer_schema_and_leaves_the_file_as_it_is) {
+  open(quick_campaign()).fold();
+  database().exec("PRAGMA user_version = 99");
+  const auto size = std::filesystem::file_size(path());
+  EXPECT_THAT(refusal(quick_campaign()), HasSubstr("schema 99, made by a newer qsmpc"));
+  EXPECT_THROW(StoreReader(folder.path()), InputError);
+  EXPECT_EQ(std::filesystem::file_size(path()), size);
+  EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), 99);
+}
+
+TEST_F(StoreTest, refuses_the_file_of_another_program) {
+  {
+    SQLite::Database(path(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+        .exec("CREATE TABLE t (x)");
+  }
+  EXPECT_THAT(refusal(quick_campaign()), HasSubstr("an SQLite file of another program"));
+  EXPECT_THROW(StoreReader(folder.path()), InputError);
+}
+
+TEST_F(StoreTest, refuses_a_file_that_is_no_database) {
+  std::ofstream(path()) << std::string(5000, 'x');
+  EXPECT_THROW(open(quick_campaign()), IoError);
+  EXPECT_THROW(StoreReader(folder.path()), IoError);
+}
+
+TEST_F(StoreTest, a_reader_refuses_a_folder_without_a_store) {
+  EXPECT_THROW(StoreReader(folder.path()), InputError);
+  EXPECT_FALSE(std::filesystem::exists(path()));
+}
+
+TEST_F(StoreTest, is_one_file_once_it_is_folded) {
+  {
+    Store store = open(quick_campaign());
+    store.add(example_row(0, 5), false);
+    EXPECT_TRUE(std::filesystem::exists(path() + "-wal"));
+    store.fold();
+    EXPECT_FALSE(std::filesystem::exists(path() + "-wal"));
+  }
+  EXPECT_EQ(rows_of(0).size(), 1U);
+}
+
+TEST_F(StoreTest, is_not_folded_while_others_read_it) {
+  Store store = open(quick_campaign());
+  store.add(example_row(0, 5), false);
+  const StoreReader reader(folder.path());
+  EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
+  EXPECT_NO_THROW(store.fold());
+  EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
+}
+
+TEST(StoreMigration, applies_what_is_missing_one_whole_step_at_a_time) {
+  SQLite::Database database(":memory:", SQLite::OPEN_READWRITE);
+  const std::vector<std::string> steps{
+      "CREATE TABLE t (a)", "ALTER TABLE t ADD COLUMN b",
+      "INSERT INTO t VALUES (1, 2); INSERT INTO missing VALUES (1)"};
+  migrate(database, 0, {steps[0]});
+  database.exec("INSERT INTO t VALUES (7)");
+  EXPECT_THROW(migrate(database, 1, steps), SQLite::Exception);
+  EXPECT_EQ(database.execAndGet("PRAGMA user_version").getInt(), 2);
+  EXPECT_EQ(database.execAndGet("SELECT count(*) FROM t").getInt(), 1);
+  EXPECT_EQ(database.execAndGet("SELECT a FROM t WHERE b IS NULL").getInt(), 7);
+}
+
+TEST(SeedTexts, read_back_as_the_same_seeds) {
+  for (const SeedSet& seeds : {SeedSet{.first = 3, .count = 1}, SeedSet{.first = 0, .count = 1000},
+                               SeedSet{.listed = {4}}, SeedSet{.listed = {9, 2, 5}}}) {
+    const SeedSet again = seeds_from_text(seeds_text(seeds));
+    ASSERT_EQ(again.size(), seeds.size());
+    for (std::int64_t i = 0; i < seeds.size(); ++i) EXPECT_EQ(again.at(i), seeds.at(i));
+  }
+  for (const char* text : {"", "5 to 3", "a", "1, ", "1,2", "1 to "}) {
+    EXPECT_THROW((void)seeds_from_text(text), std::invalid_argument) << text;
+  }
+}
+
+TEST(Shards, divide_the_seeds_without_rest) {
+  for (const std::int64_t count : {1, 2, 3, 7}) {
+    for (const std::int64_t seeds : {1, 2, 6, 20}) {
+      std::int64_t shares = 0;
+      for (std::int64_t index = 1; index <= count; ++index) {
+        const Shard shard{.index = index, .count = count};
+        std::int64_t mine = 0;
+        for (std::int64_t i = 0; i < seeds; ++i) mine += shard.has(i) ? 1 : 0;
+        EXPECT_EQ(shard.share(seeds), mine);
+        shares += mine;
+      }
+      EXPECT_EQ(shares, seeds);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace qsmpc
