@@ -2,8 +2,8 @@
 
 #include <array>
 #include <cerrno>
-#include <chrono>
 #include <climits>
+#include <ctime>
 #include <sstream>
 #include <string_view>
 #include <system_error>
@@ -43,8 +43,7 @@ LockHolder read_holder(int descriptor) {
   const ssize_t size = ::pread(descriptor, bytes.data(), bytes.size(), 0);
   std::istringstream text(std::string(bytes.data(), size > 0 ? static_cast<std::size_t>(size) : 0));
   LockHolder holder;
-  text >> holder.process >> holder.host;
-  std::getline(text >> std::ws, holder.since);
+  text >> holder.process >> holder.host >> holder.since;
   return holder;
 }
 
@@ -55,9 +54,8 @@ std::string host_name() {
 
 /// Says who holds the file from now on.
 void write_holder(int descriptor, const std::string& path) {
-  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  const std::string text =
-      fmt::format("{} {} {:%Y-%m-%d %H:%M:%S} UTC\n", ::getpid(), host_name(), fmt::gmtime(now));
+  const std::time_t now = std::time(nullptr);
+  const std::string text = fmt::format("{} {} {}\n", ::getpid(), host_name(), now);
   const bool written =
       ::ftruncate(descriptor, 0) == 0 &&
       ::pwrite(descriptor, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size());
@@ -67,10 +65,14 @@ void write_holder(int descriptor, const std::string& path) {
 std::string describe(const LockHolder& holder) {
   if (holder.process == 0) return "another process";
   return fmt::format("process {} on {}, since {}", holder.process, printable(holder.host),
-                     printable(holder.since));
+                     utc_text(holder.since));
 }
 
 }  // namespace
+
+std::string utc_text(std::int64_t seconds) {
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", fmt::gmtime(static_cast<std::time_t>(seconds)));
+}
 
 FolderLock::FolderLock(const std::string& folder) {
   const std::string path = path_in(folder);

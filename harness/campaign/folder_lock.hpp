@@ -1,6 +1,7 @@
 // One process at a time works in a campaign's folder.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -8,10 +9,13 @@ namespace qsmpc {
 
 /// Who holds a folder.
 struct LockHolder {
-  long process = 0;   ///< its number; 0 where it has not said yet
-  std::string host;   ///< the machine that it runs on
-  std::string since;  ///< YYYY-MM-DD HH:MM:SS UTC
+  long process = 0;        ///< its number; 0 where it has not said yet
+  std::string host;        ///< the machine that it runs on
+  std::int64_t since = 0;  ///< s since 1970-01-01 00:00 UTC
 };
+
+/// "YYYY-MM-DD HH:MM:SS UTC".
+[[nodiscard]] std::string utc_text(std::int64_t seconds);
 
 /// Holds `FOLDER/campaign.lock` as long as it lives. The system lets go of it when the process
 /// ends, however it ends; the file stays, and means nothing by itself.

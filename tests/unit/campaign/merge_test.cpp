@@ -1,0 +1,199 @@
+#include "harness/campaign/merge.hpp"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/campaign/runner.hpp"
+#include "harness/campaign/store.hpp"
+#include "harness/errors.hpp"
+#include "harness/trace/trace_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/campaign/campaign_fixture.hpp"
+
+namespace qsmpc {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::example_row;
+using ::testing::HasSubstr;
+using testing::quick_campaign;
+using testing::TemporaryFolder;
+
+class Merge : public ::testing::Test {
+ protected:
+  /// A shard of made-up rows: all of its seeds but `without`.
+  std::string shard(const Campaign& campaign, const Shard& part,
+                    const std::vector<std::uint64_t>& without = {}) {
+    const std::string folder = work / fmt::format("shard{}", ++made);
+    fs::create_directories(folder);
+    Store store(folder, stored_campaign(campaign, part),
+                stored_variants(campaign, std::vector<std::string>(campaign.variants.size())),
+                campaign.seeds, false);
+    for (std::size_t v = 0; v < campaign.variants.size(); ++v) {
+      for (std::int64_t i = 0; i < campaign.seeds.size(); ++i) {
+        const std::uint64_t seed = campaign.seeds.at(i);
+        if (!part.has(i) || std::ranges::find(without, seed) != without.end()) continue;
+        store.add(example_row(store.variant_ids()[v], seed), false);
+      }
+    }
+    return folder;
+  }
+  std::string refusal(const std::vector<std::string>& folders) const {
+    try {
+      merge_shards(folders, out());
+    } catch (const InputError& error) {
+      EXPECT_FALSE(fs::exists(out() + "/campaign.sqlite"));
+      EXPECT_FALSE(fs::exists(out() + "/campaign.sqlite.partial"));
+      return error.what();
+    }
+    return "not refused";
+  }
+  std::string out() const { return work / "merged"; }
+
+  TemporaryFolder work;
+  int made = 0;
+};
+
+TEST_F(Merge, joins_what_shards_drove_into_what_one_run_drives) {
+  Campaign campaign = quick_campaign(5);
+  campaign.traces = TraceKeeping::kAll;
+  const TemporaryFolder whole;
+  (void)run_campaign(campaign, whole.path(), {});
+  for (const std::int64_t index : {1, 2}) {
+    (void)run_campaign(campaign, work / fmt::format("s{}", index),
+                       {.shard = {.index = index, .count = 2}});
+  }
+  const MergeResult merged = merge_shards({work / "s2", work / "s1"}, out());
+  EXPECT_EQ(merged.episodes, 10);
+  EXPECT_EQ(merged.traces, 10);
+  {
+    const StoreReader one(whole.path());
+    const StoreReader both(out());
+    EXPECT_EQ(both.campaign(), one.campaign());
+    EXPECT_EQ(both.variants(), one.variants());
+    for (const StoredVariant& variant : one.variants()) {
+      const auto rows_of = [&](const StoreReader& store) {
+        std::vector<EpisodeRow> rows;
+        store.for_each_episode(variant.id, [&](EpisodeRow row) {
+          row.timing = {};
+          rows.push_back(row);
+        });
+        std::size_t periods = 0;
+        store.for_each_period(variant.id, [&](auto, auto, const PeriodRow& row) {
+          rows.at(0).periods.push_back(row);
+          rows[0].periods.back().ocp_ms = 0.0;
+          ++periods;
+        });
+        EXPECT_GT(periods, 0U);
+        return rows;
+      };
+      EXPECT_EQ(rows_of(both), rows_of(one));
+      both.for_each_episode(variant.id, [&](const EpisodeRow& row) {
+        EXPECT_EQ(read_trace(out() + "/" + row.trace + "/episode.h5").seed, row.seed);
+      });
+    }
+  }
+  // A merged campaign is one that is done.
+  EXPECT_EQ(run_campaign(campaign, out(), {}).fresh, 0);
+}
+
+TEST_F(Merge, variants_may_be_numbered_differently) {
+  const Campaign campaign = quick_campaign(2);
+  Campaign before = campaign;
+  before.variants = {testing::quick_variant("old", 5), campaign.variants[1]};
+  const std::string first = shard(before, {.index = 1, .count = 2});
+  {
+    Store store(first, stored_campaign(campaign, {.index = 1, .count = 2}),
+                stored_variants(campaign, {"", ""}), campaign.seeds, /*update=*/true);
+    ASSERT_EQ(store.variant_ids(), (std::vector<std::int64_t>{2, 1}));
+    store.add(example_row(2, 5), false);
+  }
+  merge_shards({shard(campaign, {.index = 2, .count = 2}), first}, out());
+  const StoreReader merged(out());
+  ASSERT_EQ(merged.variants()[0].name, "three");
+  std::vector<double> costs;
+  merged.for_each_episode(merged.variants()[0].id,
+                          [&](const EpisodeRow& row) { costs.push_back(row.cost); });
+  EXPECT_EQ(costs, (std::vector<double>{example_row(2, 5).cost, example_row(0, 6).cost}));
+}
+
+TEST_F(Merge, says_which_shard_is_missing) {
+  const Campaign campaign = quick_campaign();
+  const std::string first = shard(campaign, {.index = 1, .count = 3});
+  const std::string third = shard(campaign, {.index = 3, .count = 3});
+  EXPECT_THAT(refusal({first, third}), HasSubstr("without shard 2/3"));
+}
+
+TEST_F(Merge, says_which_shard_is_double) {
+  const Campaign campaign = quick_campaign();
+  const std::string first = shard(campaign, {.index = 1, .count = 2});
+  const std::string same = shard(campaign, {.index = 1, .count = 2});
+  const std::string second = shard(campaign, {.index = 2, .count = 2});
+  EXPECT_THAT(refusal({first, second, same}), HasSubstr("shard 1/2, which " + first));
+  EXPECT_THAT(refusal({first, second, second}), HasSubstr("shard 2/2, which " + second));
+}
+
+TEST_F(Merge, says_which_episode_is_missing) {
+  const Campaign campaign = quick_campaign();
+  const std::string first = shard(campaign, {.index = 1, .count = 2}, {7});
+  EXPECT_THAT(refusal({first, shard(campaign, {.index = 2, .count = 2})}),
+              HasSubstr("variant three: found no episode with seed 7"));
+}
+
+TEST_F(Merge, says_which_episode_is_double) {
+  const Campaign campaign = quick_campaign();
+  const std::string second = shard(campaign, {.index = 2, .count = 2});
+  {
+    Store store(second, stored_campaign(campaign, {.index = 2, .count = 2}),
+                stored_variants(campaign, {"", ""}), campaign.seeds, false);
+    store.add(example_row(1, 5), false);
+  }
+  EXPECT_THAT(refusal({shard(campaign, {.index = 1, .count = 2}), second}),
+              HasSubstr("found variant two, seed 5, which another shard has, too"));
+}
+
+TEST_F(Merge, says_which_episode_is_foreign) {
+  const Campaign campaign = quick_campaign();
+  const std::string only = shard(campaign, {});
+  {
+    Store store(only, stored_campaign(campaign, {}), stored_variants(campaign, {"", ""}),
+                campaign.seeds, false);
+    store.add(example_row(1, 99), false);
+  }
+  EXPECT_THAT(refusal({only}), HasSubstr("variant two: found an episode with the foreign seed 99"));
+}
+
+TEST_F(Merge, takes_listed_seeds_in_any_order) {
+  Campaign campaign = quick_campaign();
+  campaign.seeds = {.listed = {9, 2, 30, 4}};
+  const MergeResult merged = merge_shards(
+      {shard(campaign, {.index = 1, .count = 2}), shard(campaign, {.index = 2, .count = 2})},
+      out());
+  EXPECT_EQ(merged.episodes, 8);
+}
+
+TEST_F(Merge, refuses_shards_of_other_campaigns) {
+  Campaign other = quick_campaign();
+  other.name = "other";
+  const std::string first = shard(quick_campaign(), {.index = 1, .count = 2});
+  EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
+              HasSubstr("name: found other, expected quick"));
+  other = quick_campaign();
+  other.variants[0] = testing::quick_variant("three", 4);
+  EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
+              HasSubstr("variant three: found another scenario"));
+}
+
+TEST_F(Merge, never_writes_over_a_campaign) {
+  const std::string only = shard(quick_campaign(), {});
+  merge_shards({only}, out());
+  EXPECT_THROW(merge_shards({only}, out()), InputError);
+  EXPECT_EQ(StoreReader(out()).campaign().episodes, 8);
+}
+
+}  // namespace
+}  // namespace qsmpc
