@@ -47,13 +47,18 @@ std::vector<Table> tables() {
   for (const ShippedScenario& scenario : shipped_scenarios()) {
     scenarios.items.push_back({scenario.name, scenario.description});
   }
+  Table campaigns{.title = "campaigns", .items = {}};
+  for (const ShippedCampaign& campaign : shipped_campaigns()) {
+    campaigns.items.push_back({campaign.name, campaign.description});
+  }
   return {make_table("systems", systems()),
           all_plants,
           make_table("solvers", solvers()),
           make_table("boundings", input_boundings()),
           make_table("propagators", propagators()),
           make_table("quantisers", quantisers()),
-          scenarios};
+          scenarios,
+          campaigns};
 }
 
 std::string as_text(const std::vector<Table>& chosen) {
@@ -95,10 +100,11 @@ void add_list_command(CLI::App& app, int& exit_code) {
   const auto kind = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
   command
-      ->add_option("kind", *kind,
-                   "systems, plants, solvers, boundings, propagators, quantisers or scenarios")
-      ->check(CLI::IsMember(
-          {"systems", "plants", "solvers", "boundings", "propagators", "quantisers", "scenarios"}));
+      ->add_option(
+          "kind", *kind,
+          "systems, plants, solvers, boundings, propagators, quantisers, scenarios or campaigns")
+      ->check(CLI::IsMember({"systems", "plants", "solvers", "boundings", "propagators",
+                             "quantisers", "scenarios", "campaigns"}));
   command->add_flag("--json", *json, "as JSON");
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }

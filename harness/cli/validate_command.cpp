@@ -1,10 +1,14 @@
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "harness/campaign/campaign_file.hpp"
+#include "harness/campaign/campaign_plan.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
@@ -16,21 +20,48 @@ namespace {
 
 using Errors = std::vector<InputError::Where>;
 
-std::string as_text(const std::string& file, const Errors& errors) {
-  if (errors.empty()) return file + ": ok\n";
-  std::string text;
-  for (const InputError::Where& error : errors)
-    text += InputError(error).what() + std::string("\n");
-  return text;
+/// What is said of a scenario or campaign.
+struct Verdict {
+  std::string file;
+  Errors errors{};
+  std::optional<Campaign> campaign{};  ///< if it is a valid one
+};
+
+Verdict verdict_on(const std::string& file) {
+  if (!is_campaign_file(file)) return {.file = file, .errors = validate_scenario_file(file)};
+  try {
+    return {.file = file, .campaign = load_campaign(file)};
+  } catch (const InputError& error) {
+    Errors errors = validate_campaign_file(file);
+    if (errors.empty()) errors.push_back(error.where());  // of a file that was changed since
+    return {.file = file, .errors = std::move(errors)};
+  }
 }
 
-nlohmann::ordered_json as_json(const std::string& file, const Errors& errors) {
+std::string as_text(const Verdict& verdict) {
+  std::string text;
+  for (const InputError::Where& error : verdict.errors) {
+    text += InputError(error).what() + std::string("\n");
+  }
+  if (!text.empty()) return text;
+  const std::string size = verdict.campaign ? campaign_size_text(*verdict.campaign) + ", " : "";
+  return verdict.file + ": " + size + "ok\n";
+}
+
+nlohmann::ordered_json as_json(const Verdict& verdict) {
   nlohmann::ordered_json json;
-  json["file"] = file;
-  json["ok"] = errors.empty();
+  json["file"] = verdict.file;
+  json["ok"] = verdict.errors.empty();
+  if (verdict.campaign) {
+    json["campaign"] = {{"name", verdict.campaign->name},
+                        {"variants", verdict.campaign->variants.size()},
+                        {"seeds", verdict.campaign->seeds.size()},
+                        {"episodes", verdict.campaign->episodes()}};
+  }
   json["errors"] = nlohmann::ordered_json::array();
-  for (const InputError::Where& error : errors) {
-    json["errors"].push_back({{"line", error.line},
+  for (const InputError::Where& error : verdict.errors) {
+    json["errors"].push_back({{"file", error.file},
+                              {"line", error.line},
                               {"key", error.key},
                               {"found", error.found},
                               {"expected", error.expected}});
@@ -43,10 +74,10 @@ int validate(const std::vector<std::string>& files, bool json) {
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string text;
   for (const std::string& file : files) {
-    const Errors errors = validate_scenario_file(file);
-    all_valid = all_valid && errors.empty();
-    text += as_text(file, errors);
-    results.push_back(as_json(file, errors));
+    const Verdict verdict = verdict_on(file);
+    all_valid = all_valid && verdict.errors.empty();
+    text += as_text(verdict);
+    results.push_back(as_json(verdict));
   }
   // One file is one object, as documented; several are an array of them.
   const auto& value = results.size() == 1 ? results.front() : results;
@@ -58,11 +89,13 @@ int validate(const std::vector<std::string>& files, bool json) {
 }  // namespace
 
 void add_validate_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("validate", "Checks scenario files without running them.");
+  CLI::App* command =
+      app.add_subcommand("validate", "Checks scenario and campaign files without running them.");
   command->footer("Example: qsmpc validate my_scenario.yaml");
   const auto files = std::make_shared<std::vector<std::string>>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("files", *files, "scenario files")->required();
+  command->add_option("files", *files, "scenario or campaign files, or names of shipped ones")
+      ->required();
   command->add_flag("--json", *json, "as JSON");
   command->callback([files, json, &exit_code] { exit_code = validate(*files, *json); });
 }

@@ -13,8 +13,6 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kSource = "--set";
-
 void mark_overridden(YamlNode& node) {
   node.from_override = true;
   for (YamlNode& item : node.items) mark_overridden(item);
@@ -27,14 +25,14 @@ std::vector<std::string> split_key(const std::string& key) {
     end = key.find('.', begin);
     parts.push_back(key.substr(begin, end == std::string::npos ? end : end - begin));
     if (parts.back().empty()) {
-      throw InputError({.file = kSource,
+      throw InputError({.file = kOverrideSource,
                         .key = key,
                         .found = "an empty part of a key",
                         .expected = "names joined by dots"});
     }
   }
   if (parts.size() >= kMaxYamlDepth) {
-    throw InputError({.file = kSource, .key = key, .found = "a key of too many parts"});
+    throw InputError({.file = kOverrideSource, .key = key, .found = "a key of too many parts"});
   }
   return parts;
 }
@@ -52,7 +50,7 @@ YamlNode& child_in_list(YamlNode& list, const std::string& part, const std::stri
   const char* end = part.data() + part.size();
   const auto [stopped, error] = std::from_chars(part.data(), end, index);
   if (error != std::errc{} || stopped != end || index > list.items.size()) {
-    throw InputError({.file = kSource,
+    throw InputError({.file = kOverrideSource,
                       .key = key,
                       .found = part,
                       .expected = "an index from 0 to " + std::to_string(list.items.size())});
@@ -68,7 +66,7 @@ YamlNode& child(YamlNode& parent, const std::string& part, const std::string& ke
   if (parent.kind == YamlNode::Kind::kMap) return child_in_map(parent, part);
   if (parent.kind == YamlNode::Kind::kList) return child_in_list(parent, part, key);
   throw InputError(
-      {.file = kSource,
+      {.file = kOverrideSource,
        .key = key,
        .found = "the value " + describe(parent) + " where \"" + part + "\" is looked up",
        .expected = "a mapping or a list there"});
@@ -78,7 +76,7 @@ YamlNode parse_value(const std::string& key, const std::string& text) {
   // Nothing but blanks is no document to the parser; here it is the empty value.
   if (text.find_first_not_of(' ') == std::string::npos) return {};
   try {
-    return parse_yaml(text, kSource);
+    return parse_yaml(text, kOverrideSource);
   } catch (const InputError& error) {
     InputError::Where where = error.where();
     where.line = 0;
@@ -92,7 +90,7 @@ YamlNode parse_value(const std::string& key, const std::string& text) {
 void apply_override(YamlNode& root, const std::string& override) {
   const std::size_t equals = override.find('=');
   if (equals == std::string::npos || equals == 0) {
-    throw InputError({.file = kSource,
+    throw InputError({.file = kOverrideSource,
                       .found = "\"" + override + "\"",
                       .expected = "KEY=VALUE, e.g. controller.horizon=12"});
   }

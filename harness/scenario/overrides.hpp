@@ -7,6 +7,9 @@
 
 namespace qsmpc {
 
+/// What errors call the place that overrides come from.
+inline constexpr const char* kOverrideSource = "--set";
+
 /// Sets one value of `root` to what `override` says, KEY=VALUE: KEY a dotted path in which a number
 /// names an item of a list (one past the last appends), VALUE in YAML. Mappings that are not there
 /// are made. What was set is marked, so that a problem with it is reported as one of "--set".

@@ -53,11 +53,13 @@ Scenario parse_scenario(const std::string& text, const ScenarioSource& source) {
   return scenario;
 }
 
-std::vector<InputError::Where> validate_scenario_file(const std::string& path_or_name) {
+std::vector<InputError::Where> validate_scenario_file(const std::string& path_or_name,
+                                                      const std::vector<std::string>& overrides) {
   try {
     const std::string path = find_scenario(path_or_name);
     Problems problems(path);
-    (void)read_text(read_text_file(path), {.file = path, .folder = folder_of(path)}, problems);
+    (void)read_text(read_text_file(path),
+                    {.file = path, .folder = folder_of(path), .overrides = overrides}, problems);
     return problems.sorted();
   } catch (const InputError& error) {
     return {error.where()};

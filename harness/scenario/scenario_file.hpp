@@ -38,10 +38,11 @@ struct ScenarioSource {
 /// As load_scenario, from the text itself, e.g. one that a trace holds.
 [[nodiscard]] Scenario parse_scenario(const std::string& text, const ScenarioSource& source = {});
 
-/// Everything that is wrong with a scenario file, the file being unreadable included; empty if it
-/// is valid. At most 100 problems; after one that leaves no tree of keys to look at, that one.
+/// Everything that is wrong with a scenario file with `overrides` applied, the file being
+/// unreadable included; empty if it is valid. At most 100 problems; after one that leaves no tree
+/// of keys to look at, that one.
 [[nodiscard]] std::vector<InputError::Where> validate_scenario_file(
-    const std::string& path_or_name);
+    const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
 /// The scenario as a file with every key written out. Loading it gives the same values, bit for
 /// bit. The same scenario always gives the same bytes; a shipped MuJoCo XML file is written by its

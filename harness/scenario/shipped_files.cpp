@@ -13,6 +13,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kScenarios = "scenarios";
+constexpr const char* kCampaigns = "campaigns";
+
 // A path without "..", links resolved as far as it exists; never throws.
 fs::path normal(const fs::path& path) {
   std::error_code error;
@@ -53,6 +56,28 @@ std::string description_in(const std::string& path) {
   }
 }
 
+std::vector<std::string> shipped_names(const char* folder) {
+  std::vector<std::string> names;
+  for (const fs::path& path : shipped_in(folder, ".yaml")) names.push_back(path.stem());
+  return names;
+}
+
+std::optional<std::string> find_shipped(const char* folder, const std::string& name) {
+  if (name.empty() || name.find('/') != std::string::npos) return std::nullopt;
+  const fs::path path = fs::path(shipped_models_folder()) / folder / (name + ".yaml");
+  return is_file(path) ? std::optional(path.string()) : std::nullopt;
+}
+
+std::vector<ShippedFile> shipped_files(const char* folder) {
+  std::vector<ShippedFile> files;
+  for (const std::string& name : shipped_names(folder)) {
+    if (const auto path = find_shipped(folder, name)) {
+      files.push_back({.name = name, .description = description_in(*path), .path = *path});
+    }
+  }
+  return files;
+}
+
 }  // namespace
 
 std::string shipped_models_folder() {
@@ -65,11 +90,9 @@ std::string shipped_models_folder() {
   return normal(QSMPC_SOURCE_MODELS_DIR).string();
 }
 
-std::vector<std::string> shipped_scenario_names() {
-  std::vector<std::string> names;
-  for (const fs::path& path : shipped_in("scenarios", ".yaml")) names.push_back(path.stem());
-  return names;
-}
+std::vector<std::string> shipped_scenario_names() { return shipped_names(kScenarios); }
+
+std::vector<std::string> shipped_campaign_names() { return shipped_names(kCampaigns); }
 
 std::vector<std::string> shipped_mjcf_names() {
   std::vector<std::string> names;
@@ -77,20 +100,16 @@ std::vector<std::string> shipped_mjcf_names() {
   return names;
 }
 
-std::vector<ShippedScenario> shipped_scenarios() {
-  std::vector<ShippedScenario> scenarios;
-  for (const std::string& name : shipped_scenario_names()) {
-    if (const auto path = find_shipped_scenario(name)) {
-      scenarios.push_back({.name = name, .description = description_in(*path), .path = *path});
-    }
-  }
-  return scenarios;
-}
+std::vector<ShippedScenario> shipped_scenarios() { return shipped_files(kScenarios); }
+
+std::vector<ShippedCampaign> shipped_campaigns() { return shipped_files(kCampaigns); }
 
 std::optional<std::string> find_shipped_scenario(const std::string& name) {
-  if (name.empty() || name.find('/') != std::string::npos) return std::nullopt;
-  const fs::path path = fs::path(shipped_models_folder()) / "scenarios" / (name + ".yaml");
-  return is_file(path) ? std::optional(path.string()) : std::nullopt;
+  return find_shipped(kScenarios, name);
+}
+
+std::optional<std::string> find_shipped_campaign(const std::string& name) {
+  return find_shipped(kCampaigns, name);
 }
 
 std::string find_mjcf(const std::string& name, const std::string& scenario_folder) {

@@ -1,4 +1,4 @@
-// Where the models and scenarios are that come with the program.
+// Where the models, scenarios and campaigns are that come with the program.
 #pragma once
 
 #include <optional>
@@ -7,16 +7,18 @@
 
 namespace qsmpc {
 
-/// A scenario that comes with the program.
-struct ShippedScenario {
+/// An experiment that comes with the program.
+struct ShippedFile {
   std::string name;         ///< as it is given on the command line
   std::string description;  ///< one line, from the file; empty where that cannot be read
   std::string path;
 };
+using ShippedScenario = ShippedFile;
+using ShippedCampaign = ShippedFile;
 
-/// The folder of shipped models, with `scenarios` and `mjcf` in it: the environment variable
-/// QSMPC_MODELS where it is set, else ../share/qsmpc/models beside the program, else the source
-/// tree's.
+/// The folder of shipped models, with `campaigns`, `scenarios` and `mjcf` in it: the environment
+/// variable QSMPC_MODELS where it is set, else ../share/qsmpc/models beside the program, else the
+/// source tree's.
 [[nodiscard]] std::string shipped_models_folder();
 
 /// All of them, by name; empty where the folder cannot be read.
@@ -25,11 +27,18 @@ struct ShippedScenario {
 /// Their names only, without reading the files.
 [[nodiscard]] std::vector<std::string> shipped_scenario_names();
 
+/// As for scenarios.
+[[nodiscard]] std::vector<ShippedCampaign> shipped_campaigns();
+[[nodiscard]] std::vector<std::string> shipped_campaign_names();
+
 /// The names of the shipped MuJoCo XML files, e.g. "dubins_car.xml".
 [[nodiscard]] std::vector<std::string> shipped_mjcf_names();
 
 /// The path of the shipped scenario called `name`, or nothing.
 [[nodiscard]] std::optional<std::string> find_shipped_scenario(const std::string& name);
+
+/// The path of the shipped campaign called `name`, or nothing.
+[[nodiscard]] std::optional<std::string> find_shipped_campaign(const std::string& name);
 
 /// Absolute path of the MuJoCo XML file `name`: an absolute path as it is, else relative to
 /// `scenario_folder`, else among the shipped ones. Empty if there is no such file.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/overrides.hpp"
 #include "harness/scenario/text_encoding.hpp"
 #include "harness/scenario/text_file.hpp"
 
@@ -60,7 +61,7 @@ std::optional<double> parse_number(const YamlNode& node) {
 void Problems::add(const YamlNode& node, std::string key, std::string found, std::string expected) {
   if (list_.size() >= kMostProblems) return;
   const int line = node.key_line > 0 ? node.key_line : node.line;
-  list_.push_back({.file = node.from_override ? "--set" : file_,
+  list_.push_back({.file = node.from_override ? kOverrideSource : file_,
                    .line = node.from_override ? 0 : line,
                    .key = std::move(key),
                    .found = std::move(found),

@@ -1,10 +1,49 @@
 #include "harness/scenario/yaml_text.hpp"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
 
 namespace qsmpc {
+namespace {
+
+// What YAML takes for a key without a "?" before it.
+constexpr std::size_t kLongestPlainKey = 1000;  // bytes; the parser's limit is 1024 characters
+
+bool is_word(std::string_view text) {
+  const bool only_word_characters = std::ranges::all_of(text, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '.' || c == '-' || c == '+' || c == '/';
+  });
+  const bool is_null = text == "null" || text == "Null" || text == "NULL";
+  const bool is_mark = text.starts_with("---") || text.starts_with("...") || text == "-";
+  return !text.empty() && only_word_characters && !is_null && !is_mark;
+}
+
+std::string escaped(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '\n') {
+      out += "\\n";
+    } else if (byte < 0x20 || byte == 0x7F) {
+      out += fmt::format("\\x{:02X}", byte);
+    } else {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c;
+    }
+  }
+  return out + '"';
+}
+
+std::string flow_key(const std::string& key) {
+  const std::string text = is_word(key) ? key : escaped(key);
+  return text.size() > kLongestPlainKey ? "? " + text : text;
+}
+
+}  // namespace
 
 std::string yaml_number(double value) {
   if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
@@ -43,6 +82,21 @@ std::string yaml_square(const Eigen::MatrixXd& matrix) {
     }
   }
   return yaml_list(matrix.diagonal());
+}
+
+std::string yaml_flow(const YamlNode& node) {
+  if (node.kind == YamlNode::Kind::kNull) return "null";
+  if (node.kind == YamlNode::Kind::kText) {
+    return node.quoted || !is_word(node.text) ? escaped(node.text) : node.text;
+  }
+  const bool is_map = node.kind == YamlNode::Kind::kMap;
+  std::string out = is_map ? "{" : "[";
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    if (i > 0) out += ", ";
+    if (is_map) out += flow_key(node.keys[i]) + ": ";
+    out += yaml_flow(node.items[i]);
+  }
+  return out + (is_map ? "}" : "]");
 }
 
 }  // namespace qsmpc

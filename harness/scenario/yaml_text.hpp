@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "harness/scenario/yaml_tree.hpp"
+
 namespace qsmpc {
 
 /// The shortest text that reads back as the same double.
@@ -24,5 +26,10 @@ namespace qsmpc {
 /// A square matrix as its diagonal where that loses nothing, not even the sign of a zero; else by
 /// rows.
 [[nodiscard]] std::string yaml_square(const Eigen::MatrixXd& matrix);
+
+/// A tree in flow style on one line, e.g. {x: [2, 4], name: "a b"}. It reads back as the same tree:
+/// what was quoted is quoted, and so is plain text that is more than a number or a name (which no
+/// reader tells from the quoted).
+[[nodiscard]] std::string yaml_flow(const YamlNode& node);
 
 }  // namespace qsmpc

@@ -1,0 +1,35 @@
+// Campaign files: loaded and checked, or refused with where and why. docs/campaign.md describes
+// their keys.
+//
+//   const Campaign campaign = load_campaign("dubins_thousand");
+//   std::cout << campaign_plan_text(campaign);
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/campaign/campaign.hpp"
+#include "harness/errors.hpp"
+
+namespace qsmpc {
+
+/// The path of the campaign `path_or_name`: a path, or the name of a shipped one. Throws InputError
+/// when it is neither.
+[[nodiscard]] std::string find_campaign(const std::string& path_or_name);
+
+/// Loads a campaign file, a path or the name of a shipped one, with every variant of it loaded and
+/// checked, and every plant made once. Throws InputError with the first thing that is wrong: its
+/// file (the campaign's, or a scenario's), line, key, what was found and what is expected.
+[[nodiscard]] Campaign load_campaign(const std::string& path_or_name);
+
+/// Everything that is wrong with a campaign file and the scenarios that it names; empty if all is
+/// valid. At most 100 problems; after one that leaves no tree of keys to look at, that one.
+[[nodiscard]] std::vector<InputError::Where> validate_campaign_file(
+    const std::string& path_or_name);
+
+/// Whether `path_or_name` is a campaign rather than a scenario, right or wrong: a mapping with one
+/// of scenario, scenarios, variants, grid and seeds, and without model; or the name of a shipped
+/// campaign. False for what cannot be read.
+[[nodiscard]] bool is_campaign_file(const std::string& path_or_name);
+
+}  // namespace qsmpc

@@ -1,0 +1,20 @@
+// What a campaign would drive, before it does.
+#pragma once
+
+#include <string>
+
+#include "harness/campaign/campaign.hpp"
+
+namespace qsmpc {
+
+/// "campaign NAME: 4 variants x 200 seeds = 800 episodes".
+[[nodiscard]] std::string campaign_size_text(const Campaign& campaign);
+
+/// A table with a line for every variant (its number, name, overrides and plant), then the seeds,
+/// the episodes in all and which traces are kept.
+[[nodiscard]] std::string campaign_plan_text(const Campaign& campaign);
+
+/// The same as one object with stable keys, ending in a new line; docs/campaign.md describes them.
+[[nodiscard]] std::string campaign_plan_json(const Campaign& campaign);
+
+}  // namespace qsmpc
