@@ -53,4 +53,14 @@ double exceedance_p_value(const std::vector<EventTally>& tallies) {
   return std::min(1.0, static_cast<double>(tallies.size()) / evidence);
 }
 
+void PeriodTallies::add(std::int64_t period, double certified, bool event) {
+  EventTally& tally = tallies_[static_cast<std::size_t>(period % 2)];
+  tally.certified += certified;
+  tally.events += event ? 1 : 0;
+}
+
+void PeriodTallies::end_episode(std::int64_t periods, double certified) {
+  add(periods, certified, false);
+}
+
 }  // namespace qsmpc

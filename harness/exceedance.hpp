@@ -27,4 +27,26 @@ struct EventTally {
 /// bounds via nonnegative supermartingales", Probability Surveys 17, 2020.)
 [[nodiscard]] double exceedance_p_value(const std::vector<EventTally>& tallies);
 
+/// Tallies of closed loops for `exceedance_p_value`.
+///
+/// The certificate of period k is made before x_k is seen, so that events of neighbouring periods
+/// overlap in what is known of them: periods of even and of odd number are two sequences. An
+/// episode ends before the certificate of the period that would follow is made; that of its last
+/// period stands for it in the sums of the test.
+class PeriodTallies {
+ public:
+  PeriodTallies() : tallies_(2) {}
+
+  /// Period number `period` of an episode, from 0.
+  void add(std::int64_t period, double certified, bool event);
+  /// The episode had `periods` (≥ 1) of them, the last one with the certificate `certified`.
+  void end_episode(std::int64_t periods, double certified);
+
+  /// Two: of even and of odd periods.
+  [[nodiscard]] const std::vector<EventTally>& tallies() const { return tallies_; }
+
+ private:
+  std::vector<EventTally> tallies_;
+};
+
 }  // namespace qsmpc

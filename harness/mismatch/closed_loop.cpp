@@ -14,16 +14,16 @@
 namespace qsmpc {
 namespace {
 
-/// The events and certificates of the periods of even and of odd number.
-std::vector<EventTally> tallies_of(const std::vector<EpisodeResult>& episodes) {
-  std::vector<EventTally> tallies(2);
+PeriodTallies tallies_of(const std::vector<EpisodeResult>& episodes) {
+  PeriodTallies tallies;
   for (const EpisodeResult& episode : episodes) {
     const std::size_t periods = episode.certified.size();
     for (std::size_t k = 0; k < periods; ++k) {
-      tallies[k % 2].events += episode.unsafe_next[k] != 0 ? 1 : 0;
-      tallies[k % 2].certified += episode.certified[k];
+      tallies.add(static_cast<std::int64_t>(k), episode.certified[k], episode.unsafe_next[k] != 0);
     }
-    if (periods > 0) tallies[periods % 2].certified += episode.certified.back();
+    if (periods > 0) {
+      tallies.end_episode(static_cast<std::int64_t>(periods), episode.certified.back());
+    }
   }
   return tallies;
 }
@@ -93,7 +93,7 @@ ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes) {
   }
   add_cost(episodes, loop);
   loop.unsafe_limits = clopper_pearson(loop.unsafe, loop.episodes, kIntervalTail);
-  loop.p_value = exceedance_p_value(tallies_of(episodes));
+  loop.p_value = exceedance_p_value(tallies_of(episodes).tallies());
   return loop;
 }
 

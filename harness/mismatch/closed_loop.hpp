@@ -58,12 +58,7 @@ struct ClosedLoop {
   double p_value = 1.0;
 };
 
-/// episodes: at least one; throws std::invalid_argument else.
-///
-/// The certificate of period k is made before x_k is seen, so that events of neighbouring periods
-/// overlap in what is known of them: periods of even and of odd number are two sequences. An
-/// episode ends before the certificate of the period that would follow is made; that of its last
-/// period stands for it in the sums of the test.
+/// episodes: at least one; throws std::invalid_argument else. The p-value is that of PeriodTallies.
 [[nodiscard]] ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes);
 
 }  // namespace qsmpc

@@ -1,6 +1,7 @@
 #include "harness/plant/disturbance.hpp"
 
 #include <array>
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 
@@ -61,6 +62,13 @@ Eigen::VectorXd uniform_sample(Eigen::Index count, const RandomKey& key) {
     }
   }
   return values;
+}
+
+void random_words(const RandomKey& key, std::span<std::uint64_t> out) {
+  for (std::size_t i = 0; i < out.size(); i += kBlock) {
+    const auto bits = random_block(key, static_cast<Eigen::Index>(i) / kBlock);
+    for (std::size_t k = 0; k < kBlock && i + k < out.size(); ++k) out[i + k] = bits[k];
+  }
 }
 
 GaussianSampler::GaussianSampler(Eigen::VectorXd mean, const Eigen::MatrixXd& covariance)

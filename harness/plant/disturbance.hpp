@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -21,6 +22,7 @@ enum class RandomStream : std::uint64_t {
   kPrediction = 3,  ///< paths of the model, one an episode; step 0 is the initial state
   kSensor = 4,      ///< what the planner sees less what is
   kParameters = 5,  ///< parameters of a plant that are drawn
+  kBootstrap = 6,   ///< weights of an episode in the replicates of a sample of episodes
 };
 
 struct RandomKey {
@@ -35,6 +37,9 @@ struct RandomKey {
 
 /// `count` independent numbers, uniform in (0, 1].
 [[nodiscard]] Eigen::VectorXd uniform_sample(Eigen::Index count, const RandomKey& key);
+
+/// Fills `out` with independent words of 64 random bits.
+void random_words(const RandomKey& key, std::span<std::uint64_t> out);
 
 /// N(mean, covariance), its covariance's root computed once.
 class GaussianSampler {

@@ -1,0 +1,66 @@
+// Quantiles of a sorted stream, of which nothing is kept but the values at the ranks asked for.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "harness/trace/summary.hpp"
+
+namespace qsmpc {
+
+/// Quantiles by nearest rank: the smallest value that at least the share q of the values do not
+/// exceed, which is the one of rank max(1, ⌈q count⌉).
+class SortedQuantiles {
+ public:
+  /// count: of the values that will be added; shares: ascending, in [0, 1].
+  /// Throws std::invalid_argument for others.
+  SortedQuantiles(std::int64_t count, const std::vector<double>& shares);
+
+  /// `value`, `times` times; not below those before it.
+  void add(double value, std::int64_t times = 1);
+
+  /// By share; not a number where its rank has not come.
+  [[nodiscard]] const std::vector<double>& values() const { return values_; }
+
+ private:
+  std::vector<std::int64_t> ranks_;  ///< from 1, ascending
+  std::vector<double> values_;
+  std::size_t next_ = 0;  ///< the first rank that has not come
+  std::int64_t added_ = 0;
+};
+
+/// Median, p95, p99, greatest and mean of a sorted stream, as in summary.json.
+class SortedDistribution {
+ public:
+  /// count: of the values that will be added, ≥ 0.
+  explicit SortedDistribution(std::int64_t count);
+
+  void add(double value);
+  /// Not a number where nothing was added.
+  [[nodiscard]] Distribution result() const;
+
+ private:
+  SortedQuantiles quantiles_;
+  std::int64_t added_ = 0;
+  double sum_ = 0.0;
+};
+
+/// A running mean and its standard error (Welford: "Note on a method for calculating corrected sums
+/// of squares and products", Technometrics 4, 1962).
+class RunningMean {
+ public:
+  void add(double value);
+  [[nodiscard]] std::int64_t count() const { return count_; }
+  /// Not a number where nothing was added.
+  [[nodiscard]] double mean() const;
+  /// Not a number for fewer than two values.
+  [[nodiscard]] double standard_error() const;
+
+ private:
+  std::int64_t count_ = 0;
+  double mean_ = 0.0;
+  double squares_ = 0.0;  ///< Σ (value − mean)²
+};
+
+}  // namespace qsmpc
