@@ -28,8 +28,8 @@ struct Counts {
   double certified = 0.0;
 };
 
-CalibrationBin judged_bin(int number, const Counts& counts,
-                          const std::vector<EventTally>& tallies) {
+CalibrationBin finished_bin(int number, const Counts& counts,
+                            const std::vector<EventTally>& tallies) {
   const auto n = static_cast<std::size_t>(number);
   CalibrationBin bin{.lower = number == 0 ? 0.0 : kEdges[n - 1],
                      .upper = kEdges[n],
@@ -41,8 +41,7 @@ CalibrationBin judged_bin(int number, const Counts& counts,
   bin.rate = static_cast<double>(counts.unsafe) / periods;
   bin.interval = clopper_pearson(counts.unsafe, counts.periods, kCampaignTail);
   bin.p_value = exceedance_p_value(tallies);
-  bin.judged = counts.periods >= kLeastJudgedPeriods;
-  bin.exceeded = bin.judged && bin.p_value < kCalibrationLevel / kCalibrationBins;
+  bin.exceeded = bin.p_value < kCalibrationLevel / kCalibrationBins;
   return bin;
 }
 
@@ -88,8 +87,8 @@ std::vector<CalibrationBin> CalibrationTally::result() const {
   for (int n = 0; n < kCalibrationBins; ++n) {
     const Bin& bin = tally.bins_[static_cast<std::size_t>(n)];
     bins.push_back(
-        judged_bin(n, {.periods = bin.periods, .unsafe = bin.unsafe, .certified = bin.certified},
-                   bin.tallies.tallies()));
+        finished_bin(n, {.periods = bin.periods, .unsafe = bin.unsafe, .certified = bin.certified},
+                     bin.tallies.tallies()));
   }
   return bins;
 }
@@ -130,7 +129,7 @@ std::vector<CalibrationBin> PooledCalibration::result() const {
       counts.certified += bin.certified;
       tallies.insert(tallies.end(), bin.tallies.tallies().begin(), bin.tallies.tallies().end());
     }
-    bins.push_back(judged_bin(n, counts, tallies));
+    bins.push_back(finished_bin(n, counts, tallies));
   }
   return bins;
 }

@@ -12,8 +12,6 @@ namespace qsmpc {
 
 /// Bins of certified probabilities: [0, 1e-12), then half decades up to 1.
 inline constexpr int kCalibrationBins = 25;
-/// A bin with fewer periods is shown but not judged.
-inline constexpr std::int64_t kLeastJudgedPeriods = 100;
 /// How often valid certificates are called exceeded, in any of their bins, at most.
 inline constexpr double kCalibrationLevel = 0.01;
 
@@ -30,8 +28,7 @@ struct CalibrationBin {
   /// 99 % Clopper–Pearson, as if periods were independent. Those of one episode are not: a guide.
   RateInterval interval{};
   double p_value = 1.0;   ///< exceedance_p_value of its periods; that one holds for any dependence
-  bool judged = false;    ///< at least kLeastJudgedPeriods periods
-  bool exceeded = false;  ///< judged, and the p-value is below kCalibrationLevel/kCalibrationBins
+  bool exceeded = false;  ///< the p-value is below kCalibrationLevel / kCalibrationBins
 };
 
 /// Periods of episodes, one after the other, in bins. Memory does not grow with their number.
@@ -45,9 +42,10 @@ struct CalibrationBin {
 /// period that would have followed an episode's last one is not made; that of the last one stands
 /// for it, in its own bin (PeriodTallies).
 ///
-/// Bonferroni: a union over all kCalibrationBins bins, not only over those judged, since how many
-/// periods a bin gets may depend on what happened. So valid certificates are called exceeded, in
-/// whatever bin, with a probability of at most kCalibrationLevel.
+/// Bonferroni over all kCalibrationBins bins, not over those with many periods only: how many
+/// periods a bin gets may depend on what happened, and the p-value needs no least number of them.
+/// So valid certificates are called exceeded, in whatever bin, with a probability of at most
+/// kCalibrationLevel.
 class CalibrationTally {
  public:
   CalibrationTally();

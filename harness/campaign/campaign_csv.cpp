@@ -68,7 +68,7 @@ std::string bin_lines(const std::string& variant, const char* what,
     lines +=
         without_end(line_of(variant, what, bin.lower, bin.upper, bin.periods, bin.mean_certified,
                             bin.unsafe, bin.rate, bin.interval.lower, bin.interval.upper));
-    lines += is_bound ? "," + line_of(bin.p_value, bin.judged, bin.exceeded) : ",,,\n";
+    lines += is_bound ? "," + line_of(bin.p_value, bin.exceeded) : ",,\n";
   }
   return lines;
 }
@@ -122,7 +122,7 @@ std::string differences_csv(const CampaignStatistics& statistics) {
 std::string calibration_csv(const CampaignStatistics& statistics) {
   std::string csv =
       "variant,value,lower,upper,periods,mean_certified,unsafe,rate,interval.lower,interval.upper,"
-      "exceedance_p_value,judged,exceeded\n";
+      "exceedance_p_value,exceeded\n";
   csv += calibration_lines("", statistics.calibration, statistics.published);
   for (const VariantStatistics& variant : statistics.variants) {
     csv += calibration_lines(variant.name, variant.calibration, variant.published);

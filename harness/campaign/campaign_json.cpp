@@ -36,7 +36,6 @@ Json bins_json(const std::vector<CalibrationBin>& bins, bool is_bound) {
                {"interval", interval_json(bin.interval)}};
     if (is_bound) {
       entry["exceedance_p_value"] = bin.p_value;
-      entry["judged"] = bin.judged;
       entry["exceeded"] = bin.exceeded;
     }
     json.push_back(std::move(entry));

@@ -11,8 +11,9 @@
 namespace qsmpc {
 namespace {
 
-constexpr std::size_t kNameWidth = 30;   // of variants
-constexpr std::size_t kTitleLimit = 48;  // of each of two variants in one line
+constexpr std::size_t kNameWidth = 28;   // of variants
+constexpr std::size_t kTitleLimit = 76;  // of a variant's name in a line of its own
+constexpr std::size_t kFullName = 100;
 constexpr std::size_t kOutcomeLimit = 16;
 constexpr double kSurprising = 0.01;  // a p-value below it is marked
 constexpr std::size_t kMedian = 3;    // of spread_shares
@@ -28,9 +29,10 @@ std::string cut(const std::string& text, std::size_t width) {
   return shown;
 }
 
-std::string head_name(const char* text) { return fmt::format("  {:<{}}", text, kNameWidth); }
-std::string name_of(const VariantStatistics& variant) {
-  return "  " + cut(variant.name, kNameWidth);
+std::string head_name(const char* text) { return fmt::format("     {:<{}}", text, kNameWidth); }
+/// With its number, by which differences name it.
+std::string name_of(const CampaignStatistics& statistics, std::size_t variant) {
+  return fmt::format("{:>4} {}", variant + 1, cut(statistics.variants[variant].name, kNameWidth));
 }
 
 /// At most 9 characters.
@@ -71,11 +73,23 @@ std::string head(const CampaignStatistics& statistics) {
   return text + "\n";
 }
 
+/// The names that are cut elsewhere.
+std::string long_names(const CampaignStatistics& statistics) {
+  std::string text;
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const std::string& name = statistics.variants[n].name;
+    if (name.size() <= kNameWidth - 2) continue;
+    text += fmt::format("{:>4} {}\n", n + 1, printable(name, kFullName));
+  }
+  return text.empty() ? text : "\nVariants with long names\n" + text;
+}
+
 std::string outcome_section(const CampaignStatistics& statistics) {
   std::string text = fmt::format("\nEpisodes (99 % intervals)\n{}{:>9}{:>27}{:>27}{:>10}\n",
                                  head_name("variant"), "done", "reached", "unsafe", "faults");
-  for (const VariantStatistics& variant : statistics.variants) {
-    text += fmt::format("{}{:>9}{:>27}{:>27}{:>10}\n", name_of(variant), variant.done,
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
+    text += fmt::format("{}{:>9}{:>27}{:>27}{:>10}\n", name_of(statistics, n), variant.done,
                         rate_with_limits(variant.reached), rate_with_limits(variant.unsafe),
                         variant.fault.events);
   }
@@ -87,11 +101,12 @@ std::string spread_section(const CampaignStatistics& statistics) {
       "\nCost, least clearance (m), time to target (s): mean, and what 5 %, 50 %, 95 % are not "
       "above\n{}{:>20}{:>9}{:>9}{:>10}{:>10}{:>9}{:>10}\n",
       head_name("variant"), "cost", "median", "95 %", "clear 5 %", "median", "time", "95 %");
-  for (const VariantStatistics& variant : statistics.variants) {
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
     const std::vector<double>& clearance = variant.min_clearance.quantiles;
     const std::vector<double>& time = variant.time_to_target.quantiles;
     text +=
-        fmt::format("{}{:>20}{:>9}{:>9}{:>10}{:>10}{:>9}{:>10}\n", name_of(variant),
+        fmt::format("{}{:>20}{:>9}{:>9}{:>10}{:>10}{:>9}{:>10}\n", name_of(statistics, n),
                     mean_with_error(variant.cost), number(variant.cost.quantiles[kMedian]),
                     number(variant.cost.quantiles[kNinetyFifth]), number(clearance[kFifth]),
                     number(clearance[kMedian]), number(time[kMedian]), number(time[kNinetyFifth]));
@@ -103,17 +118,18 @@ std::string certificate_section(const CampaignStatistics& statistics) {
   std::string text = fmt::format(
       "\nNext-step certificates\n{}{:>10}{:>9}{:>12}{:>12}{:>10}{:>16}\n", head_name("variant"),
       "periods", "unsafe", "observed", "certified", "p", "bins exceeded");
-  for (const VariantStatistics& variant : statistics.variants) {
-    const auto judged = std::ranges::count_if(variant.calibration,
-                                              [](const CalibrationBin& bin) { return bin.judged; });
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
+    const auto filled = std::ranges::count_if(
+        variant.calibration, [](const CalibrationBin& bin) { return bin.periods > 0; });
     const auto exceeded = std::ranges::count_if(
         variant.calibration, [](const CalibrationBin& bin) { return bin.exceeded; });
-    text +=
-        fmt::format("{}{:>10}{:>9}{:>12}{:>12}{:>10}{:>16}\n", name_of(variant), variant.periods,
-                    variant.unsafe_periods, probability(variant.unsafe_step_rate()),
-                    probability(variant.certified_step_rate()),
-                    probability(variant.p_value) + (variant.p_value < kSurprising ? " !" : ""),
-                    fmt::format("{} of {}{}", exceeded, judged, exceeded > 0 ? " !" : ""));
+    text += fmt::format("{}{:>10}{:>9}{:>12}{:>12}{:>10}{:>16}\n", name_of(statistics, n),
+                        variant.periods, variant.unsafe_periods,
+                        probability(variant.unsafe_step_rate()),
+                        probability(variant.certified_step_rate()),
+                        probability(variant.p_value) + (variant.p_value < kSurprising ? " !" : ""),
+                        fmt::format("{} of {}{}", exceeded, filled, exceeded > 0 ? " !" : ""));
   }
   return text;
 }
@@ -129,18 +145,17 @@ std::string calibration_section(const CampaignStatistics& statistics) {
                         fmt::format("{:.1e} ... {:.1e}", bin.lower, bin.upper), bin.periods,
                         bin.mean_certified, bin.unsafe, bin.rate,
                         fmt::format("[{:.1e}, {:.1e}]", bin.interval.lower, bin.interval.upper),
-                        probability(bin.p_value) + (bin.exceeded ? " !"
-                                                    : bin.judged ? ""
-                                                                 : " (few)"));
+                        probability(bin.p_value) + (bin.exceeded ? " !" : ""));
   }
   return text;
 }
 
 std::string difference_text(const CampaignStatistics& statistics,
                             const VariantDifference& difference) {
-  std::string text = fmt::format(
-      "  {} less {}\n", printable(statistics.variants[difference.pair.variant].name, kTitleLimit),
-      printable(statistics.variants[difference.pair.baseline].name, kTitleLimit));
+  const VariantPair& pair = difference.pair;
+  std::string text = fmt::format("  {} less {} (other {}): {}\n", pair.variant + 1,
+                                 pair.baseline + 1, differs_by_name(pair.by),
+                                 printable(statistics.variants[pair.variant].name, kTitleLimit));
   for (const MeanDifference& quantity : difference.quantities) {
     text += fmt::format("    {:<18}{:>12}{:>26}{:>10}{:>10}{:>10}{:>10}\n", quantity.quantity,
                         number(quantity.mean),
@@ -168,9 +183,10 @@ std::string time_section(const CampaignStatistics& statistics) {
   std::string text =
       fmt::format("\nPlanning and certifying (ms)\n{}{:>10}{:>10}{:>10}{:>10}{:>10}{:>18}\n",
                   head_name("variant"), "median", "p95", "p99", "max", "mean", "deadline misses");
-  for (const VariantStatistics& variant : statistics.variants) {
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
     const Distribution& times = variant.ocp_ms;
-    text += fmt::format("{}{:>10}{:>10}{:>10}{:>10}{:>10}{:>18}\n", name_of(variant),
+    text += fmt::format("{}{:>10}{:>10}{:>10}{:>10}{:>10}{:>18}\n", name_of(statistics, n),
                         number(times.median), number(times.p95), number(times.p99),
                         number(times.max), number(times.mean), variant.deadline_misses);
   }
@@ -180,14 +196,14 @@ std::string time_section(const CampaignStatistics& statistics) {
 }  // namespace
 
 std::string campaign_table(const CampaignStatistics& statistics) {
-  return head(statistics) + outcome_section(statistics) + spread_section(statistics) +
-         certificate_section(statistics) + calibration_section(statistics) +
-         difference_section(statistics) + time_section(statistics) +
-         fmt::format(
-             "unsafe: the true state entered the unsafe set. An episode that faulted ranks as the "
-             "worst.\np: small where more periods end unsafe than certified for them; a bin of {} "
-             "periods or more is judged.\n",
-             kLeastJudgedPeriods);
+  return head(statistics) + long_names(statistics) + outcome_section(statistics) +
+         spread_section(statistics) + certificate_section(statistics) +
+         calibration_section(statistics) + difference_section(statistics) +
+         time_section(statistics) +
+         "unsafe: the true state entered the unsafe set. An episode that faulted ranks as the "
+         "worst."
+         "\np: small where more periods end unsafe than certified for them; !: chance alone in at "
+         "most 1 of 100.\n";
 }
 
 }  // namespace qsmpc

@@ -10,6 +10,10 @@ namespace qsmpc {
 
 void add_run_command(CLI::App& app, int& exit_code);
 void add_predict_command(CLI::App& app, int& exit_code);
+void add_campaign_command(CLI::App& app, int& exit_code);
+/// `campaign` is the command that these belong to.
+void add_campaign_status_command(CLI::App& campaign, int& exit_code);
+void add_campaign_merge_command(CLI::App& campaign, int& exit_code);
 void add_compare_command(CLI::App& app, int& exit_code);
 void add_render_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);

@@ -91,7 +91,7 @@ int compare(CompareArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
   const std::string folder =
-      arguments.out.empty() ? default_folder(scenario, "compare") : arguments.out;
+      arguments.out.empty() ? default_folder(scenario.name, "compare") : arguments.out;
 
   Progress progress("comparing", arguments.quiet);
   ComparisonOptions& options = arguments.options;

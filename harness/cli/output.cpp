@@ -9,13 +9,13 @@
 
 namespace qsmpc {
 
-std::string default_folder(const Scenario& scenario, const std::string& suffix) {
-  std::string name = scenario.name;
-  for (char& c : name) {
+std::string default_folder(const std::string& name, const std::string& suffix) {
+  std::string plain_name = name;
+  for (char& c : plain_name) {
     const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
     if (!plain) c = '_';
   }
-  return "out/" + name + "-" + suffix;
+  return "out/" + plain_name + "-" + suffix;
 }
 
 void print_result(const std::string& text) {

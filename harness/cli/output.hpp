@@ -3,12 +3,10 @@
 
 #include <string>
 
-#include "harness/scenario/scenario.hpp"
-
 namespace qsmpc {
 
-/// "out/NAME-SUFFIX", with what does not belong in a file name replaced in the scenario's name.
-[[nodiscard]] std::string default_folder(const Scenario& scenario, const std::string& suffix);
+/// "out/NAME-SUFFIX", with what does not belong in a file name replaced in `name`.
+[[nodiscard]] std::string default_folder(const std::string& name, const std::string& suffix);
 
 /// Writes `text` to standard output. Throws IoError when it does not get there, e.g. on a full
 /// disk.

@@ -96,7 +96,7 @@ int predict(const PredictArguments& arguments) {
   scenario.seed = arguments.seed.value_or(scenario.seed);
   PredictionOptions options{.inputs = take_inputs(arguments, scenario)};
   const std::string folder =
-      arguments.out.empty() ? default_folder(scenario, "predict") : arguments.out;
+      arguments.out.empty() ? default_folder(scenario.name, "predict") : arguments.out;
   make_output_folder(folder);
 
   Progress progress("simulating", arguments.quiet);

@@ -28,6 +28,7 @@ int parse_and_run(int argc, char** argv) {
   add_run_command(app, exit_code);
   add_predict_command(app, exit_code);
   add_compare_command(app, exit_code);
+  add_campaign_command(app, exit_code);
   add_render_command(app, exit_code);
   add_report_command(app, exit_code);
   add_reproduce_command(app, exit_code);

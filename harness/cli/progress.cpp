@@ -4,13 +4,24 @@
 #include <cstdio>
 #include <utility>
 
+#include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
+
+#include "harness/errors.hpp"
 
 namespace qsmpc {
 namespace {
 
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 constexpr int kBarWidth = 30;
+constexpr std::size_t kUsualWidth = 80;  // of a terminal that does not tell
+
+std::size_t terminal_width() {
+  winsize size{};
+  const bool told = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 2;
+  return told ? size.ws_col : kUsualWidth;
+}
 
 }  // namespace
 
@@ -21,9 +32,9 @@ Progress::~Progress() {
   if (drawn_) std::fputc('\n', stderr);
 }
 
-void Progress::update(int done, int total, const std::string& note) {
+void Progress::update(std::int64_t done, std::int64_t total, const std::string& note) {
   if (quiet_ || total <= 0) return;
-  done = std::clamp(done, 0, total);
+  done = std::clamp(done, std::int64_t{0}, total);
   if (terminal_) {
     const auto now = Clock::now();
     if (drawn_ && done < total && now - last_ < kRedraw) return;
@@ -31,20 +42,23 @@ void Progress::update(int done, int total, const std::string& note) {
     draw_bar(done, total, note);
     return;
   }
-  const int tenths = static_cast<int>(10LL * done / total);
+  const int tenths = static_cast<int>(10 * done / total);
   if (tenths <= tenths_) return;
   tenths_ = tenths;
-  std::fprintf(stderr, "%s: %d of %d%s%s\n", label_.c_str(), done, total, note.empty() ? "" : ", ",
-               note.c_str());
+  // Who does not listen is no reason to stop.
+  const std::string line =
+      fmt::format("{}: {} of {}{}{}\n", label_, done, total, note.empty() ? "" : ", ", note);
+  std::fputs(line.c_str(), stderr);
 }
 
-void Progress::draw_bar(int done, int total, const std::string& note) {
-  const int filled = static_cast<int>(static_cast<long long>(kBarWidth) * done / total);
+void Progress::draw_bar(std::int64_t done, std::int64_t total, const std::string& note) {
+  const std::int64_t filled = kBarWidth * done / total;
   std::string bar(static_cast<std::size_t>(filled), '#');
   bar.resize(kBarWidth, '.');
-  // Back to the line's start, and clear what a longer note left.
-  std::fprintf(stderr, "\r\033[K%-9s [%s] %d/%d  %s", label_.c_str(), bar.c_str(), done, total,
-               note.c_str());
+  const std::string line = fmt::format("{:<9} [{}] {}/{}  {}", label_, bar, done, total, note);
+  // Back to the line's start, and clear what a longer note left. A line that wraps could not be
+  // cleared by the next one.
+  std::fputs(("\r\033[K" + printable(line, terminal_width() - 2)).c_str(), stderr);
   std::fflush(stderr);
   drawn_ = true;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <string>
 
 namespace qsmpc {
@@ -18,10 +19,10 @@ class Progress {
 
   /// `done` of `total` (> 0), with a word on the present state. Cheap to call often: it draws at
   /// most ten times a second, and a plain line at every tenth of the work.
-  void update(int done, int total, const std::string& note = {});
+  void update(std::int64_t done, std::int64_t total, const std::string& note = {});
 
  private:
-  void draw_bar(int done, int total, const std::string& note);
+  void draw_bar(std::int64_t done, std::int64_t total, const std::string& note);
 
   using Clock = std::chrono::steady_clock;
   std::string label_;

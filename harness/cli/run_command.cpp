@@ -69,8 +69,9 @@ int run(const RunArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
-  const std::string folder =
-      arguments.out.empty() ? default_folder(scenario, fmt::format("{}", seed)) : arguments.out;
+  const std::string folder = arguments.out.empty()
+                                 ? default_folder(scenario.name, fmt::format("{}", seed))
+                                 : arguments.out;
   make_output_folder(folder);
   write_file(folder + "/" + kScenarioFile, to_yaml(scenario));
 

@@ -91,6 +91,7 @@ svg text.edge { stroke: var(--free); stroke-width: 3px; stroke-linejoin: round; 
 .free { fill: var(--free); }
 .obstacle { fill: var(--obstacle); }
 .partial { fill: var(--obstacle); fill-opacity: 0.3; stroke: var(--obstacle); stroke-dasharray: 5 4; }
+.area { fill: var(--c4); fill-opacity: 0.1; }
 .frame { stroke: var(--soft); stroke-width: 1; }
 .target { fill: var(--c2); fill-opacity: 0.18; stroke: var(--c2); stroke-width: 2; }
 .way { stroke-width: 2.2; stroke-linejoin: round; stroke-linecap: round; }

@@ -19,6 +19,7 @@ constexpr double kLeft = 66.0;
 constexpr double kRight = 14.0;
 constexpr double kTop = 10.0;
 constexpr double kBottom = 46.0;
+constexpr const char* kAreaClass = "area";
 constexpr int kTicksAcross = 6;
 constexpr int kTicksUp = 5;
 constexpr std::size_t kMostPoints = 1000;  // of a line; more would not be seen
@@ -37,6 +38,11 @@ struct Frame {
 
 bool is_shown(const Series& series, std::size_t i) {
   return is_drawable(series.x[i]) && is_drawable(series.y[i]);
+}
+
+bool has_bar(const Series& series, std::size_t i) {
+  return i < series.lower.size() && i < series.upper.size() && is_drawable(series.lower[i]) &&
+         is_drawable(series.upper[i]);
 }
 
 /// Of each stretch of a long line, its least and its greatest value in the order of their times;
@@ -69,6 +75,25 @@ struct PathData {
   std::string dots;  ///< points that no line leads to
 };
 
+/// A bar at an upper limit, and an arrow down from it.
+std::string limit_arrow(double x, double y) {
+  return fmt::format("M{:.1f} {:.1f}h8M{:.1f} {:.1f}v11m-3 -4l3 4l3 -4", x - 4.0, y, x, y);
+}
+
+/// Error bars with a short stroke at either end.
+std::string bars_data(const Series& series, const Frame& frame) {
+  const std::size_t count = std::min({series.x.size(), series.lower.size(), series.upper.size()});
+  std::string data;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!is_drawable(series.x[i]) || !has_bar(series, i)) continue;
+    const double x = frame.across(series.x[i]);
+    const double low = frame.up(series.lower[i]);
+    const double high = frame.up(series.upper[i]);
+    data += fmt::format("M{0:.1f} {1:.1f}h6m-3 0V{2:.1f}m-3 0h6", x - 3.0, low, high);
+  }
+  return data;
+}
+
 PathData path_data(const Series& series, const Frame& frame) {
   const std::vector<std::size_t> indices = drawn_indices(series);
   const auto shown = [&](std::size_t n) {
@@ -80,7 +105,9 @@ PathData path_data(const Series& series, const Frame& frame) {
     const double x = frame.across(series.x[indices[n]]);
     const double y = frame.up(series.y[indices[n]]);
     const bool begins = n == 0 || !shown(n - 1);
-    if (series.mark == Mark::kPoints || (begins && !shown(n + 1))) {
+    if (series.mark == Mark::kLimits) {
+      data.line += limit_arrow(x, y);
+    } else if (series.mark == Mark::kPoints || (begins && !shown(n + 1))) {
       data.dots += fmt::format("M{:.1f} {:.1f}h0", x, y);
     } else if (begins) {
       data.line += fmt::format("M{:.1f} {:.1f}", x, y);
@@ -108,10 +135,14 @@ Frame frame_of(const Chart& chart) {
       if (!is_shown(series, i)) continue;
       across.push_back(series.x[i]);
       up.push_back(series.y[i]);
+      if (!has_bar(series, i)) continue;
+      up.push_back(series.upper[i]);
+      // The lower end of a rate may be almost 0: a logarithmic axis cuts it off.
+      if (chart.y_scale == Scale::kLinear) up.push_back(series.lower[i]);
     }
   }
   for (const Rule& rule : chart.rules) up.push_back(rule.value);
-  return {.x = tight_axis(across),
+  return {.x = chart.x_scale == Scale::kLog ? log_axis(across, chart.least_x) : tight_axis(across),
           .y = chart.y_scale == Scale::kLog ? log_axis(up, chart.least_shown)
                                             : rounded_axis(up, kTicksUp)};
 }
@@ -151,6 +182,19 @@ std::string axes_svg(const Chart& chart, const Frame& frame) {
   return svg;
 }
 
+std::string areas_svg(const Chart& chart, const Frame& frame) {
+  std::string svg;
+  for (const Area& area : chart.areas) {
+    std::string data;
+    for (std::size_t i = 0; i < std::min(area.x.size(), area.y.size()); ++i) {
+      data += fmt::format("{}{:.1f} {:.1f}", i == 0 ? "M" : "L", frame.across(area.x[i]),
+                          frame.up(area.y[i]));
+    }
+    if (!data.empty()) svg += fmt::format("<path class=\"{}\" d=\"{}Z\"/>", kAreaClass, data);
+  }
+  return svg;
+}
+
 /// What the drawing leaves out, so that nothing is hidden; empty if nothing is.
 std::string omissions(const Chart& chart) {
   std::size_t broken = 0;
@@ -168,7 +212,15 @@ std::string omissions(const Chart& chart) {
 
 std::vector<LegendEntry> chart_legend(const Chart& chart) {
   std::vector<LegendEntry> entries;
+  for (const Area& area : chart.areas) entries.push_back(area_entry(kAreaClass, area.name));
   for (const Series& series : chart.series) {
+    if (series.mark == Mark::kLimits) {
+      entries.push_back(
+          {.drawing = fmt::format("<path class=\"{}\" d=\"{}\"/>", line_classes(series),
+                                  limit_arrow(kSwatchWidth / 2.0, 1.0)),
+           .name = series.name});
+      continue;
+    }
     const bool points = series.mark == Mark::kPoints;
     entries.push_back(points ? dot_entry(line_classes(series), series.name)
                              : line_entry(line_classes(series), series.name));
@@ -201,7 +253,7 @@ std::string chart_drawing(const Chart& chart, double x, double y) {
   std::string svg =
       fmt::format("<svg{} viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", place, kWidth,
                   kHeight, escape_html(chart.title + ": " + chart.y_label));
-  svg += axes_svg(chart, frame);
+  svg += areas_svg(chart, frame) + axes_svg(chart, frame);
   for (const Rule& rule : chart.rules) {
     if (!is_drawable(rule.value)) continue;
     svg += fmt::format("<path class=\"rule\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kLeft,
@@ -209,6 +261,10 @@ std::string chart_drawing(const Chart& chart, double x, double y) {
   }
   for (const Series& series : chart.series) {
     const PathData data = path_data(series, frame);
+    const std::string bars = bars_data(series, frame);
+    if (!bars.empty()) {
+      svg += fmt::format("<path class=\"line c{}\" d=\"{}\"/>", palette_index(series), bars);
+    }
     if (!data.line.empty()) {
       svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", line_classes(series), data.line);
     }

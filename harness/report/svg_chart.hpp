@@ -13,7 +13,8 @@
 
 namespace qsmpc {
 
-enum class Mark { kLine, kSteps, kPoints };
+/// kLimits: an arrow down from each point, which only the truth is known to be below of.
+enum class Mark { kLine, kSteps, kPoints, kLimits };
 
 /// One line of a chart. Where x or y is not finite, the line is interrupted.
 struct Series {
@@ -23,6 +24,17 @@ struct Series {
   bool dashed = false;
   std::vector<double> x{};
   std::vector<double> y{};  ///< as many as x
+  /// Ends of an error bar at each point; empty: none. One with an end that is not finite is not
+  /// drawn.
+  std::vector<double> lower{};
+  std::vector<double> upper{};
+};
+
+/// A part of the ground that is shaded.
+struct Area {
+  std::string name;  ///< in the legend
+  std::vector<double> x{};
+  std::vector<double> y{};  ///< as many as x: the corners
 };
 
 /// A horizontal line over the whole chart: a limit.
@@ -36,13 +48,16 @@ struct Chart {
   std::string note{};  ///< below the title, in small print
   std::string x_label;
   std::string y_label;
+  Scale x_scale = Scale::kLinear;
   Scale y_scale = Scale::kLinear;
-  double least_shown = 1e-12;  ///< on a logarithmic axis: what is below is drawn at its foot
+  double least_x = 1e-12;      ///< on a logarithmic axis: what is below is drawn at its foot
+  double least_shown = 1e-12;  ///< the same of y
   std::vector<std::string> x_names{};  ///< what stands at x = 1, 2, … in place of numbers
   std::vector<double> x_includes{};    ///< values that the axes must show
   std::vector<double> y_includes{};
   std::vector<Series> series{};
   std::vector<Rule> rules{};
+  std::vector<Area> areas{};
 };
 
 /// The chart as a <figure>. Its size does not grow with the number of points beyond some

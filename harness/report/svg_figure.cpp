@@ -41,6 +41,7 @@ constexpr std::string_view kStyle =
     ".c4{stroke:#d55e00}.c5{stroke:#3a9bd1}.c6{stroke:#16202a}.c7{stroke:#55636f}"
     ".unsafe{fill:#c9d0d7}.free{fill:#ffffff}.obstacle{fill:#8b97a2}"
     ".partial{fill:#8b97a2;fill-opacity:.3;stroke:#8b97a2;stroke-dasharray:5 4}"
+    ".area{fill:#d55e00;fill-opacity:.1}"
     ".target{fill:#009e73;fill-opacity:.18;stroke:#009e73;stroke-width:2}"
     ".way{stroke-width:2.2;stroke-linejoin:round;stroke-linecap:round}"
     ".faint{stroke-width:1.1;stroke-opacity:.45}"

@@ -62,30 +62,29 @@ TEST(Calibration, counts_the_periods_of_a_bin) {
 
 TEST(Calibration, a_last_certificate_stands_once_more_in_its_own_bin) {
   CalibrationTally tally;
-  tally.add(0, 0.02, false);  // an episode of two periods
-  tally.add(1, 0.5, true);
-  tally.add(0, 0.03, false);  // and one that is going on
+  tally.add(0, 2e-4, false);  // an episode of two periods
+  tally.add(1, 5e-3, true);
+  tally.add(0, 3e-4, true);  // and one that is going on
   const std::vector<CalibrationBin> bins = tally.result();
-  EXPECT_DOUBLE_EQ(bin_of(bins, 0.5).p_value,
-                   exceedance_p_value({{.events = 0, .certified = 0.5}, {1, 0.5}}));
-  EXPECT_DOUBLE_EQ(bin_of(bins, 0.02).p_value,
-                   exceedance_p_value({{.events = 0, .certified = 0.05}, {0, 0.03}}));
-  EXPECT_DOUBLE_EQ(tally.p_value(),
-                   exceedance_p_value({{.events = 0, .certified = 0.02 + 0.03 + 0.5},
-                                       {.events = 1, .certified = 0.5 + 0.03}}));
-  tally.add(1, 0.03, false);  // the result took no part in it
-  EXPECT_DOUBLE_EQ(bin_of(tally.result(), 0.02).p_value,
-                   exceedance_p_value({{.events = 0, .certified = 0.08}, {0, 0.03}}));
+  const double large = exceedance_p_value({{.events = 0, .certified = 5e-3}, {1, 5e-3}});
+  EXPECT_LT(large, 0.5) << "1 would hide what is in the sums";
+  EXPECT_DOUBLE_EQ(bin_of(bins, 5e-3).p_value, large);
+  EXPECT_DOUBLE_EQ(bin_of(bins, 2e-4).p_value,
+                   exceedance_p_value({{.events = 1, .certified = 5e-4}, {0, 3e-4}}));
+  EXPECT_DOUBLE_EQ(tally.p_value(), exceedance_p_value({{.events = 1, .certified = 5.5e-3},
+                                                        {.events = 1, .certified = 5.3e-3}}));
+  tally.add(1, 3e-4, false);  // the result took no part in it
+  EXPECT_DOUBLE_EQ(bin_of(tally.result(), 2e-4).p_value,
+                   exceedance_p_value({{.events = 1, .certified = 8e-4}, {0, 3e-4}}));
 }
 
-TEST(Calibration, judges_only_bins_with_enough_periods) {
+TEST(Calibration, one_event_that_is_all_but_ruled_out_is_enough) {
   CalibrationTally tally;
-  for (int n = 0; n < kLeastJudgedPeriods; ++n) {
-    EXPECT_FALSE(bin_of(tally.result(), 1e-6).judged);
-    tally.add(0, 1e-6, true);
-    EXPECT_EQ(bin_of(tally.result(), 1e-6).judged, n + 1 == kLeastJudgedPeriods);
-  }
-  EXPECT_TRUE(bin_of(tally.result(), 1e-6).exceeded);
+  for (int n = 0; n < 30; ++n) tally.add(0, 1e-9, false);
+  EXPECT_FALSE(bin_of(tally.result(), 1e-9).exceeded);
+  tally.add(0, 1e-9, true);
+  EXPECT_TRUE(bin_of(tally.result(), 1e-9).exceeded);
+  EXPECT_EQ(bin_of(tally.result(), 1e-9).unsafe, 1);
 }
 
 TEST(PooledCalibration, adds_counts_but_averages_the_evidence_of_variants) {

@@ -160,7 +160,7 @@ TEST(CampaignTable, keeps_its_lines_short_and_marks_names_that_it_cuts) {
         line, [](char letter) { return (static_cast<unsigned char>(letter) & 0xC0U) != 0x80U; });
     EXPECT_LE(columns, 110) << line;
   }
-  EXPECT_NE(table.find("name, with \"quotes\" and a le…"), std::string::npos);
+  EXPECT_NE(table.find("name, with \"quotes\" and a …"), std::string::npos);
   EXPECT_NE(table.find("39 of 40 episodes"), std::string::npos);
   EXPECT_EQ(table.find("nan"), std::string::npos);
   EXPECT_EQ(table.find("inf"), std::string::npos);

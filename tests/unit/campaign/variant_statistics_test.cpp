@@ -80,21 +80,21 @@ TEST(VariantTally, an_episode_that_faulted_ranks_as_the_worst_of_all) {
 
 TEST(VariantTally, holds_unsafe_periods_against_what_was_certified_and_published) {
   VariantTally tally;
-  tally.add(0, {.certified = 0.1, .published = 0.001});
-  tally.add(1, {.certified = 0.3, .published = 0.003, .unsafe = true});
+  tally.add(0, {.certified = 1e-3, .published = 1e-5});
+  tally.add(1, {.certified = 3e-3, .published = 3e-5, .unsafe = true});
   const VariantStatistics statistics = tally.result();
   EXPECT_EQ(statistics.periods, 2);
   EXPECT_EQ(statistics.unsafe_periods, 1);
   EXPECT_DOUBLE_EQ(statistics.unsafe_step_rate(), 0.5);
-  EXPECT_DOUBLE_EQ(statistics.certified_step_rate(), 0.2);
+  EXPECT_DOUBLE_EQ(statistics.certified_step_rate(), 2e-3);
   EXPECT_DOUBLE_EQ(statistics.p_value,
-                   exceedance_p_value({{.events = 0, .certified = 0.4}, {1, 0.3}}));
+                   exceedance_p_value({{.events = 0, .certified = 4e-3}, {1, 3e-3}}));
   const auto periods_at = [](const std::vector<CalibrationBin>& bins, double probability) {
     return bins[static_cast<std::size_t>(calibration_bin(probability))].periods;
   };
-  EXPECT_EQ(periods_at(statistics.calibration, 0.1), 2);
-  EXPECT_EQ(periods_at(statistics.published, 0.1), 0);
-  EXPECT_EQ(periods_at(statistics.published, 0.001), 2);
+  EXPECT_EQ(periods_at(statistics.calibration, 1e-3), 2);
+  EXPECT_EQ(periods_at(statistics.published, 1e-3), 0);
+  EXPECT_EQ(periods_at(statistics.published, 1e-5), 2);
 }
 
 TEST(VariantPairs, compare_with_the_first_of_other_settings_and_of_another_plant) {

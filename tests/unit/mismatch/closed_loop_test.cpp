@@ -40,15 +40,16 @@ TEST(ClosedLoop, counts_outcomes_and_unsafe_episodes_with_their_limits) {
 
 TEST(ClosedLoop, unsafe_periods_are_held_against_what_was_certified_for_them) {
   EpisodeResult episode = judged("left_safe_set", 1.0, -0.1);
-  episode.certified = {0.1, 0.2, 0.3};
+  episode.certified = {1e-3, 2e-3, 3e-3};
   episode.unsafe_next = {0, 0, 1};
   const ClosedLoop loop = closed_loop_of({episode});
   EXPECT_EQ(loop.periods, 3);
   EXPECT_EQ(loop.unsafe_periods, 1);
-  EXPECT_DOUBLE_EQ(loop.certified_periods, 0.6);
+  EXPECT_DOUBLE_EQ(loop.certified_periods, 6e-3);
   // Periods 0 and 2, and 1 with the stand-in for period 3.
-  EXPECT_DOUBLE_EQ(loop.p_value, exceedance_p_value({{.events = 1, .certified = 0.4},
-                                                     {.events = 0, .certified = 0.5}}));
+  EXPECT_DOUBLE_EQ(loop.p_value, exceedance_p_value({{.events = 1, .certified = 4e-3},
+                                                     {.events = 0, .certified = 5e-3}}));
+  EXPECT_LT(loop.p_value, 0.5) << "1 would hide what is in the sums";
   episode.certified = {1e-6, 1e-6, 1e-6};
   EXPECT_LT(closed_loop_of({episode}).p_value, 0.01);
 }

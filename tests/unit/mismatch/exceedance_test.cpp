@@ -77,6 +77,19 @@ TEST(Exceedance, finds_certificates_that_are_half_of_what_they_should_be) {
   EXPECT_LT(exceedance_p_value({tally}), 1e-6);
 }
 
+TEST(PeriodTallies, keep_even_and_odd_periods_apart_and_count_a_last_certificate_once_more) {
+  PeriodTallies tallies;
+  tallies.add(0, 0.25, false);
+  tallies.add(1, 0.5, true);
+  tallies.add(2, 0.125, true);
+  tallies.end_episode(3, 0.125);
+  ASSERT_EQ(tallies.tallies().size(), 2U);
+  EXPECT_EQ(tallies.tallies()[0].events, 1);
+  EXPECT_EQ(tallies.tallies()[0].certified, 0.375);
+  EXPECT_EQ(tallies.tallies()[1].events, 1);
+  EXPECT_EQ(tallies.tallies()[1].certified, 0.625);
+}
+
 TEST(Exceedance, refuses_what_cannot_be) {
   EXPECT_THROW((void)exceedance_p_value({}), std::invalid_argument);
   EXPECT_THROW((void)exceedance_p_value({{.events = -1, .certified = 0.0}}), std::invalid_argument);

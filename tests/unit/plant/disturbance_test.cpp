@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <stdexcept>
 #include <vector>
 
@@ -104,6 +105,18 @@ double correlation_with(const RandomKey& offset) {
     sum += standard_normal_sample(1, key_at(k))[0] * standard_normal_sample(1, shifted)[0];
   }
   return sum / kCount;
+}
+
+TEST(RandomNumbers, random_words_are_all_different_and_depend_on_the_key_alone) {
+  std::vector<std::uint64_t> words(1001);  // no multiple of what the generator gives at once
+  std::vector<std::uint64_t> first(10);
+  random_words(key_at(3, RandomStream::kBootstrap), words);
+  random_words(key_at(3, RandomStream::kBootstrap), first);
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), words.begin()));
+  random_words(key_at(4, RandomStream::kBootstrap), first);
+  words.insert(words.end(), first.begin(), first.end());
+  std::sort(words.begin(), words.end());
+  EXPECT_EQ(std::adjacent_find(words.begin(), words.end()), words.end());
 }
 
 TEST(RandomNumbers, of_neighbouring_keys_are_uncorrelated) {

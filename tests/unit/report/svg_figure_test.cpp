@@ -118,7 +118,9 @@ TEST(SvgFigure, of_nothing_is_a_document) {
 }
 
 TEST(SvgFigure, every_class_has_a_style_in_the_file_and_on_a_page) {
-  const std::string svg = svg_figure({chart_of("Chart"), map_of("Map")});
+  Chart chart = chart_of("Chart");
+  chart.areas.push_back({.name = "shaded", .x = {1, 2, 2}, .y = {0.1, 0.1, 0.3}});
+  const std::string svg = svg_figure({chart, map_of("Map")});
   const std::size_t end = svg.find("</style>");
   const std::string style = svg.substr(0, end);
   const std::string page(page_style());

@@ -1,0 +1,161 @@
+#include <charconv>
+#include <cstdint>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/campaign/campaign_file.hpp"
+#include "harness/campaign/campaign_plan.hpp"
+#include "harness/campaign/runner.hpp"
+#include "harness/campaign/status.hpp"
+#include "harness/cli/campaign_results.hpp"
+#include "harness/cli/commands.hpp"
+#include "harness/cli/exit_codes.hpp"
+#include "harness/cli/interrupt.hpp"
+#include "harness/cli/output.hpp"
+#include "harness/cli/progress.hpp"
+#include "harness/errors.hpp"
+#include "harness/scenario/text_file.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr const char* kHelp =
+    "Drives many episodes: scenarios, settings and plants with many seeds, on all cores; writes a\n"
+    "store (campaign.sqlite), statistics (campaign.json, CSV files) and figures. Started again on\n"
+    "the same folder, it goes on where it stopped.";
+constexpr const char* kExample =
+    "Example: qsmpc campaign dubins_policies --out out/policies\n"
+    "How far it is, from another terminal: qsmpc campaign status out/policies\n"
+    "On two machines: qsmpc campaign dubins_policies --shard 1/2 --out out/one, --shard 2/2 on "
+    "the\n"
+    "other, then: qsmpc campaign merge out/one out/two --out out/policies";
+constexpr int kMostJobs = 1024;
+constexpr std::int64_t kMostShards = 1'000'000;
+
+struct CampaignArguments {
+  std::string campaign;
+  std::string out;
+  std::string shard;
+  bool dry_run = false;
+  bool quiet = false;
+  bool json = false;
+  std::vector<std::string> fail_on = {"fault"};
+  CampaignOptions options;
+};
+
+/// "I/N", 1 ≤ I ≤ N. Throws InputError on something else.
+Shard parse_shard(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  const auto number = [](std::string_view digits, std::int64_t& value) {
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    return error == std::errc{} && end == digits.data() + digits.size();
+  };
+  Shard shard;
+  if (slash != std::string::npos && number(std::string_view(text).substr(0, slash), shard.index) &&
+      number(std::string_view(text).substr(slash + 1), shard.count) && shard.index >= 1 &&
+      shard.index <= shard.count && shard.count <= kMostShards) {
+    return shard;
+  }
+  throw InputError({.key = "--shard",
+                    .found = text,
+                    .expected = fmt::format("I/N with 1 <= I <= N <= {}, e.g. 1/4", kMostShards)});
+}
+
+void tell_update(const StoreUpdate& update) {
+  std::cerr << fmt::format(
+      "qsmpc: the campaign has changed: {} episodes are kept, {} are no longer asked for and were "
+      "removed\n",
+      update.kept, update.dropped);
+}
+
+CampaignProgress drive(const Campaign& campaign, const std::string& folder,
+                       CampaignArguments& arguments) {
+  Progress progress("driving", arguments.quiet);
+  CampaignOptions& options = arguments.options;
+  options.should_stop = [] { return interrupts() > 0; };
+  options.should_hurry = [] { return interrupts() > 1; };
+  if (!arguments.quiet) options.on_update = tell_update;
+  options.on_progress = [&](const CampaignProgress& now) {
+    progress.update(now.done, now.total, progress_note(now));
+  };
+  return run_campaign(campaign, folder, options);
+}
+
+int campaign_command(CampaignArguments& arguments) {
+  const Campaign campaign = load_campaign(arguments.campaign);
+  if (!arguments.shard.empty()) arguments.options.shard = parse_shard(arguments.shard);
+  if (arguments.dry_run) {
+    print_result(arguments.json ? campaign_plan_json(campaign) : campaign_plan_text(campaign));
+    return kDone;
+  }
+  const std::string folder =
+      arguments.out.empty() ? default_folder(campaign.name, "campaign") : arguments.out;
+  const CampaignProgress end = drive(campaign, folder, arguments);
+  write_file(folder + "/" + kCampaignCopy, read_text_file(find_campaign(arguments.campaign)));
+  const CampaignStatistics statistics = write_campaign_results(folder);
+  print_campaign_results(statistics, folder, arguments.json);
+  if (end.done < end.total) {
+    std::cerr << fmt::format(
+        "qsmpc: interrupted; {} of {} episodes are done and kept, and the same command goes on\n",
+        end.done, end.total);
+    return kInterruptedExit;
+  }
+  return asked_to_tell(arguments.fail_on, statistics) ? kToldFailure : kDone;
+}
+
+void add_campaign_options(CLI::App& command, CampaignArguments& arguments) {
+  CampaignOptions& options = arguments.options;
+  command.add_option("campaign", arguments.campaign,
+                     "a campaign file, or the name of a shipped one");
+  command
+      .add_option("--jobs", options.jobs,
+                  "episodes at the same time; default: one a core; changes nothing but timings")
+      ->check(CLI::Range(1, kMostJobs));
+  command.add_option("--shard", arguments.shard,
+                     "I/N: only every N-th seed from the I-th on, for one of N machines");
+  command.add_option("--out", arguments.out, "output folder; default: out/NAME-campaign");
+  command.add_flag("--dry-run", arguments.dry_run, "check it and show what would be driven");
+  command.add_flag("--update", options.update,
+                   "go on in the folder of a campaign that has changed: keep the episodes that "
+                   "both ask for, remove the others");
+  command.add_flag("--retry-faults", options.retry_faults,
+                   "drive the episodes again whose plant broke");
+  command
+      .add_option("--fail-on", arguments.fail_on,
+                  "exit with 1 if there is any of these (fault, unsafe, timeout, left_safe_set, "
+                  "exceeded: a certificate is refuted, none); default: fault")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"fault", "unsafe", "timeout", "left_safe_set", "exceeded", "none"}));
+  command.add_flag("--quiet", arguments.quiet, "no progress");
+  command.add_flag("--json", arguments.json, "print campaign.json instead of the table");
+}
+
+}  // namespace
+
+void add_campaign_command(CLI::App& app, int& exit_code) {
+  CLI::App* command = app.add_subcommand("campaign", kHelp);
+  command->footer(kExample);
+  const auto arguments = std::make_shared<CampaignArguments>();
+  arguments->options.jobs =
+      std::min(kMostJobs, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  add_campaign_options(*command, *arguments);
+  add_campaign_status_command(*command, exit_code);
+  add_campaign_merge_command(*command, exit_code);
+  // The callback is called for the subcommands, too.
+  command->callback([command, arguments, &exit_code] {
+    if (!command->get_subcommands().empty()) return;
+    if (arguments->campaign.empty()) throw CLI::RequiredError("campaign");
+    exit_code = campaign_command(*arguments);
+  });
+}
+
+}  // namespace qsmpc

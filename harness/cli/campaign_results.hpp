@@ -1,0 +1,26 @@
+// What a campaign's store says, as files beside it and on the terminal.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/campaign/statistics.hpp"
+
+namespace qsmpc {
+
+/// The campaign file as it was given, in the campaign's folder.
+inline constexpr const char* kCampaignCopy = "campaign.yaml";
+
+/// Reads the store in `folder` and writes campaign.json, the CSV files and the figures beside it,
+/// each in one piece. Throws as StoreReader does, and IoError.
+CampaignStatistics write_campaign_results(const std::string& folder);
+
+/// Prints the table with the names of the files, or campaign.json.
+void print_campaign_results(const CampaignStatistics& statistics, const std::string& folder,
+                            bool json);
+
+/// Whether there is any of what --fail-on names.
+[[nodiscard]] bool asked_to_tell(const std::vector<std::string>& fail_on,
+                                 const CampaignStatistics& statistics);
+
+}  // namespace qsmpc

@@ -1,0 +1,276 @@
+#include "harness/report/campaign_charts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+#include "harness/report/page_style.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kLeastCertified = 1e-13;  // left end of the axis: the bin [0, 1e-12) is there
+constexpr std::size_t kMostPanels = 8;     // of variants in reliability.svg
+constexpr std::size_t kMostNumbers = 20;   // that have room below an axis
+constexpr std::size_t kMostPairs = 9;      // the same
+constexpr std::size_t kMostListed = 20;    // variants in a note
+constexpr std::size_t kNameLimit = 90;     // of a variant in a note
+constexpr std::size_t kTitleLimit = 44;    // of a variant in a title
+constexpr double kBeside = 0.12;           // between points of one variant
+constexpr double kRoom = 0.5;              // left and right of the outer variants
+
+constexpr const char* kListedBefore = "The numbers are those of the first chart.";
+constexpr const char* kRateLabel = "share of periods that ended unsafe (–)";
+
+/// A bin with events is a point with its interval, another one an upper limit. What is called
+/// exceeded stands out.
+void add_bins(const std::string& name, int colour, const std::vector<CalibrationBin>& bins,
+              Chart& chart) {
+  Series seen{.name = name, .colour = colour, .mark = Mark::kPoints};
+  Series unseen{.name = "none seen: at most", .colour = colour, .mark = Mark::kLimits};
+  Series exceeded{.name = name + ": exceeded", .colour = kVermilion, .mark = Mark::kPoints};
+  for (const CalibrationBin& bin : bins) {
+    if (bin.periods == 0) continue;
+    if (bin.unsafe == 0) {
+      unseen.x.push_back(bin.mean_certified);
+      unseen.y.push_back(bin.interval.upper);
+      continue;
+    }
+    Series& series = bin.exceeded ? exceeded : seen;
+    series.x.push_back(bin.mean_certified);
+    series.y.push_back(bin.rate);
+    series.lower.push_back(bin.interval.lower);
+    series.upper.push_back(bin.interval.upper);
+  }
+  for (Series* series : {&unseen, &seen, &exceeded}) {
+    if (!series->x.empty()) chart.series.push_back(std::move(*series));
+  }
+}
+
+/// Of the published value: it is no bound, so that nothing can exceed it.
+std::vector<CalibrationBin> not_bounds(std::vector<CalibrationBin> bins) {
+  for (CalibrationBin& bin : bins) bin.exceeded = false;
+  return bins;
+}
+
+/// The decade below all that is drawn, but for lower ends of intervals.
+double foot_of(const Chart& chart) {
+  double least = 0.1;
+  for (const Series& series : chart.series) {
+    for (const double y : series.y) least = std::min(least, y);
+  }
+  return std::pow(10.0, std::floor(std::log10(least) - 0.5));
+}
+
+/// The diagonal, above which more happened than certified, from the foot of the chart.
+void add_diagonal(Chart& chart) {
+  const double foot = chart.least_shown;
+  const double left = std::min(kLeastCertified, foot);
+  chart.areas.push_back(
+      {.name = "more than certified", .x = {left, foot, 1.0, left}, .y = {foot, foot, 1.0, 1.0}});
+  chart.series.push_back({.name = "as certified",
+                          .colour = kPurple,
+                          .dashed = true,
+                          .x = {foot, 1.0},
+                          .y = {foot, 1.0}});
+}
+
+std::string exceeded_text(const std::vector<CalibrationBin>& bins) {
+  const auto filled = std::ranges::count_if(bins, [](const auto& bin) { return bin.periods > 0; });
+  const auto exceeded = std::ranges::count_if(bins, [](const auto& bin) { return bin.exceeded; });
+  return fmt::format("Certificates exceeded: in {} of {} bins", exceeded, filled);
+}
+
+Chart reliability_chart(const std::string& title, const std::vector<CalibrationBin>& certified,
+                        const std::vector<CalibrationBin>& published) {
+  Chart chart{.title = title,
+              .note = fmt::format(
+                  "Periods by what was certified for them, in half decades; 99 % intervals as if "
+                  "periods were independent. Only a point whose whole interval is shaded speaks "
+                  "against its value. {}.",
+                  exceeded_text(certified)),
+              .x_label = "certified probability, mean of the bin (–)",
+              .y_label = kRateLabel,
+              .x_scale = Scale::kLog,
+              .y_scale = Scale::kLog,
+              .least_x = kLeastCertified,
+              .x_includes = {kLeastCertified, 1.0},
+              .y_includes = {1.0}};
+  add_bins("published value, no bound", kOrange, not_bounds(published), chart);
+  add_bins("certificate", kBlue, certified, chart);
+  chart.least_shown = foot_of(chart);
+  chart.y_includes.push_back(chart.least_shown);
+  if (has_points(chart)) add_diagonal(chart);
+  return chart;
+}
+
+Chart period_chart(const CampaignStatistics& statistics) {
+  Chart chart{.title = "Periods by what was certified for them",
+              .note = "Of all variants; the bin below 10⁻¹² is at the left end.",
+              .x_label = "certified probability, mean of the bin (–)",
+              .y_label = "periods in the bin",
+              .x_scale = Scale::kLog,
+              .y_scale = Scale::kLog,
+              .least_x = kLeastCertified,
+              .least_shown = 1.0,
+              .x_includes = {kLeastCertified, 1.0}};
+  for (const auto& [name, colour, bins] :
+       {std::tuple{"published value, no bound", kOrange, &statistics.published},
+        std::tuple{"certificate", kBlue, &statistics.calibration}}) {
+    Series series{.name = name, .colour = colour, .mark = Mark::kPoints};
+    for (const CalibrationBin& bin : *bins) {
+      if (bin.periods == 0) continue;
+      series.x.push_back(bin.mean_certified);
+      series.y.push_back(static_cast<double>(bin.periods));
+    }
+    chart.series.push_back(std::move(series));
+  }
+  return chart;
+}
+
+CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
+  CampaignFigure figure{.file = "reliability.svg", .charts = {}};
+  figure.charts.push_back(
+      reliability_chart("Do the certificates hold?", statistics.calibration, statistics.published));
+  figure.charts.push_back(period_chart(statistics));
+  if (statistics.variants.size() == 1) return figure;
+  const std::size_t panels = std::min(statistics.variants.size(), kMostPanels);
+  for (std::size_t n = 0; n < panels; ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
+    figure.charts.push_back(
+        reliability_chart(fmt::format("{}: {}", n + 1, printable(variant.name, kTitleLimit)),
+                          variant.calibration, variant.published));
+  }
+  return figure;
+}
+
+/// Of `names`, what has room below an axis: every so many, the others empty.
+std::vector<std::string> thinned(std::vector<std::string> names, std::size_t most) {
+  const std::size_t stride = std::max<std::size_t>(1, (names.size() + most - 1) / most);
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    if (n % stride != 0) names[n].clear();
+  }
+  return names;
+}
+
+/// What the numbers of variants mean.
+std::string variant_list(const CampaignStatistics& statistics) {
+  std::string list;
+  const std::size_t count = statistics.variants.size();
+  for (std::size_t n = 0; n < std::min(count, kMostListed); ++n) {
+    list += fmt::format("{}{}: {}", n == 0 ? "" : "; ", n + 1,
+                        printable(statistics.variants[n].name, kNameLimit));
+  }
+  return list + (count > kMostListed ? "; …" : ".");
+}
+
+/// A chart of what is called `names`, at x = 1, 2, …
+Chart named_chart(const std::string& title, std::vector<std::string> names) {
+  const auto count = static_cast<double>(names.size());
+  return {.title = title,
+          .note = kListedBefore,
+          .x_label = "",
+          .y_label = "",
+          .x_names = std::move(names),
+          .x_includes = {1.0 - kRoom, count + kRoom}};
+}
+
+std::vector<std::string> variant_numbers(const CampaignStatistics& statistics) {
+  std::vector<std::string> numbers;
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    numbers.push_back(fmt::format("{}", n + 1));
+  }
+  return thinned(std::move(numbers), kMostNumbers);
+}
+
+std::vector<std::string> pair_numbers(const CampaignStatistics& statistics) {
+  std::vector<std::string> numbers;
+  for (const VariantDifference& difference : statistics.differences) {
+    numbers.push_back(
+        fmt::format("{} − {}", difference.pair.variant + 1, difference.pair.baseline + 1));
+  }
+  return thinned(std::move(numbers), kMostPairs);
+}
+
+/// `rate` of each variant with its interval, `beside` its number.
+Series rate_series(const CampaignStatistics& statistics, const std::string& name, int colour,
+                   EpisodeRate VariantStatistics::*rate, double beside) {
+  Series series{.name = name, .colour = colour, .mark = Mark::kPoints};
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const EpisodeRate& own = statistics.variants[n].*rate;
+    series.x.push_back(static_cast<double>(n + 1) + beside);
+    series.y.push_back(own.rate);
+    series.lower.push_back(own.interval.lower);
+    series.upper.push_back(own.interval.upper);
+  }
+  return series;
+}
+
+CampaignFigure outcome_figure(const CampaignStatistics& statistics) {
+  const std::vector<std::string> numbers = variant_numbers(statistics);
+  Chart reached = named_chart("Episodes that reached the target (99 % intervals)", numbers);
+  reached.note = variant_list(statistics);
+  reached.x_label = "variant";
+  reached.y_label = "share of episodes (–)";
+  reached.series.push_back(
+      rate_series(statistics, "reached", kGreen, &VariantStatistics::reached, 0.0));
+  Chart failed = named_chart("Episodes that failed (99 % intervals)", numbers);
+  failed.x_label = "variant";
+  failed.y_label = "share of episodes (–)";
+  failed.y_includes = {0.0};
+  failed.series.push_back(rate_series(statistics, "entered the unsafe set", kVermilion,
+                                      &VariantStatistics::unsafe, -kBeside));
+  failed.series.push_back(
+      rate_series(statistics, "fault", kPurple, &VariantStatistics::fault, kBeside));
+  return {.file = "outcomes.svg", .charts = {std::move(reached), std::move(failed)}};
+}
+
+/// Title and unit of a quantity of paired_quantities.
+std::pair<std::string, std::string> quantity_texts(const std::string& quantity) {
+  if (quantity == "reached") return {"Reached the target", "difference of the share (–)"};
+  if (quantity == "unsafe") return {"Entered the unsafe set", "difference of the share (–)"};
+  if (quantity == "cost") return {"Cost", "mean difference (–)"};
+  if (quantity == "min_clearance") return {"Least clearance", "mean difference (m)"};
+  if (quantity == "certified") return {"Next-step certificate", "mean difference (–)"};
+  return {"Evaluations of a plan", "mean difference (–)"};
+}
+
+CampaignFigure difference_figure(const CampaignStatistics& statistics) {
+  const std::vector<std::string> numbers = pair_numbers(statistics);
+  CampaignFigure figure{.file = "differences.svg", .charts = {}};
+  for (std::size_t quantity = 0; quantity < paired_quantities().size(); ++quantity) {
+    const auto [title, label] = quantity_texts(paired_quantities()[quantity]);
+    Chart chart = named_chart(title + ", seed by seed (99 % intervals)", numbers);
+    if (quantity == 0) chart.note = variant_list(statistics);
+    chart.x_label = "variant − baseline";
+    chart.y_label = label;
+    chart.rules.push_back({.name = "no difference", .value = 0.0});
+    Series series{.name = "mean of the differences", .colour = kBlue, .mark = Mark::kPoints};
+    for (std::size_t n = 0; n < statistics.differences.size(); ++n) {
+      const MeanDifference& mean = statistics.differences[n].quantities[quantity];
+      series.x.push_back(static_cast<double>(n + 1));
+      series.y.push_back(mean.mean);
+      series.lower.push_back(mean.interval.lower);
+      series.upper.push_back(mean.interval.upper);
+    }
+    chart.series.push_back(std::move(series));
+    figure.charts.push_back(std::move(chart));
+  }
+  return figure;
+}
+
+}  // namespace
+
+std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics) {
+  std::vector<CampaignFigure> figures = {reliability_figure(statistics),
+                                         outcome_figure(statistics)};
+  if (!statistics.differences.empty()) figures.push_back(difference_figure(statistics));
+  return figures;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,23 @@
+// A campaign's statistics as figures.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/campaign/statistics.hpp"
+#include "harness/report/svg_chart.hpp"
+
+namespace qsmpc {
+
+/// A figure: charts that stand together, and the name of its file.
+struct CampaignFigure {
+  std::string file;  ///< e.g. "reliability.svg"
+  std::vector<Chart> charts;
+};
+
+/// reliability.svg (what was observed against what was certified, of all variants together and of
+/// each of the first ones), outcomes.svg (rates by variant) and, where variants are compared,
+/// differences.svg (by pair of variants, one chart a quantity).
+[[nodiscard]] std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics);
+
+}  // namespace qsmpc

@@ -1,0 +1,25 @@
+// Small campaigns for the program, and what of their results may be compared.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/integration/process.hpp"
+
+namespace qsmpc::testing {
+
+/// A campaign file of short drives past a block, for two variants: `extra` is put after it.
+[[nodiscard]] std::string short_campaign(const TemporaryFolder& folder, int seeds,
+                                         const std::string& extra = "");
+
+/// Every row of the store in `folder` but the timings, a line each.
+[[nodiscard]] std::vector<std::string> rows_of(const std::string& folder);
+
+/// The bytes of campaign.json and of the CSV files, without what the clock says.
+[[nodiscard]] std::string results_of(const std::string& folder);
+
+/// Names, relative to `folder`, of all files below it that end in `ending`.
+[[nodiscard]] std::vector<std::string> files_below(const std::string& folder,
+                                                   const std::string& ending);
+
+}  // namespace qsmpc::testing

@@ -1,0 +1,154 @@
+#include "harness/report/campaign_charts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "harness/report/svg_figure.hpp"
+#include "tests/unit/report/page_checks.hpp"
+
+namespace qsmpc {
+namespace {
+
+using testing::contains;
+using testing::occurrences;
+using testing::tag_problem;
+
+VariantStatistics variant(const std::string& name, int unsafe_every) {
+  VariantTally tally;
+  for (int n = 0; n < 1000; ++n) {
+    EpisodeRow row;
+    row.outcome = "reached";
+    tally.add(row);
+    tally.add(0, {.certified = 1e-3, .published = 1e-5, .unsafe = n % unsafe_every == 0});
+    tally.add(1, {.certified = 1e-7, .published = 1e-9});
+  }
+  VariantStatistics statistics = tally.result();
+  statistics.name = name;
+  return statistics;
+}
+
+CampaignStatistics example() {
+  CampaignStatistics statistics;
+  statistics.variants = {variant("seldom", 2000), variant("often <b>", 10)};
+  statistics.calibration = statistics.variants[1].calibration;
+  statistics.published = statistics.variants[1].published;
+  VariantDifference difference{.pair = {.variant = 1, .baseline = 0}};
+  for (const std::string& quantity : paired_quantities()) {
+    difference.quantities.push_back(
+        {.quantity = quantity, .pairs = 10, .mean = 0.5, .interval = {.lower = 0.4, .upper = 0.7}});
+  }
+  statistics.differences = {difference};
+  return statistics;
+}
+
+const Series* series_of(const Chart& chart, const std::string& name) {
+  const auto found = std::ranges::find(chart.series, name, &Series::name);
+  return found == chart.series.end() ? nullptr : &*found;
+}
+
+TEST(CampaignFigures, are_documents_with_texts_that_are_escaped) {
+  const std::vector<CampaignFigure> figures = campaign_figures(example());
+  ASSERT_EQ(figures.size(), 3U);
+  EXPECT_EQ(figures[0].file, "reliability.svg");
+  EXPECT_EQ(figures[1].file, "outcomes.svg");
+  EXPECT_EQ(figures[2].file, "differences.svg");
+  for (const CampaignFigure& figure : figures) {
+    const std::string svg = svg_figure(figure.charts);
+    EXPECT_EQ(tag_problem(svg.substr(svg.find("<svg"))), "") << figure.file;
+    EXPECT_FALSE(contains(svg, "<b>")) << figure.file;
+    EXPECT_FALSE(contains(svg, "nan")) << figure.file;
+    EXPECT_FALSE(contains(svg, "inf")) << figure.file;
+  }
+}
+
+TEST(CampaignFigures, of_no_episodes_exist) {
+  CampaignStatistics statistics;
+  statistics.variants = {VariantTally().result()};
+  statistics.calibration = statistics.published = statistics.variants[0].calibration;
+  for (const CampaignFigure& figure : campaign_figures(statistics)) {
+    EXPECT_NE(figure.file, "differences.svg");
+    EXPECT_TRUE(contains(svg_figure(figure.charts), "No finite values to draw.")) << figure.file;
+  }
+}
+
+TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_as_limits) {
+  const Chart chart = campaign_figures(example())[0].charts[0];
+  const Series* exceeded = series_of(chart, "certificate: exceeded");
+  ASSERT_NE(exceeded, nullptr) << "one of ten where one of a thousand is certified";
+  EXPECT_EQ(exceeded->x.size(), 1U);
+  EXPECT_DOUBLE_EQ(exceeded->y[0], 0.1);
+  EXPECT_LT(exceeded->lower[0], 0.1);
+  EXPECT_GT(exceeded->upper[0], 0.1);
+  EXPECT_EQ(series_of(chart, "certificate"), nullptr);
+  const Series* published = series_of(chart, "published value, no bound");
+  ASSERT_NE(published, nullptr);
+  EXPECT_EQ(published->x.size(), 1U);
+  EXPECT_EQ(series_of(chart, "published value, no bound: exceeded"), nullptr);
+  const auto limits = std::ranges::count(chart.series, Mark::kLimits, &Series::mark);
+  EXPECT_EQ(limits, 2);
+  EXPECT_TRUE(contains(chart.note, "in 1 of 2 bins"));
+}
+
+TEST(ReliabilityFigure, shades_what_is_above_the_diagonal) {
+  const Chart chart = campaign_figures(example())[0].charts[0];
+  ASSERT_EQ(chart.areas.size(), 1U);
+  for (std::size_t i = 0; i < chart.areas[0].x.size(); ++i) {
+    EXPECT_GE(chart.areas[0].y[i], chart.areas[0].x[i]);
+  }
+  const std::string svg = chart_drawing(chart);
+  EXPECT_EQ(occurrences(svg, "class=\"area\""), 1);
+  EXPECT_LT(svg.find("class=\"area\""), svg.find("class=\"grid-line\"")) << "beneath all else";
+}
+
+TEST(ReliabilityFigure, has_a_chart_for_each_of_several_variants) {
+  CampaignStatistics statistics = example();
+  EXPECT_EQ(campaign_figures(statistics)[0].charts.size(), 4U);
+  statistics.variants.pop_back();
+  statistics.differences.clear();
+  EXPECT_EQ(campaign_figures(statistics)[0].charts.size(), 2U);
+  statistics.variants.assign(100, statistics.variants[0]);
+  EXPECT_LT(campaign_figures(statistics)[0].charts.size(), 20U);
+}
+
+TEST(OutcomeFigure, has_room_for_many_variants) {
+  CampaignStatistics statistics = example();
+  statistics.variants.assign(100, statistics.variants[0]);
+  const Chart chart = campaign_figures(statistics)[1].charts[0];
+  EXPECT_EQ(chart.series[0].x.size(), 100U);
+  EXPECT_LE(std::ranges::count_if(chart.x_names, [](const auto& name) { return !name.empty(); }),
+            20);
+}
+
+TEST(ErrorBars, reach_from_end_to_end_and_widen_the_axis) {
+  Chart chart{.title = "Rates",
+              .x_label = "variant",
+              .y_label = "rate (–)",
+              .series = {{.name = "rate",
+                          .mark = Mark::kPoints,
+                          .x = {1, 2},
+                          .y = {0.5, 0.5},
+                          .lower = {0.0, 0.4},
+                          .upper = {1.0, 0.6}}}};
+  const std::string svg = chart_drawing(chart);
+  EXPECT_TRUE(contains(svg, "M63.0 244.0h6m-3 0V10.0m-3 0h6")) << "from foot to top";
+  chart.series[0].upper[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(contains(chart_drawing(chart), "nan"));
+  EXPECT_EQ(occurrences(chart_drawing(chart), "h6m-3 0V"), 1);
+}
+
+TEST(LogarithmicAxis, may_be_the_one_across) {
+  const Chart chart{.title = "Decades",
+                    .x_label = "probability (–)",
+                    .y_label = "value (–)",
+                    .x_scale = Scale::kLog,
+                    .series = {{.name = "line", .x = {1e-4, 1e-2, 1.0}, .y = {0, 1, 2}}}};
+  const std::string svg = chart_drawing(chart);
+  EXPECT_TRUE(contains(svg, ">10⁻²<"));
+  EXPECT_TRUE(contains(svg, "L266.0 ")) << "10⁻² is halfway";
+}
+
+}  // namespace
+}  // namespace qsmpc
