@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 
 #include "harness/atomic_file.hpp"
-#include "harness/campaign/episode_row.hpp"
-#include "harness/campaign/folder_lock.hpp"
+#include "harness/campaign/store/episode_row.hpp"
+#include "harness/campaign/store/folder_lock.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "harness/campaign/campaign.hpp"
-#include "harness/campaign/store.hpp"
+#include "harness/campaign/store/store.hpp"
 
 namespace qsmpc {
 

@@ -6,9 +6,9 @@
 #include <optional>
 #include <string>
 
-#include "harness/campaign/folder_lock.hpp"
 #include "harness/campaign/runner.hpp"
-#include "harness/campaign/store_reader.hpp"
+#include "harness/campaign/store/folder_lock.hpp"
+#include "harness/campaign/store/store_reader.hpp"
 
 namespace qsmpc {
 

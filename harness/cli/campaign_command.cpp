@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "harness/atomic_file.hpp"
-#include "harness/campaign/campaign_file.hpp"
-#include "harness/campaign/campaign_plan.hpp"
+#include "harness/campaign/plan/campaign_file.hpp"
+#include "harness/campaign/plan/campaign_plan.hpp"
 #include "harness/campaign/runner.hpp"
 #include "harness/campaign/status.hpp"
 #include "harness/cli/campaign_results.hpp"

@@ -7,7 +7,7 @@
 #include <CLI/CLI.hpp>
 
 #include "harness/atomic_file.hpp"
-#include "harness/campaign/merge.hpp"
+#include "harness/campaign/store/merge.hpp"
 #include "harness/cli/campaign_results.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"

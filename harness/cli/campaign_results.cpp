@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "harness/atomic_file.hpp"
-#include "harness/campaign/campaign_csv.hpp"
-#include "harness/campaign/campaign_json.hpp"
-#include "harness/campaign/campaign_table.hpp"
-#include "harness/campaign/store_reader.hpp"
-#include "harness/campaign/store_schema.hpp"
+#include "harness/campaign/statistics/campaign_csv.hpp"
+#include "harness/campaign/statistics/campaign_json.hpp"
+#include "harness/campaign/statistics/campaign_table.hpp"
+#include "harness/campaign/store/store_reader.hpp"
+#include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/svg_figure.hpp"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/campaign/statistics.hpp"
+#include "harness/campaign/statistics/statistics.hpp"
 
 namespace qsmpc {
 

@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "harness/campaign/campaign_file.hpp"
-#include "harness/campaign/campaign_plan.hpp"
+#include "harness/campaign/plan/campaign_file.hpp"
+#include "harness/campaign/plan/campaign_plan.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"

@@ -32,7 +32,7 @@ constexpr const char* kRateLabel = "share of periods that ended unsafe (–)";
 void add_bins(const std::string& name, int colour, const std::vector<CalibrationBin>& bins,
               Chart& chart) {
   Series seen{.name = name, .colour = colour, .mark = Mark::kPoints};
-  Series unseen{.name = "none seen: at most", .colour = colour, .mark = Mark::kLimits};
+  Series unseen{.name = name + ": none seen, at most", .colour = colour, .mark = Mark::kLimits};
   Series exceeded{.name = name + ": exceeded", .colour = kVermilion, .mark = Mark::kPoints};
   for (const CalibrationBin& bin : bins) {
     if (bin.periods == 0) continue;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/campaign/statistics.hpp"
+#include "harness/campaign/statistics/statistics.hpp"
 #include "harness/report/svg_chart.hpp"
 
 namespace qsmpc {

@@ -15,7 +15,7 @@ namespace {
 // Units of the view box; the page scales it to the width that there is.
 constexpr double kWidth = kChartWidth;
 constexpr double kHeight = kChartHeight;
-constexpr double kLeft = 66.0;
+constexpr double kLeft = 78.0;
 constexpr double kRight = 14.0;
 constexpr double kTop = 10.0;
 constexpr double kBottom = 46.0;

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/campaign/store_reader.hpp"
+#include "harness/campaign/store/store_reader.hpp"
 
 namespace qsmpc::testing {
 namespace {

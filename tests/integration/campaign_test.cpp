@@ -17,7 +17,7 @@
 #include <nlohmann/json.hpp>
 #include <sys/mount.h>
 
-#include "harness/campaign/folder_lock.hpp"
+#include "harness/campaign/store/folder_lock.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "tests/integration/campaign_fixture.hpp"
 

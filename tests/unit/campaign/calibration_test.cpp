@@ -1,4 +1,4 @@
-#include "harness/campaign/calibration.hpp"
+#include "harness/campaign/statistics/calibration.hpp"
 
 #include <algorithm>
 #include <cmath>

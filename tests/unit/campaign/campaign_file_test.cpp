@@ -1,5 +1,5 @@
 // What a campaign file expands to.
-#include "harness/campaign/campaign_file.hpp"
+#include "harness/campaign/plan/campaign_file.hpp"
 
 #include <limits>
 

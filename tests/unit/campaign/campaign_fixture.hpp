@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "harness/campaign/campaign.hpp"
-#include "harness/campaign/episode_row.hpp"
+#include "harness/campaign/store/episode_row.hpp"
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
 
@@ -70,6 +70,7 @@ inline EpisodeRow example_row(std::int64_t variant, std::uint64_t seed,
           .iterations_median = 7.0,
           .fallbacks = 1,
           .trace = "",
+          .version = "1.2",
           .timing = {.finished_at = 1e9 + x, .wall_ms = 3.0, .deadline_misses = 1},
           .periods = {{.certified = 1e-3, .published = 1e-2, .unsafe = false, .ocp_ms = 1.5},
                       {.certified = 2e-3, .published = 3e-2, .unsafe = true, .ocp_ms = 0.5}}};

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/campaign/campaign_file.hpp"
+#include "harness/campaign/plan/campaign_file.hpp"
 #include "harness/errors.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 

@@ -1,4 +1,4 @@
-#include "harness/campaign/campaign_plan.hpp"
+#include "harness/campaign/plan/campaign_plan.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

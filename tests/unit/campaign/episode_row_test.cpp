@@ -1,4 +1,4 @@
-#include "harness/campaign/episode_row.hpp"
+#include "harness/campaign/store/episode_row.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "harness/campaign/folder_lock.hpp"
+#include "harness/campaign/store/folder_lock.hpp"
 
 #include <csignal>
 #include <ctime>

@@ -1,4 +1,4 @@
-#include "harness/campaign/merge.hpp"
+#include "harness/campaign/store/merge.hpp"
 
 #include <filesystem>
 #include <string>
@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/campaign/runner.hpp"
-#include "harness/campaign/store.hpp"
+#include "harness/campaign/store/store.hpp"
 #include "harness/errors.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -1,4 +1,4 @@
-#include "harness/campaign/paired_difference.hpp"
+#include "harness/campaign/statistics/paired_difference.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "harness/campaign/quantiles.hpp"
+#include "harness/campaign/statistics/quantiles.hpp"
 
 #include <cmath>
 #include <limits>

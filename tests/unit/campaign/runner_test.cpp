@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/campaign/folder_lock.hpp"
+#include "harness/campaign/store/folder_lock.hpp"
 #include "harness/errors.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "tests/support/temporary_folder.hpp"

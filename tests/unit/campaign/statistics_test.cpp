@@ -1,5 +1,5 @@
 // From a store to what is shown of it.
-#include "harness/campaign/statistics.hpp"
+#include "harness/campaign/statistics/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/campaign/campaign_csv.hpp"
-#include "harness/campaign/campaign_json.hpp"
-#include "harness/campaign/campaign_table.hpp"
-#include "harness/campaign/store.hpp"
+#include "harness/campaign/statistics/campaign_csv.hpp"
+#include "harness/campaign/statistics/campaign_json.hpp"
+#include "harness/campaign/statistics/campaign_table.hpp"
+#include "harness/campaign/store/store.hpp"
 #include "harness/scenario/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"

@@ -1,4 +1,4 @@
-#include "harness/campaign/store.hpp"
+#include "harness/campaign/store/store.hpp"
 
 #include <cmath>
 #include <filesystem>
@@ -9,7 +9,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/campaign/store_schema.hpp"
+#include "harness/campaign/store/store_rows.hpp"
+#include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
@@ -294,6 +295,34 @@ TEST_F(StoreTest, is_not_folded_while_others_read_it) {
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
   EXPECT_NO_THROW(store.fold());
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
+}
+
+/// A store as the first schema had it, with one episode.
+void make_first_store(const std::string& path) {
+  SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  migrate(database, 0, {store_migrations().front()});
+  const Campaign campaign = quick_campaign();
+  StoredCampaign stored = stored_campaign(campaign, {});
+  insert_campaign(database, stored);
+  for (const StoredVariant& variant : stored_variants(campaign, {"", ""})) {
+    insert_variant(database, variant, variant.id);
+  }
+  database.exec(
+      "INSERT INTO episode VALUES (1, 6, 'reached', '', 2, 0.2, 0, 1.5, 9.0, 0, 0, 0, 0, 1, 0, '');"
+      "INSERT INTO episode_timing VALUES (1, 6, 1e9, 2.0, 0);"
+      "INSERT INTO period VALUES (1, 6, 0, 0.1, 0.2, 0);"
+      "INSERT INTO period_timing VALUES (1, 6, 0, 0.5)");
+}
+
+TEST_F(StoreTest, of_an_older_schema_is_brought_up_to_date_with_its_episodes) {
+  make_first_store(path());
+  EXPECT_THROW(StoreReader(folder.path()), InputError);
+  EXPECT_EQ(open(quick_campaign()).outcome(1, 6), "reached");
+  EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), store_schema());
+  const std::vector<EpisodeRow> rows = rows_of(1);
+  ASSERT_EQ(rows.size(), 1U);
+  EXPECT_EQ(rows[0].cost, 9.0);
+  EXPECT_EQ(rows[0].version, StoreReader(folder.path()).campaign().version);
 }
 
 TEST(StoreMigration, applies_what_is_missing_one_whole_step_at_a_time) {

@@ -1,4 +1,4 @@
-#include "harness/campaign/variant_statistics.hpp"
+#include "harness/campaign/statistics/variant_statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/campaign/variant_pairs.hpp"
+#include "harness/campaign/statistics/variant_pairs.hpp"
 
 namespace qsmpc {
 namespace {

@@ -133,7 +133,7 @@ TEST(ErrorBars, reach_from_end_to_end_and_widen_the_axis) {
                           .lower = {0.0, 0.4},
                           .upper = {1.0, 0.6}}}};
   const std::string svg = chart_drawing(chart);
-  EXPECT_TRUE(contains(svg, "M63.0 244.0h6m-3 0V10.0m-3 0h6")) << "from foot to top";
+  EXPECT_TRUE(contains(svg, "M75.0 244.0h6m-3 0V10.0m-3 0h6")) << "from foot to top";
   chart.series[0].upper[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(contains(chart_drawing(chart), "nan"));
   EXPECT_EQ(occurrences(chart_drawing(chart), "h6m-3 0V"), 1);
@@ -147,7 +147,7 @@ TEST(LogarithmicAxis, may_be_the_one_across) {
                     .series = {{.name = "line", .x = {1e-4, 1e-2, 1.0}, .y = {0, 1, 2}}}};
   const std::string svg = chart_drawing(chart);
   EXPECT_TRUE(contains(svg, ">10⁻²<"));
-  EXPECT_TRUE(contains(svg, "L266.0 ")) << "10⁻² is halfway";
+  EXPECT_TRUE(contains(svg, "L272.0 ")) << "10⁻² is halfway";
 }
 
 }  // namespace

@@ -80,7 +80,7 @@ TEST(ChartFigure, a_gap_interrupts_the_line_and_is_said) {
   EXPECT_FALSE(contains(html, "nan"));
   EXPECT_TRUE(contains(html, "1 value is not finite and not drawn"));
   // The first point stands alone, as a dot; the last two are a line.
-  EXPECT_EQ(occurrences(html, "<path class=\"points c0\" d=\"M66.0 "), 1);
+  EXPECT_EQ(occurrences(html, "<path class=\"points c0\" d=\"M78.0 "), 1);
   const std::size_t line = html.rfind("<path class=\"line c0\" d=\"M");
   const std::string data = html.substr(line, html.find('>', line) - line);
   EXPECT_EQ(occurrences(data, "M"), 1);

@@ -1,0 +1,206 @@
+#include "harness/campaign/plan/variant_scenario.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <limits>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "harness/errors.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/plant/plant_variation.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/overrides.hpp"
+#include "harness/scenario/plant_choice.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/shipped_files.hpp"
+#include "harness/scenario/yaml_text.hpp"
+
+namespace qsmpc {
+namespace {
+
+namespace fs = std::filesystem;
+using Settings = std::vector<CampaignSetting>;
+
+std::optional<std::string> file_beside(const std::string& file, const std::string& name) {
+  const fs::path path = fs::path(file).parent_path() / name;  // name itself where it is absolute
+  std::error_code error;
+  return fs::is_regular_file(path, error) ? std::optional(path.string()) : std::nullopt;
+}
+
+/// Whether a setting says what `key` is, itself or in a mapping around it.
+bool sets(const Settings& settings, const std::string& key) {
+  for (const CampaignSetting& setting : settings) {
+    if (!is_key_within(key, setting.key)) continue;
+    const YamlNode* node = &setting.value;
+    std::size_t begin = setting.key.size() + 1;
+    while (node != nullptr && begin < key.size()) {
+      const std::size_t end = std::min(key.find('.', begin), key.size());
+      node = node->find(key.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    if (node != nullptr) return true;
+  }
+  return false;
+}
+
+/// The setting that a problem with `key` is about: the last one that holds it, else the last one
+/// that is within it.
+const CampaignSetting* setting_about(const Settings& settings, const std::string& key) {
+  const auto last_that = [&](const auto& is_meant) -> const CampaignSetting* {
+    const auto at = std::find_if(settings.rbegin(), settings.rend(), is_meant);
+    return at == settings.rend() ? nullptr : &*at;
+  };
+  const CampaignSetting* holding =
+      last_that([&](const CampaignSetting& setting) { return is_key_within(key, setting.key); });
+  return holding != nullptr ? holding : last_that([&](const CampaignSetting& setting) {
+    return is_key_within(setting.key, key);
+  });
+}
+
+std::vector<std::string> texts_of(const Settings& settings, std::size_t count) {
+  std::vector<std::string> texts;
+  texts.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) texts.push_back(settings[i].text);
+  return texts;
+}
+
+/// The setting with which the scenario, valid without those from it on, is no longer valid; nullptr
+/// where it is not valid on its own.
+const CampaignSetting* breaking_setting(const std::string& path, const Settings& settings) {
+  const auto is_valid_with = [&](std::size_t count) {
+    return validate_scenario_file(path, texts_of(settings, count)).empty();
+  };
+  if (settings.empty() || !is_valid_with(0)) return nullptr;
+  std::size_t valid = 0;
+  std::size_t broken = settings.size();
+  while (broken - valid > 1) {
+    const std::size_t middle = valid + (broken - valid) / 2;
+    (is_valid_with(middle) ? valid : broken) = middle;
+  }
+  return &settings[valid];
+}
+
+CampaignPlace place_of(const CampaignSetting& setting, const std::string& key) {
+  return {.line = setting.line, .path = path_of(setting, key)};
+}
+
+/// `first`: what was thrown.
+void refuse_scenario(const std::string& path, const Settings& settings,
+                     const InputError::Where& first, CampaignRefusals& refusals) {
+  std::optional<const CampaignSetting*> breaking;  // sought once, where it is needed
+  std::vector<InputError::Where> problems =
+      validate_scenario_file(path, texts_of(settings, settings.size()));
+  if (problems.empty()) problems.push_back(first);  // of a file that was changed since
+  for (InputError::Where& where : problems) {
+    if (where.file == kOverrideSource && !settings.empty()) {
+      const CampaignSetting* setting = setting_about(settings, where.key);
+      if (setting == nullptr) setting = &settings.back();
+      refusals.add(place_of(*setting, where.key), where.found, where.expected);
+      continue;
+    }
+    if (!breaking) breaking = breaking_setting(path, settings);
+    if (where.file == path && *breaking != nullptr) {
+      refusals.add(place_of(**breaking, (*breaking)->key),
+                   "with it " + where.key + ": " + where.found, where.expected);
+    } else {
+      refusals.add(std::move(where));
+    }
+  }
+}
+
+/// Equal for scenarios whose plants are the same.
+std::string plant_text(const Scenario& scenario) {
+  const YamlNode tree = parse_yaml(to_yaml(scenario), "scenario");
+  std::string text;
+  for (const char* key : {"model", "time_step", "plant", "disturbance"}) {
+    if (const YamlNode* node = tree.find(key)) text += yaml_flow(*node) + "\n";
+  }
+  return text;
+}
+
+void try_plant(const Scenario& scenario) {
+  (void)make_plant(scenario);
+  if (!varies(scenario.disturbance)) return;
+  try {
+    // Refuses a variation that the plant has nothing for; any seed does.
+    (void)make_plant(scenario, draw_variation(scenario.disturbance, scenario.seed));
+  } catch (const SimulatorError&) {
+    // One vehicle of many that cannot be simulated is an episode's fault, no wrong file.
+  }
+}
+
+std::string in_words(const InputError::Where& where) {
+  std::string words;
+  for (const std::string& part : {where.file, where.key}) {
+    if (!part.empty()) words += part + ": ";
+  }
+  return words + where.found;
+}
+
+}  // namespace
+
+std::optional<std::string> find_beside(const std::string& file, const CampaignChoice& scenario,
+                                       CampaignRefusals& refusals) {
+  if (auto path = file_beside(file, scenario.text)) return path;
+  if (auto path = find_shipped_scenario(scenario.text)) return path;
+  refusals.add(scenario.place, scenario.text,
+               "a scenario file beside the campaign, or " +
+                   expected_names(scenario.text, shipped_scenario_names()));
+  return std::nullopt;
+}
+
+std::optional<Scenario> load_variant(const std::string& path, const SettingGroup& settings,
+                                     CampaignRefusals& refusals) {
+  try {
+    Scenario scenario = load_scenario(path, texts_of(settings.settings, settings.settings.size()));
+    scenario.seed = 0;
+    if (!sets(settings.settings, "controller.threads")) scenario.controller.threads = 1;
+    if (!sets(settings.settings, "controller.deadline")) {
+      scenario.controller.deadline = std::numeric_limits<double>::infinity();
+    }
+    return scenario;
+  } catch (const InputError& error) {
+    refuse_scenario(path, settings.settings, error.where(), refusals);
+    return std::nullopt;
+  }
+}
+
+std::optional<Scenario> PlantChecks::choose(const Scenario& resolved, const CampaignChoice& plant,
+                                            const CampaignChoice& scenario,
+                                            const SettingGroup& settings) {
+  try {
+    Scenario driven = resolved;
+    if (!plant.text.empty()) {
+      const bool is_file = fs::path(plant.text).extension() == ".xml";
+      const auto beside = is_file ? file_beside(draft_->file, plant.text) : std::nullopt;
+      driven = with_plant(std::move(driven), beside ? fs::absolute(*beside).string() : plant.text);
+    }
+    const std::string text = plant_text(driven);
+    if (broken_.contains(text)) return std::nullopt;
+    if (!made_.contains(text)) {
+      broken_.insert(text);
+      try_plant(driven);
+      broken_.erase(text);
+      made_.insert(text);
+    }
+    return driven;
+  } catch (const InputError& error) {
+    const InputError::Where& where = error.where();
+    const bool is_choice = where.key == "--plant";
+    const std::string key = where.file.empty() ? where.key : "plant";
+    const CampaignSetting* setting = is_choice ? nullptr : setting_about(settings.settings, key);
+    const bool named = !plant.text.empty();
+    const std::string found = is_choice ? plant.text : in_words(where);
+    const std::string whose = draft_->scenarios.size() > 1 ? ", for " + scenario.text : "";
+    const CampaignPlace place = setting != nullptr && (!named || where.file.empty())
+                                    ? place_of(*setting, setting->key)
+                                    : (named ? plant.place : scenario.place);
+    refusals_->add(place, found + (named ? whose : ""), where.expected);
+    return std::nullopt;
+  }
+}
+
+}  // namespace qsmpc

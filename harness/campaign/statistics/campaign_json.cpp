@@ -1,0 +1,127 @@
+#include "harness/campaign/statistics/campaign_json.hpp"
+
+#include <cstddef>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+namespace qsmpc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json interval_json(const RateInterval& interval) { return {interval.lower, interval.upper}; }
+
+Json spread_json(const Spread& spread) {
+  Json json{{"episodes", spread.count},
+            {"faults", spread.worst},
+            {"mean", spread.mean},
+            {"standard_error", spread.standard_error}};
+  for (std::size_t i = 0; i < spread_names().size(); ++i) {
+    json[spread_names()[i]] = spread.quantiles[i];
+  }
+  return json;
+}
+
+Json bins_json(const std::vector<CalibrationBin>& bins, bool is_bound) {
+  Json json = Json::array();
+  for (const CalibrationBin& bin : bins) {
+    if (bin.periods == 0) continue;
+    Json entry{{"lower", bin.lower},
+               {"upper", bin.upper},
+               {"periods", bin.periods},
+               {"mean_certified", bin.mean_certified},
+               {"unsafe", bin.unsafe},
+               {"rate", bin.rate},
+               {"interval", interval_json(bin.interval)}};
+    if (is_bound) {
+      entry["exceedance_p_value"] = bin.p_value;
+      entry["exceeded"] = bin.exceeded;
+    }
+    json.push_back(std::move(entry));
+  }
+  return json;
+}
+
+Json calibration_json(const std::vector<CalibrationBin>& certified,
+                      const std::vector<CalibrationBin>& published) {
+  return {{"certified", bins_json(certified, true)}, {"published", bins_json(published, false)}};
+}
+
+Json difference_json(const CampaignStatistics& statistics, const VariantDifference& difference) {
+  Json json{{"baseline", statistics.variants[difference.pair.baseline].name},
+            {"differs_by", differs_by_name(difference.pair.by)}};
+  for (const MeanDifference& quantity : difference.quantities) {
+    json[quantity.quantity] = {
+        {"mean", quantity.mean},     {"interval", interval_json(quantity.interval)},
+        {"pairs", quantity.pairs},   {"left_out", quantity.left_out},
+        {"higher", quantity.higher}, {"lower", quantity.lower}};
+  }
+  return json;
+}
+
+Json differences_json(const CampaignStatistics& statistics, std::size_t variant) {
+  Json json = Json::array();
+  for (const VariantDifference& difference : statistics.differences) {
+    if (difference.pair.variant == variant) {
+      json.push_back(difference_json(statistics, difference));
+    }
+  }
+  return json;
+}
+
+Json times_json(const VariantStatistics& variant) {
+  const Distribution& times = variant.ocp_ms;
+  return {{"median", times.median}, {"p95", times.p95},
+          {"p99", times.p99},       {"max", times.max},
+          {"mean", times.mean},     {"deadline_misses", variant.deadline_misses}};
+}
+
+Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
+  const VariantStatistics& variant = statistics.variants[number];
+  return {{"scenario", variant.scenario},
+          {"settings", variant.settings},
+          {"plant", variant.plant},
+          {"episodes", variant.episodes},
+          {"done", variant.done},
+          {"outcomes", variant.outcomes},
+          {"reached_rate", variant.reached.rate},
+          {"reached_interval", interval_json(variant.reached.interval)},
+          {"fault_rate", variant.fault.rate},
+          {"fault_interval", interval_json(variant.fault.interval)},
+          {"empirical",
+           {{"unsafe_rate", variant.unsafe.rate},
+            {"unsafe_interval", interval_json(variant.unsafe.interval)}}},
+          {"cost", spread_json(variant.cost)},
+          {"min_clearance", spread_json(variant.min_clearance)},
+          {"time_to_target", spread_json(variant.time_to_target)},
+          {"periods", variant.periods},
+          {"unsafe_periods", variant.unsafe_periods},
+          {"unsafe_step_rate", variant.unsafe_step_rate()},
+          {"certified_step_rate", variant.certified_step_rate()},
+          {"exceedance_p_value", variant.p_value},
+          {"calibration", calibration_json(variant.calibration, variant.published)},
+          {"differences", differences_json(statistics, number)},
+          {"ocp_ms", times_json(variant)}};
+}
+
+}  // namespace
+
+std::string campaign_json(const CampaignStatistics& statistics) {
+  const StoredCampaign& campaign = statistics.campaign;
+  Json json{
+      {"name", campaign.name},          {"version", campaign.version},
+      {"seeds", campaign.seeds},        {"shard", {campaign.shard.index, campaign.shard.count}},
+      {"episodes", campaign.episodes},  {"done", statistics.done},
+      {"outcomes", statistics.outcomes}};
+  json["variants"] = Json::object();
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    json["variants"][statistics.variants[n].name] = variant_json(statistics, n);
+  }
+  json["exceedance_p_value"] = statistics.p_value;
+  json["calibration"] = calibration_json(statistics.calibration, statistics.published);
+  // Names come from files: what is no UTF-8 is replaced, not thrown about.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,209 @@
+#include "harness/campaign/statistics/campaign_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr std::size_t kNameWidth = 28;   // of variants
+constexpr std::size_t kTitleLimit = 76;  // of a variant's name in a line of its own
+constexpr std::size_t kFullName = 100;
+constexpr std::size_t kOutcomeLimit = 16;
+constexpr double kSurprising = 0.01;  // a p-value below it is marked
+constexpr std::size_t kMedian = 3;    // of spread_shares
+constexpr std::size_t kFifth = 1;
+constexpr std::size_t kNinetyFifth = 5;
+
+/// `text` cut to `width` columns. The mark of a cut text is one column and three bytes.
+std::string cut(const std::string& text, std::size_t width) {
+  std::string shown = printable(text, width - 2);  // the mark and a gap follow
+  std::size_t columns = 0;
+  for (const char letter : shown) columns += (static_cast<unsigned char>(letter) & 0xC0) != 0x80;
+  if (columns < width) shown.append(width - columns, ' ');
+  return shown;
+}
+
+std::string head_name(const char* text) { return fmt::format("     {:<{}}", text, kNameWidth); }
+/// With its number, by which differences name it.
+std::string name_of(const CampaignStatistics& statistics, std::size_t variant) {
+  return fmt::format("{:>4} {}", variant + 1, cut(statistics.variants[variant].name, kNameWidth));
+}
+
+/// At most 9 characters.
+std::string number(double value) {
+  if (!std::isfinite(value)) return "-";
+  const double size = std::abs(value);
+  const bool plain = size == 0.0 || (size >= 1e-2 && size < 1e4);
+  return plain ? fmt::format("{:.4g}", value) : fmt::format("{:.2e}", value);
+}
+
+std::string probability(double value) {
+  return std::isfinite(value) ? fmt::format("{:.2g}", value) : "-";
+}
+
+std::string rate_with_limits(const EpisodeRate& rate) {
+  if (!std::isfinite(rate.rate)) return "-";
+  return fmt::format("{:.4f} [{:.4f}, {:.4f}]", rate.rate, rate.interval.lower,
+                     rate.interval.upper);
+}
+
+std::string mean_with_error(const Spread& spread) {
+  if (!std::isfinite(spread.standard_error)) return number(spread.mean);
+  return fmt::format("{} +- {:.2g}", number(spread.mean), spread.standard_error);
+}
+
+std::string head(const CampaignStatistics& statistics) {
+  const StoredCampaign& campaign = statistics.campaign;
+  std::string text = fmt::format("{}: {} of {} episodes", printable(campaign.name, 40),
+                                 statistics.done, campaign.episodes);
+  if (campaign.shard.count > 1) {
+    text += fmt::format(", shard {} of {}", campaign.shard.index, campaign.shard.count);
+  }
+  text += "\n ";
+  for (const auto& [outcome, count] : statistics.outcomes) {
+    text += fmt::format(" {} {}{}", count, printable(outcome, kOutcomeLimit),
+                        outcome == statistics.outcomes.rbegin()->first ? "" : ",");
+  }
+  return text + "\n";
+}
+
+/// The names that are cut elsewhere.
+std::string long_names(const CampaignStatistics& statistics) {
+  std::string text;
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const std::string& name = statistics.variants[n].name;
+    if (name.size() <= kNameWidth - 2) continue;
+    text += fmt::format("{:>4} {}\n", n + 1, printable(name, kFullName));
+  }
+  return text.empty() ? text : "\nVariants with long names\n" + text;
+}
+
+std::string outcome_section(const CampaignStatistics& statistics) {
+  std::string text = fmt::format("\nEpisodes (99 % intervals)\n{}{:>9}{:>27}{:>27}{:>10}\n",
+                                 head_name("variant"), "done", "reached", "unsafe", "faults");
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
+    text += fmt::format("{}{:>9}{:>27}{:>27}{:>10}\n", name_of(statistics, n), variant.done,
+                        rate_with_limits(variant.reached), rate_with_limits(variant.unsafe),
+                        variant.fault.events);
+  }
+  return text;
+}
+
+std::string spread_section(const CampaignStatistics& statistics) {
+  std::string text = fmt::format(
+      "\nCost, least clearance (m), time to target (s): mean, and what 5 %, 50 %, 95 % are not "
+      "above\n{}{:>20}{:>9}{:>9}{:>10}{:>10}{:>9}{:>10}\n",
+      head_name("variant"), "cost", "median", "95 %", "clear 5 %", "median", "time", "95 %");
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
+    const std::vector<double>& clearance = variant.min_clearance.quantiles;
+    const std::vector<double>& time = variant.time_to_target.quantiles;
+    text +=
+        fmt::format("{}{:>20}{:>9}{:>9}{:>10}{:>10}{:>9}{:>10}\n", name_of(statistics, n),
+                    mean_with_error(variant.cost), number(variant.cost.quantiles[kMedian]),
+                    number(variant.cost.quantiles[kNinetyFifth]), number(clearance[kFifth]),
+                    number(clearance[kMedian]), number(time[kMedian]), number(time[kNinetyFifth]));
+  }
+  return text;
+}
+
+std::string certificate_section(const CampaignStatistics& statistics) {
+  std::string text = fmt::format(
+      "\nNext-step certificates\n{}{:>10}{:>9}{:>12}{:>12}{:>10}{:>16}\n", head_name("variant"),
+      "periods", "unsafe", "observed", "certified", "p", "bins exceeded");
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
+    const auto filled = std::ranges::count_if(
+        variant.calibration, [](const CalibrationBin& bin) { return bin.periods > 0; });
+    const auto exceeded = std::ranges::count_if(
+        variant.calibration, [](const CalibrationBin& bin) { return bin.exceeded; });
+    text += fmt::format("{}{:>10}{:>9}{:>12}{:>12}{:>10}{:>16}\n", name_of(statistics, n),
+                        variant.periods, variant.unsafe_periods,
+                        probability(variant.unsafe_step_rate()),
+                        probability(variant.certified_step_rate()),
+                        probability(variant.p_value) + (variant.p_value < kSurprising ? " !" : ""),
+                        fmt::format("{} of {}{}", exceeded, filled, exceeded > 0 ? " !" : ""));
+  }
+  return text;
+}
+
+std::string calibration_section(const CampaignStatistics& statistics) {
+  std::string text = fmt::format(
+      "\nPeriods of all variants by what was certified\n  "
+      "{:<22}{:>10}{:>11}{:>9}{:>11}{:>24}{:>12}\n",
+      "certified", "periods", "mean", "unsafe", "observed", "99 % (a guide)", "p");
+  for (const CalibrationBin& bin : statistics.calibration) {
+    if (bin.periods == 0) continue;
+    text += fmt::format("  {:<22}{:>10}{:>11.2e}{:>9}{:>11.2e}{:>24}{:>12}\n",
+                        fmt::format("{:.1e} ... {:.1e}", bin.lower, bin.upper), bin.periods,
+                        bin.mean_certified, bin.unsafe, bin.rate,
+                        fmt::format("[{:.1e}, {:.1e}]", bin.interval.lower, bin.interval.upper),
+                        probability(bin.p_value) + (bin.exceeded ? " !" : ""));
+  }
+  return text;
+}
+
+std::string difference_text(const CampaignStatistics& statistics,
+                            const VariantDifference& difference) {
+  const VariantPair& pair = difference.pair;
+  std::string text = fmt::format("  {} less {} (other {}): {}\n", pair.variant + 1,
+                                 pair.baseline + 1, differs_by_name(pair.by),
+                                 printable(statistics.variants[pair.variant].name, kTitleLimit));
+  for (const MeanDifference& quantity : difference.quantities) {
+    text += fmt::format("    {:<18}{:>12}{:>26}{:>10}{:>10}{:>10}{:>10}\n", quantity.quantity,
+                        number(quantity.mean),
+                        std::isfinite(quantity.interval.lower)
+                            ? fmt::format("[{}, {}]", number(quantity.interval.lower),
+                                          number(quantity.interval.upper))
+                            : "-",
+                        quantity.pairs, quantity.higher, quantity.lower, quantity.left_out);
+  }
+  return text;
+}
+
+std::string difference_section(const CampaignStatistics& statistics) {
+  if (statistics.differences.empty()) return {};
+  std::string text =
+      fmt::format("\nDifferences, seed by seed\n    {:<18}{:>12}{:>26}{:>10}{:>10}{:>10}{:>10}\n",
+                  "mean of", "difference", "99 % interval", "pairs", "higher", "lower", "left out");
+  for (const VariantDifference& difference : statistics.differences) {
+    text += difference_text(statistics, difference);
+  }
+  return text;
+}
+
+std::string time_section(const CampaignStatistics& statistics) {
+  std::string text =
+      fmt::format("\nPlanning and certifying (ms)\n{}{:>10}{:>10}{:>10}{:>10}{:>10}{:>18}\n",
+                  head_name("variant"), "median", "p95", "p99", "max", "mean", "deadline misses");
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    const VariantStatistics& variant = statistics.variants[n];
+    const Distribution& times = variant.ocp_ms;
+    text += fmt::format("{}{:>10}{:>10}{:>10}{:>10}{:>10}{:>18}\n", name_of(statistics, n),
+                        number(times.median), number(times.p95), number(times.p99),
+                        number(times.max), number(times.mean), variant.deadline_misses);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string campaign_table(const CampaignStatistics& statistics) {
+  return head(statistics) + long_names(statistics) + outcome_section(statistics) +
+         spread_section(statistics) + certificate_section(statistics) +
+         calibration_section(statistics) + difference_section(statistics) +
+         time_section(statistics) +
+         "unsafe: the true state entered the unsafe set. An episode that faulted ranks as the "
+         "worst."
+         "\np: small where more periods end unsafe than certified for them; !: chance alone in at "
+         "most 1 of 100.\n";
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,26 @@
+#include "harness/atomic_file.hpp"
+#include "harness/campaign/statistics/campaign_csv.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr std::size_t kPieceSize = 1 << 16;  // of a file that is written; a line adds to it
+
+}  // namespace
+
+void write_episodes_csv(const StoreReader& store, const std::string& path) {
+  PendingFile file(path);
+  std::string piece = episodes_csv_head();
+  for (const StoredVariant& variant : store.variants()) {
+    store.for_each_episode(variant.id, [&](const EpisodeRow& row) {
+      piece += episodes_csv_line(variant, row);
+      if (piece.size() < kPieceSize) return;
+      file.write(piece);
+      piece.clear();
+    });
+  }
+  file.write(piece);
+  file.commit();
+}
+
+}  // namespace qsmpc

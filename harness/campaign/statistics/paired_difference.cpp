@@ -1,0 +1,149 @@
+#include "harness/campaign/statistics/paired_difference.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "harness/plant/disturbance.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::uint64_t kBootstrapSeed = 0;  // any, once and for all: its stream is its own
+constexpr int kDrawsPerWord = 4;             // of 16 bits each
+constexpr int kDrawBits = 16;
+
+/// Draws of 16 bits at and above threshold k are weights above k: 65536 P(X ≤ k), rounded, of
+/// X ~ Poisson(1). A weight of 9 or more would have 1.1e-6 of the probability, less than a draw
+/// can tell; what is drawn has the mean 1 and the variance 0.99997.
+constexpr std::array<std::uint32_t, 8> kThresholds = {24109, 48219, 60273, 64292,
+                                                      65296, 65497, 65531, 65535};
+
+double weight_of(std::uint32_t draw) {
+  int weight = 0;
+  for (const std::uint32_t threshold : kThresholds) weight += draw >= threshold ? 1 : 0;
+  return weight;
+}
+
+using Value = std::optional<double> (*)(const EpisodeRow& row);
+
+bool faulted(const EpisodeRow& row) { return row.outcome == outcome_name(Outcome::kFault); }
+
+std::optional<double> unless_faulted(const EpisodeRow& row, double value) {
+  if (faulted(row) || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+struct NamedValue {
+  const char* name;
+  Value value;
+};
+
+const std::array<NamedValue, 6>& values() {
+  static const std::array<NamedValue, 6> kValues = {{
+      {"reached",
+       [](const EpisodeRow& row) -> std::optional<double> {
+         return row.outcome == outcome_name(Outcome::kReached) ? 1.0 : 0.0;
+       }},
+      {"unsafe",
+       [](const EpisodeRow& row) -> std::optional<double> { return row.unsafe ? 1.0 : 0.0; }},
+      {"cost", [](const EpisodeRow& row) { return unless_faulted(row, row.cost); }},
+      {"min_clearance",
+       [](const EpisodeRow& row) { return unless_faulted(row, row.min_clearance); }},
+      {"certified",
+       [](const EpisodeRow& row) {
+         return unless_faulted(row, row.steps > 0 ? row.next_step_sum / row.steps : kNone);
+       }},
+      {"iterations",
+       [](const EpisodeRow& row) { return unless_faulted(row, row.iterations_median); }},
+  }};
+  return kValues;
+}
+
+}  // namespace
+
+void poisson_weights(std::uint64_t seed, Eigen::ArrayXd& out) {
+  static_assert(kBootstrapReplicates % kDrawsPerWord == 0);
+  std::array<std::uint64_t, kBootstrapReplicates / kDrawsPerWord> words{};
+  random_words({.seed = kBootstrapSeed, .episode = seed, .stream = RandomStream::kBootstrap},
+               words);
+  constexpr std::uint64_t kMask = (1U << kDrawBits) - 1U;
+  out.resize(kBootstrapReplicates);
+  Eigen::Index replicate = 0;
+  for (const std::uint64_t word : words) {
+    for (int draw = 0; draw < kDrawsPerWord; ++draw) {
+      out[replicate++] = weight_of(static_cast<std::uint32_t>(word >> (kDrawBits * draw) & kMask));
+    }
+  }
+}
+
+void BootstrapMean::add(double value, const Eigen::ArrayXd& weights) {
+  ++count_;
+  sum_ += value;
+  sums_ += value * weights;
+  weights_ += weights;
+}
+
+double BootstrapMean::mean() const {
+  return count_ == 0 ? kNone : sum_ / static_cast<double>(count_);
+}
+
+RateInterval BootstrapMean::interval() const {
+  if (count_ < 2) return {.lower = kNone, .upper = kNone};
+  std::vector<double> means;
+  for (Eigen::Index r = 0; r < kBootstrapReplicates; ++r) {
+    // Of few pairs, none may be in a replicate: it says nothing.
+    if (weights_[r] > 0.0) means.push_back(sums_[r] / weights_[r]);
+  }
+  std::ranges::sort(means);
+  const auto count = static_cast<double>(means.size());
+  const auto outside = static_cast<std::size_t>(std::ceil(kCampaignTail * count)) - 1;
+  return {.lower = means[outside], .upper = means[means.size() - 1 - outside]};
+}
+
+const std::vector<std::string>& paired_quantities() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const NamedValue& value : values()) names.emplace_back(value.name);
+    return names;
+  }();
+  return kNames;
+}
+
+PairedDifference::PairedDifference() : quantities_(values().size()) {}
+
+void PairedDifference::add(const EpisodeRow& baseline, const EpisodeRow& variant) {
+  poisson_weights(variant.seed, weights_);
+  for (std::size_t n = 0; n < quantities_.size(); ++n) {
+    Quantity& quantity = quantities_[n];
+    const std::optional<double> before = values()[n].value(baseline);
+    const std::optional<double> after = values()[n].value(variant);
+    if (!before || !after) {
+      ++quantity.left_out;
+      continue;
+    }
+    quantity.higher += *after > *before ? 1 : 0;
+    quantity.lower += *after < *before ? 1 : 0;
+    quantity.mean.add(*after - *before, weights_);
+  }
+}
+
+std::vector<MeanDifference> PairedDifference::result() const {
+  std::vector<MeanDifference> differences;
+  for (std::size_t n = 0; n < quantities_.size(); ++n) {
+    const Quantity& quantity = quantities_[n];
+    differences.push_back({.quantity = values()[n].name,
+                           .pairs = quantity.mean.count(),
+                           .left_out = quantity.left_out,
+                           .higher = quantity.higher,
+                           .lower = quantity.lower,
+                           .mean = quantity.mean.mean(),
+                           .interval = quantity.mean.interval()});
+  }
+  return differences;
+}
+
+}  // namespace qsmpc

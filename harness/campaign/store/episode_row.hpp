@@ -1,0 +1,63 @@
+// What the store keeps of an episode.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc {
+
+/// A period that the plant came through.
+struct PeriodRow {
+  double certified = 0.0;  ///< that its end is unsafe, at most, as certified before it began
+  double published = 0.0;  ///< the thesis's value for it; no bound
+  bool unsafe = false;     ///< whether the true state at its end was unsafe
+  double ocp_ms = 0.0;     ///< wall clock of planning and certifying
+
+  friend bool operator==(const PeriodRow&, const PeriodRow&) = default;
+};
+
+/// Wall-clock values; everything else depends on scenario and seed alone.
+struct EpisodeTiming {
+  double finished_at = 0.0;  ///< s since 1970-01-01 00:00 UTC
+  double wall_ms = 0.0;      ///< of the whole episode
+  int deadline_misses = 0;   ///< periods whose planning took longer than the period
+
+  friend bool operator==(const EpisodeTiming&, const EpisodeTiming&) = default;
+};
+
+struct EpisodeRow {
+  std::int64_t variant = 0;  ///< index in the campaign
+  std::uint64_t seed = 0;
+  std::string outcome;  ///< outcome_name of how it ended; never "interrupted"
+  std::string fault{};  ///< the simulator's words; empty without a fault
+  int steps = 0;
+  std::optional<double> time_to_target{};  ///< s; where it was reached
+  bool unsafe = false;                     ///< the true state entered the unsafe set
+  double min_clearance = 0.0;              ///< m
+  double cost = 0.0;                       ///< Σ ½ |x − r|²_Q + |u|²_R
+  double next_step_max = 0.0;              ///< of the certificates of the next step
+  double next_step_sum = 0.0;
+  double horizon_max = 0.0;        ///< of the plans' sums over their stages
+  double thesis_max = 0.0;         ///< of the published value; not a bound
+  double iterations_median = 0.0;  ///< cost-and-gradient evaluations of a plan
+  int fallbacks = 0;
+  std::string trace{};    ///< folder of its trace, relative to the campaign's; empty: not kept
+  std::string version{};  ///< of the program that drove it
+  EpisodeTiming timing{};
+  std::vector<PeriodRow> periods{};
+
+  friend bool operator==(const EpisodeRow&, const EpisodeRow&) = default;
+};
+
+/// The row of `trace`, of variant `variant`; `trace` is empty and of the timing only
+/// deadline_misses and ocp_ms are set. Throws as summarise.
+[[nodiscard]] EpisodeRow episode_row(const Trace& trace, std::int64_t variant);
+
+/// Whether the trace of such an episode is kept among the failures.
+[[nodiscard]] bool is_failure(const EpisodeRow& row);
+
+}  // namespace qsmpc

@@ -1,0 +1,166 @@
+#include "harness/campaign/store/store_reader.hpp"
+
+#include <filesystem>
+#include <stdexcept>
+#include <system_error>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include "harness/campaign/store/store_rows.hpp"
+#include "harness/campaign/store/store_schema.hpp"
+#include "harness/errors.hpp"
+
+namespace qsmpc {
+namespace {
+
+std::string existing_store(const std::string& folder) {
+  const std::string path = folder + "/" + kStoreFile;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error)) return path;
+  throw InputError({.file = path,
+                    .found = "no store of a campaign",
+                    .expected = "the folder that qsmpc campaign writes"});
+}
+
+const char* column_of(EpisodeNumber number) {
+  switch (number) {
+    case EpisodeNumber::kCost:
+      return "cost";
+    case EpisodeNumber::kMinClearance:
+      return "min_clearance";
+    case EpisodeNumber::kTimeToTarget:
+      return "time_to_target";
+  }
+  throw std::invalid_argument("store: a number that is no column");
+}
+
+SQLite::Database open_database(const std::string& path) {
+  SQLite::Database database(path, SQLite::OPEN_READONLY, kStorePatience);
+  // The first read takes the state of the store that all later ones see.
+  database.exec("BEGIN");
+  return database;
+}
+
+}  // namespace
+
+struct StoreReader::Implementation {
+  explicit Implementation(const std::string& folder)
+      : path(existing_store(folder)), database(open_database(path)) {
+    const int schema = schema_of(database, path);
+    refuse_newer(schema, path);
+    if (schema < store_schema()) {
+      throw InputError({.file = path,
+                        .found = fmt::format("a store of the older schema {}", schema),
+                        .expected = fmt::format("schema {}; qsmpc campaign brings it up to date "
+                                                "when it is started on the folder again",
+                                                store_schema())});
+    }
+    campaign = read_campaign(database);
+    variants = read_variants(database);
+  }
+
+  /// Runs `visit` on every row of `sql`, whose parameters are `values`.
+  void each(const std::string& sql, const std::vector<std::int64_t>& values,
+            const std::function<void(SQLite::Statement&)>& visit) {
+    with_store_errors(path, [&] {
+      SQLite::Statement statement(database, sql);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        statement.bind(static_cast<int>(i) + 1, values[i]);
+      }
+      while (statement.executeStep()) visit(statement);
+    });
+  }
+
+  std::string path;
+  SQLite::Database database;
+  StoredCampaign campaign;
+  std::vector<StoredVariant> variants;
+};
+
+StoreReader::StoreReader(const std::string& folder) {
+  with_store_errors(folder + "/" + kStoreFile,
+                    [&] { implementation_ = std::make_unique<Implementation>(folder); });
+}
+
+StoreReader::~StoreReader() = default;
+
+const StoredCampaign& StoreReader::campaign() const { return implementation_->campaign; }
+
+const std::vector<StoredVariant>& StoreReader::variants() const {
+  return implementation_->variants;
+}
+
+std::map<std::string, std::int64_t> StoreReader::outcomes() const {
+  std::map<std::string, std::int64_t> outcomes;
+  implementation_->each("SELECT outcome, count(*) FROM episode GROUP BY outcome", {},
+                        [&](SQLite::Statement& row) {
+                          outcomes[row.getColumn(0).getString()] = row.getColumn(1).getInt64();
+                        });
+  return outcomes;
+}
+
+std::int64_t StoreReader::finished_since(double time) const {
+  std::int64_t count = 0;
+  // Times are compared as numbers: the parameter is one, too.
+  implementation_->each(
+      fmt::format("SELECT count(*) FROM episode_timing WHERE finished_at >= {:.6f}", time), {},
+      [&](SQLite::Statement& row) { count = row.getColumn(0).getInt64(); });
+  return count;
+}
+
+void StoreReader::for_each_episode(std::int64_t variant,
+                                   const std::function<void(const EpisodeRow&)>& visit) const {
+  implementation_->each("SELECT " + episode_columns("e", "t") +
+                            " FROM episode e JOIN episode_timing t USING (variant, seed)"
+                            " WHERE e.variant = ? ORDER BY e.seed",
+                        {variant}, [&](SQLite::Statement& row) { visit(episode_of(row)); });
+}
+
+void StoreReader::for_each_pair(
+    std::int64_t first, std::int64_t second,
+    const std::function<void(const EpisodeRow&, const EpisodeRow&)>& visit) const {
+  implementation_->each("SELECT " + episode_columns("a", "at") + ", " + episode_columns("b", "bt") +
+                            " FROM episode a JOIN episode b ON b.variant = ?2 AND b.seed = a.seed"
+                            " JOIN episode_timing at ON at.variant = a.variant AND at.seed = a.seed"
+                            " JOIN episode_timing bt ON bt.variant = b.variant AND bt.seed = b.seed"
+                            " WHERE a.variant = ?1 ORDER BY a.seed",
+                        {first, second}, [&](SQLite::Statement& row) {
+                          visit(episode_of(row), episode_of(row, kEpisodeColumns));
+                        });
+}
+
+void StoreReader::for_each_period(std::int64_t variant,
+                                  const std::function<void(std::uint64_t seed, std::int64_t period,
+                                                           const PeriodRow&)>& visit) const {
+  implementation_->each(
+      "SELECT p.seed, p.period, p.certified, p.published, p.unsafe, t.ocp_ms"
+      " FROM period p JOIN period_timing t USING (variant, seed, period)"
+      " WHERE p.variant = ? ORDER BY p.seed, p.period",
+      {variant}, [&](SQLite::Statement& row) {
+        visit(static_cast<std::uint64_t>(row.getColumn(0).getInt64()), row.getColumn(1).getInt64(),
+              {.certified = number_of(row.getColumn(2)),
+               .published = number_of(row.getColumn(3)),
+               .unsafe = row.getColumn(4).getInt() != 0,
+               .ocp_ms = row.getColumn(5).getDouble()});
+      });
+}
+
+void StoreReader::for_each_sorted(std::int64_t variant, EpisodeNumber number,
+                                  const std::function<void(double)>& visit) const {
+  const std::string column = column_of(number);
+  implementation_->each(
+      fmt::format("SELECT {0} FROM episode WHERE variant = ? AND outcome <> 'fault' AND {0} IS NOT "
+                  "NULL ORDER BY {0}",
+                  column),
+      {variant}, [&](SQLite::Statement& row) { visit(row.getColumn(0).getDouble()); });
+}
+
+void StoreReader::for_each_sorted_ocp_ms(std::int64_t variant,
+                                         const std::function<void(double)>& visit) const {
+  implementation_->each("SELECT ocp_ms FROM period_timing WHERE variant = ? ORDER BY ocp_ms",
+                        {variant},
+                        [&](SQLite::Statement& row) { visit(row.getColumn(0).getDouble()); });
+}
+
+}  // namespace qsmpc

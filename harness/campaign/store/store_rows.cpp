@@ -1,0 +1,191 @@
+#include "harness/campaign/store/store_rows.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+namespace qsmpc {
+namespace {
+
+// Nothing in SQLite is not a number.
+void bind_number(SQLite::Statement& statement, int index, double value) {
+  if (std::isnan(value)) {
+    statement.bind(index);
+  } else {
+    statement.bind(index, value);
+  }
+}
+
+void run(SQLite::Statement& statement) {
+  statement.exec();
+  statement.reset();
+}
+
+void insert_periods(SQLite::Database& database, const EpisodeRow& row) {
+  SQLite::Statement period(database, "INSERT INTO period VALUES (?, ?, ?, ?, ?, ?)");
+  SQLite::Statement timing(database, "INSERT INTO period_timing VALUES (?, ?, ?, ?)");
+  for (std::size_t k = 0; k < row.periods.size(); ++k) {
+    const PeriodRow& values = row.periods[k];
+    for (SQLite::Statement* statement : {&period, &timing}) {
+      statement->bind(1, row.variant);
+      statement->bind(2, stored_seed(row.seed));
+      statement->bind(3, static_cast<std::int64_t>(k));
+    }
+    bind_number(period, 4, values.certified);
+    bind_number(period, 5, values.published);
+    period.bind(6, values.unsafe ? 1 : 0);
+    timing.bind(4, values.ocp_ms);
+    run(period);
+    run(timing);
+  }
+}
+
+}  // namespace
+
+std::string episode_columns(const std::string& e, const std::string& t) {
+  std::string columns;
+  for (const char* name :
+       {"variant", "seed", "outcome", "fault", "steps", "time_to_target", "unsafe", "min_clearance",
+        "cost", "next_step_max", "next_step_sum", "horizon_max", "thesis_max", "iterations_median",
+        "fallbacks", "trace", "version"}) {
+    columns += fmt::format("{}.{}, ", e, name);
+  }
+  return columns + fmt::format("{0}.finished_at, {0}.wall_ms, {0}.deadline_misses", t);
+}
+
+double number_of(const SQLite::Column& column) {
+  return column.isNull() ? std::numeric_limits<double>::quiet_NaN() : column.getDouble();
+}
+
+std::int64_t stored_seed(std::uint64_t seed) { return static_cast<std::int64_t>(seed); }
+
+EpisodeRow episode_of(SQLite::Statement& statement, int first) {
+  int next = first;
+  const auto column = [&] { return statement.getColumn(next++); };
+  EpisodeRow row;
+  row.variant = column().getInt64();
+  row.seed = static_cast<std::uint64_t>(column().getInt64());
+  row.outcome = column().getString();
+  row.fault = column().getString();
+  row.steps = column().getInt();
+  if (const SQLite::Column time = column(); !time.isNull()) row.time_to_target = time.getDouble();
+  row.unsafe = column().getInt() != 0;
+  row.min_clearance = number_of(column());
+  row.cost = number_of(column());
+  row.next_step_max = number_of(column());
+  row.next_step_sum = number_of(column());
+  row.horizon_max = number_of(column());
+  row.thesis_max = number_of(column());
+  row.iterations_median = number_of(column());
+  row.fallbacks = column().getInt();
+  row.trace = column().getString();
+  row.version = column().getString();
+  row.timing.finished_at = column().getDouble();
+  row.timing.wall_ms = column().getDouble();
+  row.timing.deadline_misses = column().getInt();
+  return row;
+}
+
+void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
+  SQLite::Statement episode(
+      database, "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+  episode.bind(1, row.variant);
+  episode.bind(2, stored_seed(row.seed));
+  episode.bind(3, row.outcome);
+  episode.bind(4, row.fault);
+  episode.bind(5, row.steps);
+  bind_number(episode, 6, row.time_to_target.value_or(std::numeric_limits<double>::quiet_NaN()));
+  episode.bind(7, row.unsafe ? 1 : 0);
+  bind_number(episode, 8, row.min_clearance);
+  bind_number(episode, 9, row.cost);
+  bind_number(episode, 10, row.next_step_max);
+  bind_number(episode, 11, row.next_step_sum);
+  bind_number(episode, 12, row.horizon_max);
+  bind_number(episode, 13, row.thesis_max);
+  bind_number(episode, 14, row.iterations_median);
+  episode.bind(15, row.fallbacks);
+  episode.bind(16, row.trace);
+  episode.bind(17, row.version);
+  run(episode);
+  SQLite::Statement timing(database, "INSERT INTO episode_timing VALUES (?, ?, ?, ?, ?)");
+  timing.bind(1, row.variant);
+  timing.bind(2, stored_seed(row.seed));
+  timing.bind(3, row.timing.finished_at);
+  timing.bind(4, row.timing.wall_ms);
+  timing.bind(5, row.timing.deadline_misses);
+  run(timing);
+  insert_periods(database, row);
+}
+
+void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed) {
+  for (const char* table : {"episode", "episode_timing", "period", "period_timing"}) {
+    SQLite::Statement statement(
+        database, fmt::format("DELETE FROM {} WHERE variant = ? AND seed = ?", table));
+    statement.bind(1, variant);
+    statement.bind(2, stored_seed(seed));
+    run(statement);
+  }
+}
+
+StoredCampaign read_campaign(SQLite::Database& database) {
+  SQLite::Statement statement(database,
+                              "SELECT name, version, seeds, traces, shard_index, shard_count, "
+                              "episodes FROM campaign");
+  if (!statement.executeStep()) throw SQLite::Exception("it holds no campaign");
+  return {.name = statement.getColumn(0).getString(),
+          .version = statement.getColumn(1).getString(),
+          .seeds = statement.getColumn(2).getString(),
+          .traces = statement.getColumn(3).getString(),
+          .shard = {.index = statement.getColumn(4).getInt64(),
+                    .count = statement.getColumn(5).getInt64()},
+          .episodes = statement.getColumn(6).getInt64()};
+}
+
+void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign) {
+  SQLite::Statement statement(database,
+                              "INSERT OR REPLACE INTO campaign VALUES (1, ?, ?, ?, ?, ?, ?, ?)");
+  statement.bind(1, campaign.name);
+  statement.bind(2, campaign.version);
+  statement.bind(3, campaign.seeds);
+  statement.bind(4, campaign.traces);
+  statement.bind(5, campaign.shard.index);
+  statement.bind(6, campaign.shard.count);
+  statement.bind(7, campaign.episodes);
+  run(statement);
+}
+
+std::vector<StoredVariant> read_variants(SQLite::Database& database) {
+  SQLite::Statement statement(database,
+                              "SELECT id, name, scenario, settings, plant, scenario_text, "
+                              "plant_digest FROM variant ORDER BY position");
+  std::vector<StoredVariant> variants;
+  while (statement.executeStep()) {
+    variants.push_back({.id = statement.getColumn(0).getInt64(),
+                        .name = statement.getColumn(1).getString(),
+                        .scenario = statement.getColumn(2).getString(),
+                        .settings = statement.getColumn(3).getString(),
+                        .plant = statement.getColumn(4).getString(),
+                        .scenario_text = statement.getColumn(5).getString(),
+                        .plant_digest = statement.getColumn(6).getString()});
+  }
+  return variants;
+}
+
+void insert_variant(SQLite::Database& database, const StoredVariant& variant,
+                    std::int64_t position) {
+  SQLite::Statement statement(database, "INSERT INTO variant VALUES (?, ?, ?, ?, ?, ?, ?, ?)");
+  statement.bind(1, variant.id);
+  statement.bind(2, position);
+  statement.bind(3, variant.name);
+  statement.bind(4, variant.scenario);
+  statement.bind(5, variant.settings);
+  statement.bind(6, variant.plant);
+  statement.bind(7, variant.scenario_text);
+  statement.bind(8, variant.plant_digest);
+  run(statement);
+}
+
+}  // namespace qsmpc

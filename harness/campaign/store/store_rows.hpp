@@ -1,0 +1,51 @@
+// Rows of a campaign's store, to and from the values that stand for them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "harness/campaign/store/episode_row.hpp"
+#include "harness/campaign/store/store_reader.hpp"
+
+namespace SQLite {
+class Column;
+class Database;
+class Statement;
+}  // namespace SQLite
+
+namespace qsmpc {
+
+/// How long one waits for the other who uses the store, ms.
+inline constexpr int kStorePatience = 20'000;
+
+/// The columns of an episode without its periods, as `episode_of` expects them, from the tables
+/// `episode` and `episode_timing` under the names `e` and `t`.
+[[nodiscard]] std::string episode_columns(const std::string& e, const std::string& t);
+/// How many they are.
+inline constexpr int kEpisodeColumns = 20;
+
+/// The episode in the columns of the row that `statement` is at, from column `first` on.
+[[nodiscard]] EpisodeRow episode_of(SQLite::Statement& statement, int first = 0);
+
+/// A number as it was stored: what is not a number is stored as NULL.
+[[nodiscard]] double number_of(const SQLite::Column& column);
+
+/// Seeds are below 2⁶³, as SQLite's integers are.
+[[nodiscard]] std::int64_t stored_seed(std::uint64_t seed);
+
+/// Adds an episode with its periods. To be called within a transaction. Throws SQLite::Exception,
+/// also where the store has it.
+void insert_episode(SQLite::Database& database, const EpisodeRow& row);
+/// Removes an episode with its periods, if it is there. To be called within a transaction.
+void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed);
+
+[[nodiscard]] StoredCampaign read_campaign(SQLite::Database& database);
+void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign);
+
+/// By position.
+[[nodiscard]] std::vector<StoredVariant> read_variants(SQLite::Database& database);
+void insert_variant(SQLite::Database& database, const StoredVariant& variant,
+                    std::int64_t position);
+
+}  // namespace qsmpc

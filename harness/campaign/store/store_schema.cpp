@@ -1,0 +1,141 @@
+#include "harness/campaign/store/store_schema.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+
+namespace qsmpc {
+namespace {
+
+// "qsmc" in the file's header says whose tables these are.
+constexpr std::int32_t kApplicationId = 0x71736D63;
+
+// A column that may be NULL holds a number that need not exist. Timings have tables of their own:
+// everything else depends on scenarios and seeds alone.
+constexpr const char* kFirstSchema = R"sql(
+CREATE TABLE campaign (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  name TEXT NOT NULL,
+  version TEXT NOT NULL,
+  seeds TEXT NOT NULL,
+  traces TEXT NOT NULL,
+  shard_index INTEGER NOT NULL,
+  shard_count INTEGER NOT NULL,
+  episodes INTEGER NOT NULL
+) STRICT;
+CREATE TABLE variant (
+  id INTEGER PRIMARY KEY,
+  position INTEGER NOT NULL,
+  name TEXT NOT NULL UNIQUE,
+  scenario TEXT NOT NULL,
+  settings TEXT NOT NULL,
+  plant TEXT NOT NULL,
+  scenario_text TEXT NOT NULL,
+  plant_digest TEXT NOT NULL
+) STRICT;
+CREATE TABLE episode (
+  variant INTEGER NOT NULL REFERENCES variant (id),
+  seed INTEGER NOT NULL,
+  outcome TEXT NOT NULL,
+  fault TEXT NOT NULL,
+  steps INTEGER NOT NULL,
+  time_to_target REAL,
+  unsafe INTEGER NOT NULL,
+  min_clearance REAL,
+  cost REAL,
+  next_step_max REAL,
+  next_step_sum REAL,
+  horizon_max REAL,
+  thesis_max REAL,
+  iterations_median REAL,
+  fallbacks INTEGER NOT NULL,
+  trace TEXT NOT NULL,
+  PRIMARY KEY (variant, seed)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE period (
+  variant INTEGER NOT NULL,
+  seed INTEGER NOT NULL,
+  period INTEGER NOT NULL,
+  certified REAL,
+  published REAL,
+  unsafe INTEGER NOT NULL,
+  PRIMARY KEY (variant, seed, period)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE episode_timing (
+  variant INTEGER NOT NULL,
+  seed INTEGER NOT NULL,
+  finished_at REAL NOT NULL,
+  wall_ms REAL NOT NULL,
+  deadline_misses INTEGER NOT NULL,
+  PRIMARY KEY (variant, seed)
+) STRICT, WITHOUT ROWID;
+CREATE INDEX episode_timing_by_end ON episode_timing (finished_at);
+CREATE TABLE period_timing (
+  variant INTEGER NOT NULL,
+  seed INTEGER NOT NULL,
+  period INTEGER NOT NULL,
+  ocp_ms REAL NOT NULL,
+  PRIMARY KEY (variant, seed, period)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+// An update may keep episodes of an older program: each says which one drove it.
+constexpr const char* kSecondSchema = R"sql(
+ALTER TABLE episode ADD COLUMN version TEXT NOT NULL DEFAULT '';
+UPDATE episode SET version = (SELECT version FROM campaign);
+)sql";
+
+}  // namespace
+
+const std::vector<std::string>& store_migrations() {
+  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema};
+  return migrations;
+}
+
+int store_schema() { return static_cast<int>(store_migrations().size()); }
+
+int schema_of(SQLite::Database& database, const std::string& path) {
+  const int schema = database.execAndGet("PRAGMA user_version").getInt();
+  const int application = database.execAndGet("PRAGMA application_id").getInt();
+  if (application == kApplicationId) return schema;
+  const int tables = database.execAndGet("SELECT count(*) FROM sqlite_master").getInt();
+  if (tables == 0 && schema == 0 && application == 0) return 0;
+  throw InputError({.file = path,
+                    .found = "an SQLite file of another program",
+                    .expected = "the store of a campaign"});
+}
+
+void migrate(SQLite::Database& database, int from, const std::vector<std::string>& migrations) {
+  for (std::size_t step = static_cast<std::size_t>(from); step < migrations.size(); ++step) {
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    database.exec(migrations[step]);
+    database.exec(fmt::format("PRAGMA application_id = {}; PRAGMA user_version = {}",
+                              kApplicationId, step + 1));
+    transaction.commit();
+  }
+}
+
+void refuse_newer(int schema, const std::string& path) {
+  if (schema <= store_schema()) return;
+  throw InputError(
+      {.file = path,
+       .found = fmt::format("a store of schema {}, made by a newer qsmpc", schema),
+       .expected = fmt::format("schema {} or older; use the newer qsmpc", store_schema())});
+}
+
+void with_store_errors(const std::string& path, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const SQLite::Exception& error) {
+    throw IoError(printable(path, 400) + ": " + error.getErrorStr() +
+                  (error.getErrorStr() == std::string(error.what())
+                       ? ""
+                       : std::string(" (") + error.what() + ")"));
+  }
+}
+
+}  // namespace qsmpc
