@@ -31,5 +31,4 @@ inline Scenario small_scenario(const std::vector<std::string>& overrides = {}) {
       {.overrides = overrides});
 }
 
-
 }  // namespace qsmpc::testing

@@ -22,8 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using testing::TemporaryFolder;
 using testing::small_scenario;
+using testing::TemporaryFolder;
 
 const PredictionReport& simulated() {
   static const PredictionReport report =
