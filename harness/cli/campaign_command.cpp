@@ -30,8 +30,9 @@ namespace {
 
 constexpr const char* kHelp =
     "Drives many episodes: scenarios, settings and plants with many seeds, on all cores; writes a\n"
-    "store (campaign.sqlite), statistics (campaign.json, CSV files) and figures. Started again on\n"
-    "the same folder, it goes on where it stopped.";
+    "store (campaign.sqlite), statistics (campaign.json, CSV files), figures and a page "
+    "(report.html).\n"
+    "Started again on the same folder, it goes on where it stopped.";
 constexpr const char* kExample =
     "Example: qsmpc campaign dubins_policies --out out/policies\n"
     "How far it is, from another terminal: qsmpc campaign status out/policies\n"

@@ -10,8 +10,10 @@
 #include "harness/campaign/statistics/campaign_table.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 #include "harness/campaign/store/store_schema.hpp"
+#include "harness/cli/artefacts.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/report/campaign_charts.hpp"
+#include "harness/report/campaign_page.hpp"
 #include "harness/report/svg_figure.hpp"
 
 namespace qsmpc {
@@ -40,6 +42,7 @@ CampaignStatistics write_campaign_results(const std::string& folder) {
   for (const CampaignFigure& figure : campaign_figures(statistics)) {
     write_file(folder + "/" + figure.file, svg_figure(figure.charts));
   }
+  write_file(folder + "/" + kPageFile, campaign_page(statistics));
   write_file(folder + "/" + kNumbersFile, campaign_json(statistics));
   return statistics;
 }
@@ -51,8 +54,8 @@ void print_campaign_results(const CampaignStatistics& statistics, const std::str
     return;
   }
   std::string text = campaign_table(statistics);
-  text +=
-      fmt::format("\n  store    {0}/{1}\n  numbers  {0}/{2}\n", folder, kStoreFile, kNumbersFile);
+  text += fmt::format("\n  page     {0}/{1}\n  store    {0}/{2}\n  numbers  {0}/{3}\n", folder,
+                      kPageFile, kStoreFile, kNumbersFile);
   text += fmt::format(
       "  tables   {0}/episodes.csv, variants.csv, differences.csv, calibration.csv\n", folder);
   text += "  figures  " + folder + "/";

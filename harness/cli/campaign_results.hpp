@@ -11,7 +11,8 @@ namespace qsmpc {
 /// The campaign file as it was given, in the campaign's folder.
 inline constexpr const char* kCampaignCopy = "campaign.yaml";
 
-/// Reads the store in `folder` and writes campaign.json, the CSV files and the figures beside it,
+/// Reads the store in `folder` and writes campaign.json, the CSV files, the figures and the
+/// page beside it,
 /// each in one piece. Throws as StoreReader does, and IoError.
 CampaignStatistics write_campaign_results(const std::string& folder);
 

@@ -51,13 +51,18 @@ TEST(Campaign, leaves_a_store_numbers_and_figures) {
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* name :
        {"campaign.sqlite", "campaign.json", "campaign.yaml", "episodes.csv", "variants.csv",
-        "differences.csv", "calibration.csv", "reliability.svg"}) {
+        "differences.csv", "calibration.csv", "reliability.svg", "report.html"}) {
     EXPECT_TRUE(files_in(folder / "out").contains(name)) << name;
   }
   EXPECT_THAT(result.output, AllOf(HasSubstr("closed"), HasSubstr("open")));
   EXPECT_THAT(result.errors, HasSubstr("driving: 6 of 6"));
   EXPECT_TRUE(files_below(folder / "out", ".partial").empty());
   EXPECT_TRUE(files_below(folder / "out", "-wal").empty());
+  fs::remove(folder / "out/report.html");
+  const ProcessResult report = run_qsmpc({"report", folder / "out"});
+  EXPECT_EQ(report.exit_code, 0) << report.errors;
+  EXPECT_EQ(report.output, folder / "out/report.html" + std::string("\n"));
+  EXPECT_THAT(read_text(folder / "out/report.html"), HasSubstr("No certificate is refuted"));
 }
 
 TEST(Campaign, json_has_the_keys_that_other_programs_read) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/report/campaign_page.hpp"
 #include "harness/report/svg_figure.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
@@ -120,6 +121,27 @@ TEST(OutcomeFigure, has_room_for_many_variants) {
   EXPECT_EQ(chart.series[0].x.size(), 100U);
   EXPECT_LE(std::ranges::count_if(chart.x_names, [](const auto& name) { return !name.empty(); }),
             20);
+}
+
+TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
+  const std::string page = campaign_page(example());
+  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
+  EXPECT_TRUE(contains(page, "2: often &lt;b&gt;"));
+  EXPECT_FALSE(contains(page, "often <b>"));
+  EXPECT_TRUE(contains(page, "2 less 1"));
+  EXPECT_EQ(occurrences(page, "<figure"), 4 + 2 + 6);
+}
+
+TEST(CampaignPage, says_first_whether_a_certificate_is_refuted) {
+  EXPECT_TRUE(contains(campaign_page(example()), "Certificates are exceeded"));
+  CampaignStatistics sound = example();
+  sound.variants = {variant("seldom", 2000)};
+  sound.calibration = sound.variants[0].calibration;
+  sound.differences.clear();
+  const std::string page = campaign_page(sound);
+  EXPECT_TRUE(contains(page, "No certificate is refuted"));
+  EXPECT_TRUE(contains(page, "<p>1 of 2000 periods ended unsafe; their certificates add up to 1."));
+  EXPECT_FALSE(contains(page, "Differences"));
 }
 
 TEST(ErrorBars, reach_from_end_to_end_and_widen_the_axis) {
