@@ -94,7 +94,7 @@ TEST(Campaign, results_do_not_depend_on_the_number_of_jobs) {
 }
 
 /// Starts the campaign and kills it after `delay`, unless it ends before.
-int run_and_kill(const std::string& file, const std::string& out, std::chrono::milliseconds delay) {
+int run_and_kill(const std::string& file, const std::string& out, std::chrono::microseconds delay) {
   const auto start = std::chrono::steady_clock::now();
   ProcessOptions options;
   options.meanwhile = [&](pid_t process) {
@@ -108,14 +108,18 @@ int run_and_kill(const std::string& file, const std::string& out, std::chrono::m
 TEST(Campaign, killed_at_any_moment_and_started_again_it_ends_as_if_it_never_was) {
   const TemporaryFolder folder;
   const std::string file = short_campaign(folder, 100, "traces: failures\ntrace_sample: 3\n");
+  const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(campaign(file, folder / "whole", {"--quiet"}).exit_code, 0);
+  const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(
+      std::chrono::steady_clock::now() - start);
   std::mt19937 random(17);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the clock adds the rest
-  std::uniform_int_distribution<int> milliseconds(0, 400);
+  // Twenty of them are about as long as the whole, so that most kill it at work.
+  std::uniform_int_distribution<std::int64_t> microseconds(0, whole.count() / 8);
   constexpr int kKills = 20;
   int killed = 0;
   for (int attempt = 0; attempt < kKills; ++attempt) {
     const int code =
-        run_and_kill(file, folder / "killed", std::chrono::milliseconds(milliseconds(random)));
+        run_and_kill(file, folder / "killed", std::chrono::microseconds(microseconds(random)));
     killed += code == 128 + SIGKILL ? 1 : 0;
   }
   EXPECT_GT(killed, kKills / 2) << "it is over too soon to be killed";
@@ -216,7 +220,7 @@ TEST(Campaign, a_second_process_is_told_who_holds_the_folder) {
     second = campaign(file, out);
     return true;
   };
-  const ProcessResult first = campaign(file, out, {"--quiet"}, options);
+  const ProcessResult first = campaign(file, out, {"--quiet", "--jobs", "1"}, options);
   EXPECT_EQ(first.exit_code, 0) << first.errors;
   EXPECT_EQ(second.exit_code, 3);
   EXPECT_THAT(second.errors, HasSubstr(fmt::format("being run by process {} on", first_process)));
@@ -234,7 +238,7 @@ TEST(Campaign, ctrl_c_keeps_what_is_done_and_says_how_to_go_on) {
     kill(process, SIGINT);
     return true;
   };
-  const ProcessResult stopped = campaign(file, out, {"--quiet"}, options);
+  const ProcessResult stopped = campaign(file, out, {"--quiet", "--jobs", "1"}, options);
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_THAT(stopped.errors, HasSubstr("of 400 episodes are done and kept"));
   const auto json = nlohmann::json::parse(read_text(out + "/campaign.json"));
@@ -255,7 +259,8 @@ TEST(Campaign, its_status_can_be_read_while_it_runs) {
     running = process;
     return status.exit_code == 0 && nlohmann::json::parse(status.output)["done"] > 0;
   };
-  ASSERT_EQ(campaign(short_campaign(folder, 60), out, {"--quiet"}, options).exit_code, 0);
+  ASSERT_EQ(
+      campaign(short_campaign(folder, 60), out, {"--quiet", "--jobs", "1"}, options).exit_code, 0);
   const auto json = nlohmann::json::parse(status.output);
   EXPECT_EQ(json["episodes"], 120);
   EXPECT_EQ(json["running"]["process"], running);
