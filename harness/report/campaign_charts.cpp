@@ -67,12 +67,24 @@ double foot_of(const Chart& chart) {
   return std::pow(10.0, std::floor(std::log10(least) - 0.5));
 }
 
+/// Where the axis of what was certified begins: the same for all charts of a campaign.
+double least_certified(const CampaignStatistics& statistics) {
+  double least = 0.1;
+  for (const auto* bins : {&statistics.calibration, &statistics.published}) {
+    for (const CalibrationBin& bin : *bins) {
+      if (bin.periods > 0) least = std::min(least, bin.mean_certified);
+    }
+  }
+  return least > kLeastCertified ? std::pow(10.0, std::floor(std::log10(least))) : kLeastCertified;
+}
+
 /// The diagonal, above which more happened than certified, from the foot of the chart.
 void add_diagonal(Chart& chart) {
-  const double foot = chart.least_shown;
-  const double left = std::min(kLeastCertified, foot);
-  chart.areas.push_back(
-      {.name = "more than certified", .x = {left, foot, 1.0, left}, .y = {foot, foot, 1.0, 1.0}});
+  const double foot = std::max(chart.least_shown, chart.least_x);
+  const double left = chart.least_x;
+  chart.areas.push_back({.name = "more than certified",
+                         .x = {left, foot, 1.0, left},
+                         .y = {chart.least_shown, foot, 1.0, 1.0}});
   chart.series.push_back({.name = "as certified",
                           .colour = kPurple,
                           .dashed = true,
@@ -86,7 +98,8 @@ std::string exceeded_text(const std::vector<CalibrationBin>& bins) {
   return fmt::format("Certificates exceeded: in {} of {} bins", exceeded, filled);
 }
 
-Chart reliability_chart(const std::string& title, const std::vector<CalibrationBin>& certified,
+Chart reliability_chart(const std::string& title, double least,
+                        const std::vector<CalibrationBin>& certified,
                         const std::vector<CalibrationBin>& published) {
   Chart chart{.title = title,
               .note = fmt::format(
@@ -98,8 +111,8 @@ Chart reliability_chart(const std::string& title, const std::vector<CalibrationB
               .y_label = kRateLabel,
               .x_scale = Scale::kLog,
               .y_scale = Scale::kLog,
-              .least_x = kLeastCertified,
-              .x_includes = {kLeastCertified, 1.0},
+              .least_x = least,
+              .x_includes = {least, 1.0},
               .y_includes = {1.0}};
   add_bins("published value, no bound", kOrange, not_bounds(published), chart);
   add_bins("certificate", kBlue, certified, chart);
@@ -110,15 +123,16 @@ Chart reliability_chart(const std::string& title, const std::vector<CalibrationB
 }
 
 Chart period_chart(const CampaignStatistics& statistics) {
+  const double least = least_certified(statistics);
   Chart chart{.title = "Periods by what was certified for them",
               .note = "Of all variants; the bin below 10⁻¹² is at the left end.",
               .x_label = "certified probability, mean of the bin (–)",
               .y_label = "periods in the bin",
               .x_scale = Scale::kLog,
               .y_scale = Scale::kLog,
-              .least_x = kLeastCertified,
+              .least_x = least,
               .least_shown = 1.0,
-              .x_includes = {kLeastCertified, 1.0}};
+              .x_includes = {least, 1.0}};
   for (const auto& [name, colour, bins] :
        {std::tuple{"published value, no bound", kOrange, &statistics.published},
         std::tuple{"certificate", kBlue, &statistics.calibration}}) {
@@ -135,15 +149,16 @@ Chart period_chart(const CampaignStatistics& statistics) {
 
 CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
   CampaignFigure figure{.file = "reliability.svg", .charts = {}};
-  figure.charts.push_back(
-      reliability_chart("Do the certificates hold?", statistics.calibration, statistics.published));
+  const double least = least_certified(statistics);
+  figure.charts.push_back(reliability_chart("Do the certificates hold?", least,
+                                            statistics.calibration, statistics.published));
   figure.charts.push_back(period_chart(statistics));
   if (statistics.variants.size() == 1) return figure;
   const std::size_t panels = std::min(statistics.variants.size(), kMostPanels);
   for (std::size_t n = 0; n < panels; ++n) {
     const VariantStatistics& variant = statistics.variants[n];
     figure.charts.push_back(
-        reliability_chart(fmt::format("{}: {}", n + 1, printable(variant.name, kTitleLimit)),
+        reliability_chart(fmt::format("{}: {}", n + 1, printable(variant.name, kTitleLimit)), least,
                           variant.calibration, variant.published));
   }
   return figure;

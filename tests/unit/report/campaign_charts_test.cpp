@@ -123,6 +123,15 @@ TEST(OutcomeFigure, has_room_for_many_variants) {
             20);
 }
 
+TEST(CampaignFigures, begin_the_certified_axis_where_the_least_value_is) {
+  const std::vector<Chart> charts = campaign_figures(example())[0].charts;
+  for (const Chart& chart : charts) {
+    // The least of the example, 1e-9, or the decade below it by rounding of its mean.
+    EXPECT_LE(chart.least_x, 1.0001e-9) << chart.title;
+    EXPECT_GE(chart.least_x, 0.9999e-10) << chart.title;
+  }
+}
+
 TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
   const std::string page = campaign_page(example());
   EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
