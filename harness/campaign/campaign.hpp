@@ -58,7 +58,7 @@ struct CampaignVariant {
   std::string scenario;  ///< as the campaign file names it
   std::string settings;  ///< label of the file's variant and grid point; may be empty
   std::vector<std::string> overrides{};  ///< KEY=VALUE, in the order in which they are applied
-  std::string plant;                     ///< as `with_plant` takes it; empty: the scenario's own
+  std::string plant;                     ///< as the campaign file names it; empty: the scenario's
   Scenario resolved;                     ///< with all of it applied; its seed is 0
 };
 

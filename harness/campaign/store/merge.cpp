@@ -1,7 +1,6 @@
 #include "harness/campaign/store/merge.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cstddef>
 #include <filesystem>
@@ -24,8 +23,6 @@ namespace qsmpc {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::array kEpisodeTables{"episode", "episode_timing", "period", "period_timing"};
 
 std::string shard_text(const Shard& shard) {
   return fmt::format("shard {}/{}", shard.index, shard.count);

@@ -269,13 +269,8 @@ std::optional<std::string> Store::outcome(std::int64_t variant, std::uint64_t se
 std::map<std::string, std::int64_t> Store::outcomes() const {
   std::map<std::string, std::int64_t> outcomes;
   const std::lock_guard lock(implementation_->mutex);
-  with_store_errors(implementation_->path, [&] {
-    SQLite::Statement statement(implementation_->database,
-                                "SELECT outcome, count(*) FROM episode GROUP BY outcome");
-    while (statement.executeStep()) {
-      outcomes[statement.getColumn(0).getString()] = statement.getColumn(1).getInt64();
-    }
-  });
+  with_store_errors(implementation_->path,
+                    [&] { outcomes = count_outcomes(implementation_->database); });
   return outcomes;
 }
 

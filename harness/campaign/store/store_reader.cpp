@@ -93,10 +93,8 @@ const std::vector<StoredVariant>& StoreReader::variants() const {
 
 std::map<std::string, std::int64_t> StoreReader::outcomes() const {
   std::map<std::string, std::int64_t> outcomes;
-  implementation_->each("SELECT outcome, count(*) FROM episode GROUP BY outcome", {},
-                        [&](SQLite::Statement& row) {
-                          outcomes[row.getColumn(0).getString()] = row.getColumn(1).getInt64();
-                        });
+  with_store_errors(implementation_->path,
+                    [&] { outcomes = count_outcomes(implementation_->database); });
   return outcomes;
 }
 

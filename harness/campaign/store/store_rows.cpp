@@ -89,6 +89,15 @@ EpisodeRow episode_of(SQLite::Statement& statement, int first) {
   return row;
 }
 
+std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database) {
+  SQLite::Statement statement(database, "SELECT outcome, count(*) FROM episode GROUP BY outcome");
+  std::map<std::string, std::int64_t> outcomes;
+  while (statement.executeStep()) {
+    outcomes[statement.getColumn(0).getString()] = statement.getColumn(1).getInt64();
+  }
+  return outcomes;
+}
+
 void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   SQLite::Statement episode(
       database, "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
@@ -121,7 +130,7 @@ void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
 }
 
 void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed) {
-  for (const char* table : {"episode", "episode_timing", "period", "period_timing"}) {
+  for (const char* table : kEpisodeTables) {
     SQLite::Statement statement(
         database, fmt::format("DELETE FROM {} WHERE variant = ? AND seed = ?", table));
     statement.bind(1, variant);

@@ -1,7 +1,9 @@
 // Rows of a campaign's store, to and from the values that stand for them.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -33,6 +35,12 @@ inline constexpr int kEpisodeColumns = 20;
 
 /// Seeds are below 2⁶³, as SQLite's integers are.
 [[nodiscard]] std::int64_t stored_seed(std::uint64_t seed);
+
+/// The tables whose rows belong to an episode; `variant` is a column of each.
+inline constexpr std::array kEpisodeTables{"episode", "episode_timing", "period", "period_timing"};
+
+/// Episodes by how they ended.
+[[nodiscard]] std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database);
 
 /// Adds an episode with its periods. To be called within a transaction. Throws SQLite::Exception,
 /// also where the store has it.
