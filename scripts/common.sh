@@ -13,12 +13,14 @@ fail() {
   exit 1
 }
 
-# install_packages LIST…: installs what is missing of the Debian packages named in the files.
+# install_packages LIST…: installs what is missing of the Debian packages named in the files. npm may
+# have come with Node.js instead of as a package of its own, which the two then exclude.
 install_packages() {
   command -v dpkg-query >/dev/null || fail "this script installs Debian packages; elsewhere, install what $* name and build with: cmake --preset release && cmake --build --preset release"
   local missing=() package
   while read -r package; do
     [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] ||
+      { [ "$package" = npm ] && command -v npm >/dev/null; } ||
       missing+=("$package")
   done < <(sed 's/#.*//; /^[[:space:]]*$/d' "$@")
   if [ ${#missing[@]} -eq 0 ]; then

@@ -5,12 +5,14 @@
 #include <limits>
 #include <set>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/report/page_style.hpp"
+#include "harness/trace/residuals.hpp"
 
 namespace qsmpc {
 namespace {
@@ -56,6 +58,20 @@ Chart input_chart(const Trace& trace, const SystemDescription& system, Eigen::In
   return chart;
 }
 
+/// The periods that ended unsafe, as marks at probability 1, each at its beginning, where the
+/// certificate stands that spoke of it.
+Series unsafe_periods(const Trace& trace) {
+  Series series{
+      .name = "observed: the period ended unsafe", .colour = kOrange, .mark = Mark::kPoints};
+  const Eigen::MatrixXd states = true_states(trace);
+  for (Eigen::Index k = 0; k < completed_periods(trace); ++k) {
+    if (!(clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0)) continue;
+    series.x.push_back(trace.steps[static_cast<std::size_t>(k)].time);
+    series.y.push_back(1.0);
+  }
+  return series;
+}
+
 Chart certificate_chart(const Trace& trace) {
   const auto next_step = [](const StepRecord& step) {
     return step.certificates.empty() ? kMissing : step.certificates.front().value;
@@ -81,6 +97,10 @@ Chart certificate_chart(const Trace& trace) {
                  series_of(trace, "plan: sum over its stages", kVermilion, plan),
                  series_of(trace, "published method, worst stage: not a bound", kPurple, thesis)}};
   chart.series.back().dashed = true;
+  Series observed = unsafe_periods(trace);
+  chart.note = fmt::format("Observed: {} of {} periods ended unsafe. {}", observed.x.size(),
+                           completed_periods(trace), chart.note);
+  if (!observed.x.empty()) chart.series.push_back(std::move(observed));
   return chart;
 }
 
@@ -121,6 +141,9 @@ Chart budget_chart(const Trace& trace) {
                  series_of(trace, "compression", kOrange, last(&StageBudget::compression)),
                  series_of(trace, "noise", kGreen, last(&StageBudget::noise)),
                  series_of(trace, "belief", kPurple, last(&StageBudget::belief))}};
+  if (trace.scenario.model_error) {
+    chart.series.push_back(series_of(trace, "model error", kVermilion, last(&StageBudget::model)));
+  }
   for (std::size_t i = 1; i < chart.series.size(); ++i) chart.series[i].dashed = i % 2 == 0;
   return chart;
 }
@@ -167,7 +190,50 @@ Chart timing_chart(const Trace& trace) {
               .rules = {{"control period", kMillisecondsPerSecond * trace.scenario.time_step}}};
   chart.series[2].dashed = true;
   chart.series[3].dashed = true;
+  if (std::isfinite(trace.scenario.controller.deadline)) {
+    chart.rules.push_back(
+        {"deadline of a plan", kMillisecondsPerSecond * trace.scenario.controller.deadline});
+  }
   if (!fallbacks.x.empty()) chart.series.push_back(std::move(fallbacks));
+  return chart;
+}
+
+/// An upright line, dashed, from 0 to `height`.
+Series upright(const std::string& name, int colour, double at, double height) {
+  return {.name = name, .colour = colour, .dashed = true, .x = {at, at}, .y = {0.0, height}};
+}
+
+Chart solve_time_histogram(const Trace& trace) {
+  constexpr std::size_t kBins = 40;
+  const double period = kMillisecondsPerSecond * trace.scenario.time_step;
+  const double deadline = kMillisecondsPerSecond * trace.scenario.controller.deadline;
+  double longest = 0.0;
+  for (const StepRecord& step : trace.steps) {
+    if (std::isfinite(step.timing.total)) longest = std::max(longest, step.timing.total);
+  }
+  const double width = std::max(longest, 1e-3) / kBins;
+  std::vector<double> counts(kBins + 1, 0.0);  // the last one closes the outline
+  for (const StepRecord& step : trace.steps) {
+    if (!std::isfinite(step.timing.total) || step.timing.total < 0.0) continue;
+    ++counts[std::min(static_cast<std::size_t>(step.timing.total / width), kBins - 1)];
+  }
+  Series series{.name = "steps", .colour = kBlue, .mark = Mark::kSteps};
+  for (std::size_t bin = 0; bin <= kBins; ++bin) {
+    series.x.push_back(static_cast<double>(bin) * width);
+    series.y.push_back(counts[bin]);
+  }
+  const double highest = *std::max_element(counts.begin(), counts.end());
+  Chart chart{
+      .title = "Solve times: how often",
+      .note = fmt::format("{} steps in {} equal bins.", trace.steps.size(), kBins),
+      .x_label = "wall clock (ms)",
+      .y_label = "steps (–)",
+      .x_includes = {0.0},
+      .y_includes = {0.0},
+      .series = {std::move(series), upright("control period", kVermilion, period, highest)}};
+  if (std::isfinite(deadline)) {
+    chart.series.push_back(upright("deadline of a plan", kOrange, deadline, highest));
+  }
   return chart;
 }
 
@@ -185,6 +251,7 @@ std::vector<Chart> episode_charts(const Trace& trace, const SystemDescription& s
   charts.push_back(budget_chart(trace));
   const double end = static_cast<double>(trace.steps.size()) * trace.scenario.time_step;
   for (Chart& chart : charts) chart.x_includes = {0.0, end};
+  charts.push_back(solve_time_histogram(trace));
   return charts;
 }
 

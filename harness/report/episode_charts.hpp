@@ -10,8 +10,9 @@
 
 namespace qsmpc {
 
-/// Certificates, clearance, each input against its bounds, solve time, parts of the cost, error
-/// budget. Of a trace without steps, they have no points.
+/// Over time: certificates with what was observed, clearance, each input against its bounds, solve
+/// time, parts of the cost, error budget; and the histogram of the solve times. Of a trace without
+/// steps, they have no points.
 [[nodiscard]] std::vector<Chart> episode_charts(const Trace& trace,
                                                 const SystemDescription& system);
 

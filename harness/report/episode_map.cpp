@@ -25,14 +25,26 @@ class EpisodeMap {
 
   [[nodiscard]] PlaneMap map() const {
     PlaneMap map = ground();
+    map.area = drive_area();
     map.paths.push_back(driven_path());
-    // The axes are about the drive: a prediction that runs away does not make it small.
-    map.area = map_area(map);
     add_snapshots(map);
     return map;
   }
 
+  [[nodiscard]] PlaneMap ground_of_drive() const {
+    PlaneMap map = ground();
+    map.area = drive_area();
+    return map;
+  }
+
  private:
+  /// The axes are about the drive: a prediction that runs away does not make it small.
+  [[nodiscard]] MapRectangle drive_area() const {
+    PlaneMap map = ground();
+    map.paths.push_back(driven_path());
+    return map_area(map);
+  }
+
   [[nodiscard]] MapPoint point_of(const Eigen::Ref<const Eigen::VectorXd>& state) const {
     return map_point(state, system_);
   }
@@ -117,6 +129,10 @@ class EpisodeMap {
 };
 
 }  // namespace
+
+PlaneMap episode_ground(const Trace& trace, const SystemDescription& system) {
+  return EpisodeMap(trace, system).ground_of_drive();
+}
 
 std::string episode_map(const Trace& trace, const SystemDescription& system) {
   if (!has_position(system)) return {};

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "harness/report/plane_map.hpp"
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -11,5 +12,9 @@ namespace qsmpc {
 
 /// A <figure>; empty for a system without a position in the plane.
 [[nodiscard]] std::string episode_map(const Trace& trace, const SystemDescription& system);
+
+/// What stands still in it: safe set and target, and the part of the plane that it shows. For a
+/// system with a position.
+[[nodiscard]] PlaneMap episode_ground(const Trace& trace, const SystemDescription& system);
 
 }  // namespace qsmpc

@@ -1,14 +1,19 @@
 #include "harness/report/episode_page.hpp"
 
+#include <optional>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "harness/report/episode_charts.hpp"
+#include "harness/report/episode_data.hpp"
 #include "harness/report/episode_map.hpp"
+#include "harness/report/ground_map.hpp"
 #include "harness/report/html.hpp"
 #include "harness/report/key_figures.hpp"
 #include "harness/report/page_frame.hpp"
+#include "harness/report/plane_map.hpp"
 #include "harness/report/svg_chart.hpp"
 #include "harness/trace/summary.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -49,32 +54,82 @@ std::string video(const EpisodePageOptions& options) {
   const std::string url = url_beside(options.video_file);
   return fmt::format(
       "<figure class=\"card\">\n<figcaption>Video</figcaption>\n"
-      "<video controls muted playsinline preload=\"metadata\" src=\"{}\"></video>\n"
+      "<video controls muted playsinline preload=\"auto\" src=\"{}\"></video>\n"
       "<p class=\"note\">The file <a href=\"{}\">{}</a>, beside this page.</p>\n</figure>\n",
       url, url, escape_html(options.video_file));
 }
 
-std::string drive(const Trace& trace, const SystemDescription& system,
-                  const EpisodePageOptions& options) {
-  return fmt::format(
-      "<h2>The drive</h2>\n<div class=\"grid\">\n<div class=\"stack\">\n{}{}</div>\n{}</div>\n",
-      video(options), kMeaning, episode_map(trace, system));
+std::string live_map(const PlaneMap* map) {
+  if (map == nullptr) return {};
+  std::string html =
+      "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The plane at this moment"
+      "</figcaption>\n<p class=\"note\">The way driven, from <span class=\"near\">near</span> the "
+      "unsafe set to <span class=\"far\">1 m and more</span> from it; the vehicle, and dashed "
+      "where "
+      "the model without noise would be; the plan with its belief, stage by stage from "
+      "<span class=\"first\">now</span> to <span class=\"last\">its end</span>: particles, and "
+      "ellipses about 50 and (dashed) 95 % of the probability of a normal distribution with their "
+      "mean and covariance.</p>\n<div class=\"layers\">";
+  for (const char* layer : {"particles", "ellipses", "plan", "ghost"}) {
+    html += fmt::format(
+        "<label><input type=\"checkbox\" checked=\"checked\" data-layer=\"{}\"/>{}</label>", layer,
+        std::string_view(layer) == "ghost" ? "model’s vehicle" : layer);
+  }
+  return html + "</div>\n" + map_drawing(*map) + "</figure>\n";
 }
 
-std::string charts(const Trace& trace, const SystemDescription& system) {
-  if (trace.steps.empty()) return {};
-  std::string html = "<h2>Along the drive</h2>\n<div class=\"grid\">\n";
-  for (const Chart& chart : episode_charts(trace, system)) html += chart_figure(chart);
-  return html + "</div>\n";
+std::string player(const Trace& trace) {
+  return fmt::format(
+      "<div class=\"card player needs-script\" role=\"group\" aria-label=\"Moment of the drive\" "
+      "hidden>\n<button type=\"button\" id=\"play\" aria-pressed=\"false\">Play</button>\n"
+      "<button type=\"button\" id=\"back\" aria-label=\"One period back\">−1</button>\n"
+      "<input type=\"range\" id=\"time\" min=\"0\" max=\"{}\" value=\"0\" step=\"{}\" "
+      "aria-label=\"Time in seconds\"/>\n"
+      "<button type=\"button\" id=\"forward\" aria-label=\"One period on\">+1</button>\n"
+      "<output id=\"clock\" for=\"time\">0 s</output>\n</div>\n",
+      static_cast<double>(trace.steps.size()) * trace.scenario.time_step, trace.scenario.time_step);
+}
+
+constexpr std::string_view kMoment =
+    "<section class=\"card needs-script\" hidden>\n<h3>At this moment</h3>\n"
+    "<dl class=\"now\" id=\"now\"></dl>\n<h3>What the plan pays for</h3>\n"
+    "<p class=\"note\">Parts of the plan’s expected cost: what is largest, the controller works "
+    "against most.</p>\n<ul class=\"why\" id=\"why\"></ul>\n</section>\n";
+
+constexpr std::string_view kStageCharts =
+    "<figure class=\"card\" id=\"stage-certificates\" hidden>\n<figcaption>Certificates of this "
+    "plan, stage by stage</figcaption>\n<p class=\"note\">Upper bounds of the probability of being "
+    "unsafe at each stage; 10⁻⁹ and less at the foot.</p>\n</figure>\n"
+    "<figure class=\"card\" id=\"stage-budgets\" hidden>\n<figcaption>Error budget of this plan, "
+    "stage by stage</figcaption>\n<p class=\"note\">Bound of the distance between the model’s law "
+    "and "
+    "its particles, and what each source alone would give.</p>\n</figure>\n";
+
+std::string drive(const Trace& trace, const PlaneMap* map, const EpisodePageOptions& options) {
+  if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(kMeaning);
+  return fmt::format(
+      "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
+      "<div class=\"stack\">\n{}{}</div>\n</div>\n",
+      player(trace), video(options), kMoment, kMeaning, live_map(map), kStageCharts);
+}
+
+std::string charts_html(const std::vector<Chart>& charts, const std::string& map) {
+  std::string html = "<h2>Along the drive</h2>\n";
+  if (!charts.empty()) {
+    html +=
+        "<p class=\"note needs-script\" hidden>Click for a moment, drag to enlarge, double-click "
+        "for all of it.</p>\n<div class=\"grid\" id=\"charts\">\n";
+    for (const Chart& chart : charts) html += chart_figure(chart);
+    html += "</div>\n";
+  }
+  return html + "<div class=\"grid below\">\n" + map + "</div>\n";
 }
 
 std::string ending(const Trace& trace) {
   std::string html =
       "<details>\n<summary>The scenario, with every default filled in</summary>\n<pre>" +
       escape_html(trace.scenario_text) + "</pre>\n</details>\n";
-  html += fmt::format("<footer>Made by qsmpc {} from the episode’s trace.</footer>\n",
-                      escape_html(trace.version));
-  return html + "</body>\n</html>\n";
+  return html;
 }
 
 }  // namespace
@@ -85,16 +140,27 @@ std::string episode_page(const Trace& trace, const EpisodePageOptions& options) 
       make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   const SystemDescription& system = model->description();
   const Summary summary = summarise(trace);
-  std::string html = page_head(trace.scenario.name + ": episode");
+  const std::vector<Chart> charts =
+      trace.steps.empty() ? std::vector<Chart>{} : episode_charts(trace, system);
+  std::optional<PlaneMap> map;
+  if (has_position(system)) map = episode_ground(trace, system);
+  const PlaneMap* const shown = map ? &*map : nullptr;
+
+  std::string html = page_head(scenario.name + ": episode", PageScripts::kEpisode);
   html += introduction(trace);
   html += outcome_html(trace, summary);
   html += key_figures_html(trace, summary, system);
-  html += drive(trace, system, options);
-  html += charts(trace, system);
+  html += drive(trace, shown, options);
+  html += charts_html(charts, episode_map(trace, system));
   html += kMismatchNote;
   html += mismatch_html(summary, system);
   html += ending(trace);
-  return html;
+  if (!trace.steps.empty()) {
+    html += "<script type=\"application/json\" id=\"episode-data\">" +
+            episode_data(trace, system, {.charts = charts, .map = shown}) + "</script>\n" +
+            page_scripts();
+  }
+  return html + page_foot(trace.version);
 }
 
 }  // namespace qsmpc

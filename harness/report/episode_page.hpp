@@ -2,8 +2,9 @@
 //
 //   write_file(folder + "/report.html", episode_page(trace, {.video_file = "episode.mp4"}));
 //
-// The page loads nothing from a network and runs no script, and its policy forbids both; texts of
-// the scenario are escaped.
+// The page loads nothing from a network, and its policy forbids that and every script but its own
+// (web/), which move the drive with a slider; without scripts, drawings, tables and video are there
+// all the same. Texts of the scenario are escaped.
 #pragma once
 
 #include <string>

@@ -35,6 +35,14 @@ struct MapSize {
   double height = 0.0;
 };
 
+/// How the plane is laid on the view box of the map itself: from the left (x − x_left) · scale,
+/// from the top (y_top − y) · scale.
+struct MapView {
+  double x_left = 0.0;
+  double y_top = 0.0;
+  double scale = 1.0;  ///< view box units a metre
+};
+
 class MapCanvas {
  public:
   /// Shows `area`, whose sides are finite and longer than 0, and more where the map would otherwise
@@ -43,6 +51,7 @@ class MapCanvas {
 
   /// Where a drawable point of the plane is in the view box, from the left and from the top.
   [[nodiscard]] MapPoint place(const MapPoint& point) const;
+  [[nodiscard]] MapView view() const { return {x_.lower, y_.upper, scale_}; }
   /// Lengths in the view box, of a length in the plane.
   [[nodiscard]] double length(double metres) const { return metres * scale_; }
 

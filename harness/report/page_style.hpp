@@ -1,7 +1,6 @@
-// How a page looks: one style sheet for light and dark, phone and desk.
+// The palette of charts and maps: numbers that become the classes c0 … c7 of the page's style
+// (web/page.css).
 #pragma once
-
-#include <string_view>
 
 namespace qsmpc {
 
@@ -18,8 +17,5 @@ inline constexpr int kSky = 5;
 /// Classes c6 and c7, of maps only: the colours of text and of small print.
 inline constexpr int kInk = 6;
 inline constexpr int kGrey = 7;
-
-/// The style sheet. It refers to nothing outside of the page.
-[[nodiscard]] std::string_view page_style();
 
 }  // namespace qsmpc

@@ -179,6 +179,8 @@ std::string labels_svg(const PlaneMap& map, const MapCanvas& canvas) {
 
 MapSize map_size(const PlaneMap& map) { return canvas_of(map).size(); }
 
+MapView map_view(const PlaneMap& map) { return canvas_of(map).view(); }
+
 std::string map_drawing(const PlaneMap& map, double x, double y) {
   const MapCanvas canvas = canvas_of(map);
   // Only where it is put into another drawing; a page leaves place and size to its style.

@@ -111,6 +111,9 @@ struct PlaneMap {
 [[nodiscard]] std::string map_drawing(const PlaneMap& map, double x = 0.0, double y = 0.0);
 [[nodiscard]] MapSize map_size(const PlaneMap& map);
 
+/// How the plane lies in the map of the drawing.
+[[nodiscard]] MapView map_view(const PlaneMap& map);
+
 /// Whether there is something finite to draw.
 [[nodiscard]] bool has_content(const PlaneMap& map);
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/report/page_assets.hpp"
 #include "harness/report/page_style.hpp"
 #include "harness/report/text_layout.hpp"
 #include "tests/unit/report/page_checks.hpp"

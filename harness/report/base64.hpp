@@ -1,0 +1,18 @@
+// Bytes as text.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace qsmpc {
+
+/// RFC 4648, section 4, with padding.
+[[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
+
+/// The same of what hexadecimal digits say. Throws std::invalid_argument on an odd number of them
+/// or on another character.
+[[nodiscard]] std::string base64_of_hex(std::string_view digits);
+
+}  // namespace qsmpc

@@ -1,0 +1,13 @@
+// A chart as data for the page's scripts, which draw it anew with a cursor and a zoom.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "harness/report/svg_chart.hpp"
+
+namespace qsmpc {
+
+/// Everything of `chart` that web/charts.js draws. Its numbers are packed (packed_numbers.hpp).
+[[nodiscard]] nlohmann::ordered_json chart_data(const Chart& chart);
+
+}  // namespace qsmpc

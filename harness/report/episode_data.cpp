@@ -1,0 +1,305 @@
+#include "harness/report/episode_data.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "controller/certification/certificate.hpp"
+#include "controller/planning/safe_set.hpp"
+#include "harness/report/chart_data.hpp"
+#include "harness/report/ground_map.hpp"
+#include "harness/report/packed_numbers.hpp"
+
+namespace qsmpc {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kMostParticles = 400'000;  // of a page: some 3 MB as text
+constexpr std::uint16_t kNowhere = 65'535;       // outside of the map, or not finite
+constexpr double kLastPlace = 65'534.0;
+
+double entry(const Eigen::VectorXd& values, Eigen::Index index) {
+  return index >= 0 && index < values.size() ? values[index] : kMissing;
+}
+
+class EpisodeData {
+ public:
+  EpisodeData(const Trace& trace, const SystemDescription& system)
+      : trace_(trace), system_(system), horizon_(trace.scenario.controller.horizon) {}
+
+  /// What is known of a system whatever its states.
+  [[nodiscard]] Json periods() const {
+    Json json = {{"period", trace_.scenario.time_step},
+                 {"steps", trace_.steps.size()},
+                 {"horizon", horizon_},
+                 {"times", of_steps([](const StepRecord& step) { return step.time; })},
+                 {"clearance", clearances()},
+                 {"solve", of_steps([](const StepRecord& step) { return step.timing.total; })},
+                 {"cost", cost_parts()},
+                 {"inputs", inputs()},
+                 {"certificates", certificates()},
+                 {"budgets", budgets()},
+                 {"status", Json::array()},
+                 {"fallback", Json::array()}};
+    for (const StepRecord& step : trace_.steps) {
+      json["status"].push_back(step.solver_status);
+      json["fallback"].push_back(step.fallback ? 1 : 0);
+    }
+    return json;
+  }
+
+  /// What lies in the plane of `map`.
+  [[nodiscard]] Json plane(const PlaneMap& map) const {
+    const MapView view = map_view(map);
+    return {{"xLeft", view.x_left}, {"yTop", view.y_top},         {"scale", view.scale},
+            {"poses", poses()},     {"predicted", predicted()},   {"plans", plans()},
+            {"moments", moments()}, {"particles", particles(map)}};
+  }
+
+ private:
+  template <class Value>
+  [[nodiscard]] std::string of_steps(const Value& value) const {
+    std::vector<double> values;
+    values.reserve(trace_.steps.size());
+    for (const StepRecord& step : trace_.steps) values.push_back(value(step));
+    return packed_floats(values);
+  }
+
+  [[nodiscard]] std::size_t stages() const { return static_cast<std::size_t>(horizon_) + 1; }
+
+  /// The states at the control instants, and the last one.
+  [[nodiscard]] std::vector<Eigen::VectorXd> states() const {
+    std::vector<Eigen::VectorXd> states;
+    for (const StepRecord& step : trace_.steps) states.push_back(step.state);
+    states.push_back(trace_.final_state);
+    return states;
+  }
+
+  [[nodiscard]] std::string clearances() const {
+    const SafeSet& safe_set = trace_.scenario.safe_set;
+    std::vector<double> values;
+    for (const Eigen::VectorXd& state : states()) {
+      values.push_back(state.size() == safe_set.dim() ? clearance(state, safe_set) : kMissing);
+    }
+    return packed_floats(values);
+  }
+
+  [[nodiscard]] Json cost_parts() const {
+    const auto part = [this](double CostParts::*member) {
+      return of_steps([member](const StepRecord& step) { return step.cost.*member; });
+    };
+    return {{"distance to the target", part(&CostParts::state)},
+            {"distance at the plan’s end", part(&CostParts::terminal)},
+            {"input", part(&CostParts::input)},
+            {"nearness to obstacles", part(&CostParts::obstacle)},
+            {"nearness to the bounds", part(&CostParts::box)}};
+  }
+
+  [[nodiscard]] Json inputs() const {
+    Json json = Json::array();
+    for (std::size_t i = 0; i < system_.inputs.size(); ++i) {
+      const auto index = static_cast<Eigen::Index>(i);
+      json.push_back({{"name", system_.inputs[i].name},
+                      {"unit", system_.inputs[i].unit},
+                      {"values", of_steps([index](const StepRecord& step) {
+                         return entry(step.input, index);
+                       })}});
+    }
+    return json;
+  }
+
+  [[nodiscard]] std::string of_stages(double StageCertificate::*member) const {
+    std::vector<double> values;
+    for (const StepRecord& step : trace_.steps) {
+      for (std::size_t stage = 0; stage + 1 < stages(); ++stage) {
+        const bool known = stage < step.certificates.size();
+        values.push_back(known ? step.certificates[stage].*member : kMissing);
+      }
+    }
+    return packed_floats(values);
+  }
+
+  [[nodiscard]] Json certificates() const {
+    return {{"value", of_stages(&StageCertificate::value)},
+            {"thesis", of_stages(&StageCertificate::thesis)},
+            {"plan", of_steps([](const StepRecord& step) {
+               return step.certificates.empty() ? kMissing : horizon_bound(step.certificates);
+             })}};
+  }
+
+  [[nodiscard]] std::string of_budgets(double StageBudget::*member) const {
+    std::vector<double> values;
+    for (const StepRecord& step : trace_.steps) {
+      for (std::size_t stage = 0; stage < stages(); ++stage) {
+        values.push_back(stage < step.budgets.size() ? step.budgets[stage].*member : kMissing);
+      }
+    }
+    return packed_floats(values);
+  }
+
+  [[nodiscard]] Json budgets() const {
+    return {{"total", of_budgets(&StageBudget::total)},
+            {"belief", of_budgets(&StageBudget::belief)},
+            {"noise", of_budgets(&StageBudget::noise)},
+            {"compression", of_budgets(&StageBudget::compression)},
+            {"model", of_budgets(&StageBudget::model)}};
+  }
+
+  void add_pose(const Eigen::VectorXd& state, std::vector<double>& values) const {
+    values.push_back(entry(state, system_.position_x));
+    values.push_back(entry(state, system_.position_y));
+    values.push_back(system_.heading < 0 ? kMissing : entry(state, system_.heading));
+  }
+
+  [[nodiscard]] std::string poses() const {
+    std::vector<double> values;
+    for (const Eigen::VectorXd& state : states()) add_pose(state, values);
+    return packed_floats(values);
+  }
+
+  /// Where the model without noise would be at the end of each period.
+  [[nodiscard]] std::string predicted() const {
+    std::vector<double> values;
+    for (const StepRecord& step : trace_.steps) {
+      add_pose(step.plan_states.cols() > 1 ? Eigen::VectorXd(step.plan_states.col(1))
+                                           : Eigen::VectorXd(),
+               values);
+    }
+    return packed_floats(values);
+  }
+
+  [[nodiscard]] std::string plans() const {
+    std::vector<double> values;
+    for (const StepRecord& step : trace_.steps) {
+      for (Eigen::Index stage = 0; stage < static_cast<Eigen::Index>(stages()); ++stage) {
+        const bool known = stage < step.plan_states.cols();
+        const Eigen::VectorXd state =
+            known ? Eigen::VectorXd(step.plan_states.col(stage)) : Eigen::VectorXd();
+        values.push_back(entry(state, system_.position_x));
+        values.push_back(entry(state, system_.position_y));
+      }
+    }
+    return packed_floats(values);
+  }
+
+  /// Mean and covariance of the particles in the plane: x, y, xx, xy, yy.
+  [[nodiscard]] std::array<double, 5> planar_moments(const StageParticles& stage) const {
+    const double weight = stage.weights.sum();
+    if (stage.size() == 0 || !(weight > 0.0)) {
+      return {kMissing, kMissing, kMissing, kMissing, kMissing};
+    }
+    const Eigen::ArrayXd x = stage.locations.row(system_.position_x).transpose();
+    const Eigen::ArrayXd y = stage.locations.row(system_.position_y).transpose();
+    const Eigen::ArrayXd w = stage.weights.array() / weight;
+    const double x_mean = (w * x).sum();
+    const double y_mean = (w * y).sum();
+    return {x_mean, y_mean, (w * (x - x_mean).square()).sum(),
+            (w * (x - x_mean) * (y - y_mean)).sum(), (w * (y - y_mean).square()).sum()};
+  }
+
+  [[nodiscard]] std::string moments() const {
+    std::vector<double> values;
+    for (const StepRecord& step : trace_.steps) {
+      for (std::size_t stage = 0; stage < stages(); ++stage) {
+        const std::array<double, 5> five = planar_moments(
+            stage < step.particles.size() ? step.particles[stage] : StageParticles{});
+        values.insert(values.end(), five.begin(), five.end());
+      }
+    }
+    return packed_floats(values);
+  }
+
+  [[nodiscard]] std::size_t stride() const {
+    std::size_t count = 0;
+    for (const StepRecord& step : trace_.steps) {
+      for (const StageParticles& stage : step.particles) {
+        count += static_cast<std::size_t>(stage.size());
+      }
+    }
+    return 1 + count / kMostParticles;
+  }
+
+  /// Places in the shown part of the plane in 65,535ths of it, shares of the weight as their roots,
+  /// of which 1 is the heaviest of a stage, in 255ths.
+  [[nodiscard]] Json particles(const PlaneMap& map) const {
+    const MapRectangle area = map.area.value_or(map_area(map));
+    const auto place = [](double value, double lower, double upper) {
+      const double share = (value - lower) / (upper - lower);
+      const bool shown = share >= 0.0 && share <= 1.0;  // false for what is not a number
+      return shown ? static_cast<std::uint16_t>(std::lround(kLastPlace * share)) : kNowhere;
+    };
+    const auto every = static_cast<Eigen::Index>(stride());
+    std::vector<double> counts;
+    std::vector<std::uint16_t> places;
+    std::vector<std::uint8_t> sizes;
+    for (const StepRecord& step : trace_.steps) {
+      for (std::size_t stage = 0; stage < stages(); ++stage) {
+        if (stage >= step.particles.size() || step.particles[stage].size() == 0) {
+          counts.push_back(0.0);
+          continue;
+        }
+        const StageParticles& measure = step.particles[stage];
+        const double heaviest = measure.weights.maxCoeff();
+        for (Eigen::Index i = 0; i < measure.size(); i += every) {
+          const Eigen::VectorXd state = measure.locations.col(i);
+          places.push_back(place(state[system_.position_x], area.x_lower, area.x_upper));
+          places.push_back(place(state[system_.position_y], area.y_lower, area.y_upper));
+          const double root = std::sqrt(std::max(measure.weights[i] / heaviest, 0.0));
+          sizes.push_back(root <= 1.0 ? static_cast<std::uint8_t>(std::lround(255.0 * root)) : 0);
+        }
+        counts.push_back(static_cast<double>((measure.size() + every - 1) / every));
+      }
+    }
+    return {{"xLower", area.x_lower},
+            {"xUpper", area.x_upper},
+            {"yLower", area.y_lower},
+            {"yUpper", area.y_upper},
+            {"stride", every},
+            {"counts", packed_floats(counts)},
+            {"places", packed_words(places)},
+            {"sizes", packed_bytes(sizes)}};
+  }
+
+  const Trace& trace_;
+  const SystemDescription& system_;
+  int horizon_;
+};
+
+/// Nothing in it can end the element that it stands in.
+std::string for_script(const Json& json) {
+  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '<') {
+      safe += "\\u003c";
+    } else if (c == '>') {
+      safe += "\\u003e";
+    } else if (c == '&') {
+      safe += "\\u0026";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string episode_data(const Trace& trace, const SystemDescription& system,
+                         const EpisodeScene& scene) {
+  const EpisodeData data(trace, system);
+  Json json = data.periods();
+  json["charts"] = Json::array();
+  for (const Chart& chart : scene.charts) json["charts"].push_back(chart_data(chart));
+  if (scene.map != nullptr) json["map"] = data.plane(*scene.map);
+  return for_script(json);
+}
+
+}  // namespace qsmpc

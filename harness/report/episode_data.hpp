@@ -1,0 +1,27 @@
+// What the scripts of an episode's page move: the drive period by period, as JSON.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/report/plane_map.hpp"
+#include "harness/report/svg_chart.hpp"
+#include "harness/trace/trace.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// The page's parts that the scripts take up.
+struct EpisodeScene {
+  const std::vector<Chart>& charts;  ///< in the order of the page
+  const PlaneMap* map = nullptr;     ///< null for a system without a place in the plane
+};
+
+/// A JSON object that is safe inside of a <script type="application/json">. Rows of numbers are
+/// packed (packed_numbers.hpp); web/data.js says what each means. Where all periods together have
+/// more particles than a page should hold, every n-th of a stage is left, and "particles.stride"
+/// is n.
+[[nodiscard]] std::string episode_data(const Trace& trace, const SystemDescription& system,
+                                       const EpisodeScene& scene);
+
+}  // namespace qsmpc

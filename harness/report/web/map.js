@@ -1,0 +1,185 @@
+// The map at one moment: vehicle, prediction, plan, belief and its particles over the ground that is
+// drawn already.
+
+const kSvg = "http://www.w3.org/2000/svg";
+const kDotSizes = [2.2, 3.4, 5.2];        // view box units, by weight
+const kEllipseLevels = [0.5, 0.95];       // of the probability
+const kVehicle = "M-9-5.5H4L9 0 4 5.5H-9z";  // view box units, heading right
+const kCalmClearance = 1.0;               // m, from which on the way has its calm colour
+
+function svgElement(name, attributes, parent) {
+  const element = document.createElementNS(kSvg, name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (parent) parent.append(element);
+  return element;
+}
+
+// Colours of the stages, from the belief to the last: blue to vermilion through the palette.
+function stageColour(stage, horizon) {
+  const share = horizon > 0 ? 100 * stage / horizon : 0;
+  return `color-mix(in oklab, var(--c0), var(--c4) ${share.toFixed(0)}%)`;
+}
+
+// Half axes and direction of N(0, S)'s ellipses, for S given by three numbers.
+function principalAxes(xx, xy, yy) {
+  const middle = (xx + yy) / 2;
+  const spread = Math.hypot((xx - yy) / 2, xy);
+  return {
+    major: Math.sqrt(Math.max(middle + spread, 0)),
+    minor: Math.sqrt(Math.max(middle - spread, 0)),
+    angle: 0.5 * Math.atan2(2 * xy, xx - yy),
+  };
+}
+
+class LiveMap {
+  constructor(figure, data) {
+    this.data = data;
+    this.map = data.map;
+    this.stages = data.horizon + 1;
+    figure.hidden = false;
+    const root = svgElement("g", {id: "moment"}, figure.querySelector("svg.clip"));
+    this.way = svgElement("g", {class: "driven"}, root);
+    this.addWay();
+    this.layers = {};
+    for (const name of ["particles", "ellipses", "plan", "ghost"]) {
+      this.layers[name] = svgElement("g", {id: `layer-${name}`}, root);
+    }
+    this.addStages();
+    this.planLine = svgElement("path", {class: "planned"}, this.layers.plan);
+    this.nodes = this.range().map((stage) =>
+      svgElement("circle", {class: "node", r: 3.2}, this.layers.plan));
+    this.nodes.forEach((node, stage) => { node.style.fill = stageColour(stage, data.horizon); });
+    this.ghost = svgElement("path", {class: "ghost", d: kVehicle}, this.layers.ghost);
+    this.vehicle = svgElement("path", {id: "vehicle", class: "vehicle", d: kVehicle}, root);
+    for (const box of figure.querySelectorAll("input[data-layer]")) {
+      const layer = this.layers[box.dataset.layer];
+      box.addEventListener("change", () => layer.toggleAttribute("hidden", !box.checked));
+    }
+  }
+
+  range() { return Array.from({length: this.stages}, (_, stage) => stage); }
+
+  // From the plane to the view box.
+  x(value) { return (value - this.map.xLeft) * this.map.scale; }
+  y(value) { return (this.map.yTop - value) * this.map.scale; }
+  at(x, y) { return `${this.x(x).toFixed(1)} ${this.y(y).toFixed(1)}`; }
+
+  // One line a period, by the clearance at its end.
+  addWay() {
+    const {poses} = this.map;
+    this.lines = [];
+    for (let k = 0; k < this.data.steps; ++k) {
+      const ends = [poses[3 * k], poses[3 * k + 1], poses[3 * k + 3], poses[3 * k + 4]];
+      const known = ends.every(Number.isFinite);
+      const line = svgElement("path", {d: known ?
+        `M${this.at(ends[0], ends[1])}L${this.at(ends[2], ends[3])}` : ""}, this.way);
+      const clearance = this.data.clearance[k + 1];
+      const calm = Math.min(Math.max(clearance / kCalmClearance, 0), 1);
+      line.style.stroke = Number.isFinite(clearance)
+        ? `color-mix(in oklab, var(--bad), var(--c5) ${(100 * calm).toFixed(0)}%)` : "var(--soft)";
+      this.lines.push(line);
+    }
+  }
+
+  // The last stage first: it spreads widest.
+  addStages() {
+    this.dots = [];
+    this.ellipses = [];
+    for (const stage of this.range().reverse()) {
+      const colour = stageColour(stage, this.data.horizon);
+      this.dots[stage] = kDotSizes.map((size) => {
+        const dots = svgElement("path", {class: "dots", "stroke-width": size},
+                                this.layers.particles);
+        dots.style.stroke = colour;
+        return dots;
+      });
+      this.ellipses[stage] = kEllipseLevels.map((level) => {
+        const ellipse = svgElement("ellipse", {class: level > 0.9 ? "belief wide" : "belief"},
+                                   this.layers.ellipses);
+        ellipse.style.stroke = colour;
+        return ellipse;
+      });
+    }
+  }
+
+  // What is known at the beginning of period k.
+  showPlan(k) {
+    for (const stage of this.range()) {
+      this.showDots(k, stage);
+      this.showEllipses(k, stage);
+    }
+    const {plans} = this.map;
+    const nodes = this.range().map((stage) => 2 * (k * this.stages + stage))
+      .map((i) => [plans[i], plans[i + 1]]);
+    const known = nodes.filter((node) => node.every(Number.isFinite));
+    this.planLine.setAttribute("d",
+      known.map(([x, y], i) => `${i === 0 ? "M" : "L"}${this.at(x, y)}`).join(""));
+    this.nodes.forEach((node, stage) => {
+      const [x, y] = nodes[stage];
+      node.toggleAttribute("hidden", !Number.isFinite(x + y));
+      if (!Number.isFinite(x + y)) return;
+      node.setAttribute("cx", this.x(x).toFixed(1));
+      node.setAttribute("cy", this.y(y).toFixed(1));
+    });
+  }
+
+  showDots(k, stage) {
+    const {starts, x, y, sizes} = this.map.particles;
+    const paths = kDotSizes.map(() => "");
+    const begin = starts[k * this.stages + stage];
+    const end = starts[k * this.stages + stage + 1];
+    for (let i = begin; i < end; ++i) {
+      if (!Number.isFinite(x[i] + y[i])) continue;
+      const bucket = Math.min(Math.floor(sizes[i] * kDotSizes.length / 256), kDotSizes.length - 1);
+      paths[bucket] += `M${this.at(x[i], y[i])}h0`;
+    }
+    paths.forEach((path, bucket) => this.dots[stage][bucket].setAttribute("d", path));
+  }
+
+  showEllipses(k, stage) {
+    const begin = 5 * (k * this.stages + stage);
+    const [x, y, xx, xy, yy] = this.map.moments.subarray(begin, begin + 5);
+    const axes = principalAxes(xx, xy, yy);
+    this.ellipses[stage].forEach((ellipse, i) => {
+      const known = Number.isFinite(x + y + xx + xy + yy);
+      ellipse.toggleAttribute("hidden", !known);
+      if (!known) return;
+      const radius = Math.sqrt(-2 * Math.log(1 - kEllipseLevels[i])) * this.map.scale;
+      ellipse.setAttribute("rx", (radius * axes.major).toFixed(2));
+      ellipse.setAttribute("ry", (radius * axes.minor).toFixed(2));
+      const turn = (-axes.angle * 180 / Math.PI).toFixed(1);
+      ellipse.setAttribute("transform", `translate(${this.at(x, y)}) rotate(${turn})`);
+    });
+  }
+
+  // A pose on the way from one to another one, turned the shorter way round.
+  between(from, to, share) {
+    const mix = (a, b) => Number.isFinite(b) ? a + share * (b - a) : a;
+    const turn = Math.atan2(Math.sin(to[2] - from[2]), Math.cos(to[2] - from[2]));
+    const heading = Number.isFinite(turn) ? from[2] + share * turn : from[2];
+    return [mix(from[0], to[0]), mix(from[1], to[1]), heading];
+  }
+
+  put(element, [x, y, heading]) {
+    const known = Number.isFinite(x + y);
+    element.toggleAttribute("hidden", !known);
+    if (!known) return;
+    const turn = Number.isFinite(heading) ? (-heading * 180 / Math.PI).toFixed(1) : "0";
+    element.setAttribute("transform", `translate(${this.at(x, y)}) rotate(${turn})`);
+  }
+
+  // The moment that is `share` of the way through period k; share 1 of the last one is the end.
+  show(k, share) {
+    const {poses, predicted} = this.map;
+    if (this.period !== k) {
+      this.period = k;
+      this.showPlan(k);
+      this.lines.forEach((line, i) => line.toggleAttribute("hidden", i >= k));
+    }
+    if (k === this.data.steps - 1) this.lines[k].toggleAttribute("hidden", share < 1);
+    const from = poses.subarray(3 * k, 3 * k + 3);
+    const to = poses.subarray(3 * k + 3, 3 * k + 6);
+    this.put(this.vehicle, this.between(from, to, share));
+    this.put(this.ghost, this.between(from, predicted.subarray(3 * k, 3 * k + 3), share));
+  }
+}

@@ -1,0 +1,38 @@
+# Writes a C++ source that holds a page's style and scripts as text, and their SHA-256, by which a
+# content security policy names them. Run with:
+#
+#   cmake -D OUTPUT=FILE -D "STYLES=a.css;b.css" -D "LICENCE=FILE" -D "LIBRARIES=lib.js"
+#         -D "SCRIPTS=a.js;b.js" -P embed_page.cmake
+#
+# The project's own scripts share one scope that nothing else sees.
+
+function(join_files out)
+  set(text "")
+  foreach(file IN LISTS ARGN)
+    file(READ "${file}" part)
+    string(APPEND text "${part}\n")
+  endforeach()
+  set(${out} "${text}" PARENT_SCOPE)
+endfunction()
+
+join_files(style ${STYLES})
+join_files(licence ${LICENCE})
+join_files(libraries ${LIBRARIES})
+join_files(scripts ${SCRIPTS})
+string(CONCAT script "\n/*\n${licence}*/\n${libraries}(() => {\n\"use strict\";\n${scripts}})();\n")
+if(script MATCHES "</[Ss][Cc][Rr][Ii][Pp][Tt]|<!--")
+  message(FATAL_ERROR "a script of the page would end its own element")
+endif()
+string(SHA256 style_hash "${style}")
+string(SHA256 script_hash "${script}")
+
+set(delimiter "qsmpc_page")
+set(source "// Made by scripts/cmake/embed_page.cmake.\n#include \"harness/report/page_assets.hpp\"\n\n")
+string(APPEND source "namespace qsmpc {\n\n")
+foreach(asset style script)
+  string(APPEND source
+    "std::string_view page_${asset}() {\n  return R\"${delimiter}(${${asset}})${delimiter}\";\n}\n\n"
+    "std::string_view page_${asset}_sha256() { return \"${${asset}_hash}\"; }\n\n")
+endforeach()
+string(APPEND source "}  // namespace qsmpc\n")
+file(WRITE "${OUTPUT}" "${source}")
