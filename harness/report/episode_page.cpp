@@ -75,6 +75,7 @@ std::string live_map(const PlaneMap* map) {
         "<label><input type=\"checkbox\" checked=\"checked\" data-layer=\"{}\"/>{}</label>", layer,
         std::string_view(layer) == "ghost" ? "model’s vehicle" : layer);
   }
+  html += "<label><input type=\"checkbox\" id=\"near-view\"/>near view</label>";
   return html + "</div>\n" + map_drawing(*map) + "</figure>\n";
 }
 

@@ -162,6 +162,25 @@ test("shows the numbers of summary.json", async () => {
   await page.close();
 });
 
+test("the near view follows the vehicle", async () => {
+  const {page} = await open();
+  await page.locator("#near-view").check();
+  for (const time of [0.3, 2.4]) {
+    await slideTo(page, time);
+    const off = await page.evaluate(() => {
+      const middle = (element) => {
+        const {left, right, top, bottom} = element.getBoundingClientRect();
+        return [(left + right) / 2, (top + bottom) / 2];
+      };
+      const vehicle = middle(document.getElementById("vehicle"));
+      const frame = middle(document.querySelector("#live-map .frame"));
+      return Math.hypot(vehicle[0] - frame[0], vehicle[1] - frame[1]);
+    });
+    assert.ok(off < 8, `${off} pixels from the middle`);
+  }
+  await page.close();
+});
+
 test("is used with the keyboard alone", async () => {
   const {page} = await open();
   await page.locator("#time").focus();

@@ -2,9 +2,10 @@
 // drawn already.
 
 const kSvg = "http://www.w3.org/2000/svg";
-const kDotSizes = [2.2, 3.4, 5.2];        // view box units, by weight
+const kDotSizes = [1.7, 2.7, 4.2];        // pixels, by weight
 const kEllipseLevels = [0.5, 0.95];       // of the probability
 const kVehicle = "M-9-5.5H4L9 0 4 5.5H-9z";  // view box units, heading right
+const kNearView = 3.0;                    // how many times larger the near view shows
 const kCalmClearance = 1.0;               // m, from which on the way has its calm colour
 
 function svgElement(name, attributes, parent) {
@@ -37,7 +38,10 @@ class LiveMap {
     this.map = data.map;
     this.stages = data.horizon + 1;
     figure.hidden = false;
-    const root = svgElement("g", {id: "moment"}, figure.querySelector("svg.clip"));
+    this.figure = figure;
+    this.view = figure.querySelector("svg.clip");
+    this.zoom = 1;
+    const root = svgElement("g", {id: "moment"}, this.view);
     this.way = svgElement("g", {class: "driven"}, root);
     this.addWay();
     this.layers = {};
@@ -51,10 +55,20 @@ class LiveMap {
     this.nodes.forEach((node, stage) => { node.style.fill = stageColour(stage, data.horizon); });
     this.ghost = svgElement("path", {class: "ghost", d: kVehicle}, this.layers.ghost);
     this.vehicle = svgElement("path", {id: "vehicle", class: "vehicle", d: kVehicle}, root);
+    document.getElementById("near-view").addEventListener("change", (event) =>
+      this.setZoom(event.target.checked ? kNearView : 1));
     for (const box of figure.querySelectorAll("input[data-layer]")) {
       const layer = this.layers[box.dataset.layer];
       box.addEventListener("change", () => layer.toggleAttribute("hidden", !box.checked));
     }
+  }
+
+  // The near view follows the vehicle; the axes' numbers would not fit it and are not shown.
+  setZoom(zoom) {
+    this.zoom = zoom;
+    this.figure.classList.toggle("near-view", zoom > 1);
+    if (zoom === 1) this.view.removeAttribute("viewBox");
+    this.show(this.period, this.share);
   }
 
   range() { return Array.from({length: this.stages}, (_, stage) => stage); }
@@ -165,12 +179,23 @@ class LiveMap {
     element.toggleAttribute("hidden", !known);
     if (!known) return;
     const turn = Number.isFinite(heading) ? (-heading * 180 / Math.PI).toFixed(1) : "0";
-    element.setAttribute("transform", `translate(${this.at(x, y)}) rotate(${turn})`);
+    const size = (1 / this.zoom).toFixed(3);
+    element.setAttribute("transform", `translate(${this.at(x, y)}) rotate(${turn}) scale(${size})`);
+  }
+
+  lookAt([x, y]) {
+    if (this.zoom === 1 || !Number.isFinite(x + y)) return;
+    const width = this.view.width.baseVal.value / this.zoom;
+    const height = this.view.height.baseVal.value / this.zoom;
+    const corner = [this.x(x) - width / 2, this.y(y) - height / 2];
+    this.view.setAttribute("viewBox",
+      [...corner, width, height].map((value) => value.toFixed(1)).join(" "));
   }
 
   // The moment that is `share` of the way through period k; share 1 of the last one is the end.
   show(k, share) {
     const {poses, predicted} = this.map;
+    this.share = share;
     if (this.period !== k) {
       this.period = k;
       this.showPlan(k);
@@ -179,7 +204,9 @@ class LiveMap {
     if (k === this.data.steps - 1) this.lines[k].toggleAttribute("hidden", share < 1);
     const from = poses.subarray(3 * k, 3 * k + 3);
     const to = poses.subarray(3 * k + 3, 3 * k + 6);
-    this.put(this.vehicle, this.between(from, to, share));
+    const pose = this.between(from, to, share);
+    this.put(this.vehicle, pose);
+    this.lookAt(pose);
     this.put(this.ghost, this.between(from, predicted.subarray(3 * k, 3 * k + 3), share));
   }
 }
