@@ -44,6 +44,12 @@ class LiveMap {
     const root = svgElement("g", {id: "moment"}, this.view);
     this.way = svgElement("g", {class: "driven"}, root);
     this.addWay();
+    if (this.map.particles.stride > 1) {
+      const note = document.createElement("p");
+      note.className = "note";
+      note.textContent = `1 of ${this.map.particles.stride} particles is drawn.`;
+      figure.append(note);
+    }
     this.layers = {};
     for (const name of ["particles", "ellipses", "plan", "ghost"]) {
       this.layers[name] = svgElement("g", {id: `layer-${name}`}, root);
