@@ -298,6 +298,7 @@ std::string episode_data(const Trace& trace, const SystemDescription& system,
   Json json = data.periods();
   json["charts"] = Json::array();
   for (const Chart& chart : scene.charts) json["charts"].push_back(chart_data(chart));
+  json["video"] = {{"from", scene.video_from}, {"speed", scene.video_speed}};
   if (scene.map != nullptr) json["map"] = data.plane(*scene.map);
   return for_script(json);
 }

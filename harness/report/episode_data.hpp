@@ -15,6 +15,8 @@ namespace qsmpc {
 struct EpisodeScene {
   const std::vector<Chart>& charts;  ///< in the order of the page
   const PlaneMap* map = nullptr;     ///< null for a system without a place in the plane
+  double video_from = 0.0;           ///< s of the drive, where the video begins
+  double video_speed = 1.0;          ///< s of the drive in a second of the video
 };
 
 /// A JSON object that is safe inside of a <script type="application/json">. Rows of numbers are

@@ -55,8 +55,8 @@ std::string video(const EpisodePageOptions& options) {
   return fmt::format(
       "<figure class=\"card\">\n<figcaption>Video</figcaption>\n"
       "<video controls muted playsinline preload=\"auto\" src=\"{}\"></video>\n"
-      "<p class=\"note\">The file <a href=\"{}\">{}</a>, beside this page.</p>\n</figure>\n",
-      url, url, escape_html(options.video_file));
+      "<p class=\"note\">The file <a href=\"{}\">{}</a>, beside this page. {}</p>\n</figure>\n",
+      url, url, escape_html(options.video_file), escape_html(options.video_note));
 }
 
 std::string live_map(const PlaneMap* map) {
@@ -158,8 +158,12 @@ std::string episode_page(const Trace& trace, const EpisodePageOptions& options) 
   html += ending(trace);
   if (!trace.steps.empty()) {
     html += "<script type=\"application/json\" id=\"episode-data\">" +
-            episode_data(trace, system, {.charts = charts, .map = shown}) + "</script>\n" +
-            page_scripts();
+            episode_data(trace, system,
+                         {.charts = charts,
+                          .map = shown,
+                          .video_from = options.video_from,
+                          .video_speed = options.video_speed}) +
+            "</script>\n" + page_scripts();
   }
   return html + page_foot(trace.version);
 }

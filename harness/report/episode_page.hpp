@@ -15,6 +15,9 @@ namespace qsmpc {
 
 struct EpisodePageOptions {
   std::string video_file{};  ///< beside the page; empty: none
+  std::string video_note{};  ///< below it, e.g. how long it took
+  double video_from = 0.0;   ///< s of the drive, where the video begins
+  double video_speed = 1.0;  ///< s of the drive in a second of the video
 };
 
 /// The page as UTF-8 text. A trace without steps gives a page that says why. Throws

@@ -14,7 +14,7 @@
 //                                 at each period's end by the model without noise; plans: x, y by
 //                                 period and stage; moments: x, y, xx, xy, yy of the particles by
 //                                 period and stage; particles: see unpackParticles
-//   video (where there is one)    speed
+//   video                           from: s of the drive where it begins; speed: of the drive in it
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const floatsOf = (text) => new Float32Array(bytesOf(text).buffer);

@@ -160,7 +160,10 @@ class Player {
     this.video.addEventListener("seeked", () => this.afterSeek());
   }
 
-  speed() { return this.data.video ? this.data.video.speed : 1; }
+  // Between the drive's time and the video's, both in s: the video may show a part, and faster.
+  driveTime() { return this.data.video.from + this.video.currentTime * this.data.video.speed; }
+  videoTime() { return Math.max(this.time - this.data.video.from, 0) / this.data.video.speed; }
+
   hasVideo() { return Boolean(this.video) && this.video.readyState > 0 && !this.video.error; }
 
   step(periods) {
@@ -181,7 +184,7 @@ class Player {
       return;
     }
     this.wanted = undefined;
-    const at = this.time / this.speed();
+    const at = this.videoTime();
     if (Math.abs(this.video.currentTime - at) > 1e-3) this.video.currentTime = at;
   }
 
@@ -190,7 +193,7 @@ class Player {
       this.seekVideo();
     } else {
       // The video's own controls were used.
-      const time = Math.min(this.video.currentTime * this.speed(), this.end);
+      const time = Math.min(this.driveTime(), this.end);
       if (Math.abs(time - this.time) > this.data.period) this.show(time);
     }
   }
@@ -235,7 +238,7 @@ class Player {
     this.setPlaying(true);
     const next = () => {
       if (!this.playing) return;
-      this.show(this.video.currentTime * this.speed());
+      this.show(this.driveTime());
       requestAnimationFrame(next);
     };
     requestAnimationFrame(next);
