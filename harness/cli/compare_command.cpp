@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/atomic_file.hpp"
+#include "harness/cli/artefacts.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/interrupt.hpp"
@@ -22,6 +23,7 @@
 #include "harness/mismatch/comparison_table.hpp"
 #include "harness/mismatch/measured_error.hpp"
 #include "harness/report/comparison_charts.hpp"
+#include "harness/report/comparison_page.hpp"
 #include "harness/report/svg_figure.hpp"
 #include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -33,7 +35,7 @@ constexpr const char* kHelp =
     "Measures how far plants are from the planner's model, in closed loop, in every period and "
     "along\n"
     "a plan, and what that does to the certificates; writes comparison.json, comparison.h5,\n"
-    "scenario.yaml and figures.";
+    "scenario.yaml, figures and a page (report.html).";
 constexpr const char* kExample =
     "Example: qsmpc compare dubins_corridor --plant analytic --plant mujoco_car --episodes 50\n"
     "A plant is \"analytic\", \"mujoco\" (the scenario's own vehicle), the name of a shipped one, "
@@ -59,11 +61,12 @@ std::string folder_of(const std::string& path) {
   return folder.empty() ? "." : folder;
 }
 
-std::vector<TextFile> figure_files(const Comparison& comparison, const std::string& folder) {
+std::vector<TextFile> report_files(const Comparison& comparison, const std::string& folder) {
   std::vector<TextFile> files;
   for (const ComparisonFigure& figure : comparison_figures(comparison)) {
     files.push_back({.path = folder + "/" + figure.file, .text = svg_figure(figure.charts)});
   }
+  files.push_back({.path = folder + "/" + kPageFile, .text = comparison_page(comparison)});
   return files;
 }
 
@@ -112,7 +115,7 @@ int compare(CompareArguments& arguments) {
     std::cerr << "qsmpc: interrupted; nothing was written\n";
     return kInterruptedExit;
   }
-  std::vector<TextFile> more = figure_files(*comparison, folder);
+  std::vector<TextFile> more = report_files(*comparison, folder);
   if (!arguments.error_file.empty()) more.push_back(error_file(*comparison, arguments.error_file));
   write_comparison(*comparison, more, folder);
   print_result(arguments.json ? comparison_json(*comparison)

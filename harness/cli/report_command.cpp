@@ -4,25 +4,32 @@
 
 #include <CLI/CLI.hpp>
 
+#include "harness/atomic_file.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/campaign_results.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/mismatch/comparison_file.hpp"
+#include "harness/report/comparison_page.hpp"
 
 namespace qsmpc {
 namespace {
 
-int report(const std::string& folder) {
+bool has(const std::string& folder, const char* file) {
   std::error_code ignored;
-  if (std::filesystem::exists(folder + "/" + kStoreFile, ignored)) {
+  return std::filesystem::exists(folder + "/" + file, ignored);
+}
+
+int report(const std::string& folder) {
+  if (has(folder, kStoreFile)) {
     write_campaign_results(folder);
-    print_result(folder + "/" + kPageFile + "\n");
-    return kDone;
+  } else if (has(folder, kComparisonFile)) {
+    write_file(folder + "/" + kPageFile, comparison_page(read_comparison(folder)));
+  } else {
+    write_page(read_folder(folder), folder, has(folder, kVideoFile));
   }
-  const Trace trace = read_folder(folder);
-  write_page(trace, folder, std::filesystem::exists(folder + "/" + kVideoFile, ignored));
   print_result(folder + "/" + kPageFile + "\n");
   return kDone;
 }
@@ -32,11 +39,12 @@ int report(const std::string& folder) {
 void add_report_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("report",
                                          "Writes a self-contained HTML page from an episode's "
-                                         "trace, or of a campaign's store, with its\n"
-                                         "numbers, tables and figures.");
+                                         "trace, a comparison's data or a campaign's\nstore, with "
+                                         "its numbers, tables and figures.");
   command->footer("Example: qsmpc report out/dubins_obstacles-0");
   const auto folder = std::make_shared<std::string>();
-  command->add_option("folder", *folder, "folder of an episode or a campaign")->required();
+  command->add_option("folder", *folder, "folder of an episode, a comparison or a campaign")
+      ->required();
   command->callback([folder, &exit_code] { exit_code = report(*folder); });
 }
 

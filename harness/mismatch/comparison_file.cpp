@@ -116,6 +116,20 @@ void add_closed_loop(Layout& layout, const std::string& group) {
   add("unsafe_periods", Type::kInt64, "periods", "that ended in the unsafe set");
 }
 
+/// The certificates of the closed loop, period by period.
+void add_next_step(Layout& layout, const std::string& group) {
+  const auto add = [&](const char* name, Type type, const char* comment) {
+    layout.push_back({.path = group + "/next_step/" + name,
+                      .type = type,
+                      .axes = {"period"},
+                      .units = {"1"},
+                      .comment = comment});
+  };
+  add("episode", Type::kInt64, "episode of the row of the same number, from 0");
+  add("certified", Type::kFloat64, "upper bound of the probability that the period ends unsafe");
+  add("unsafe", Type::kInt64, "1 where it did");
+}
+
 void add_residuals(Layout& layout, const std::string& group, const Sizes& n) {
   const std::string episode = "episode of the row of the same number, from 0";
   layout.push_back(by_state(group + "/one_step/residuals", "period", n,
@@ -199,6 +213,7 @@ void write_shared(Hdf5File& file, const Comparison& comparison) {
   file.append("/plan/states", by_rows(policy.states.transpose()));
   for (const Eigen::MatrixXd& gain : policy.gains) file.append("/plan/gains", by_rows(gain));
   append_paths(file, "/model/states", comparison.model_paths);
+  file.set_integer("/model", "w2_paths", comparison.w2_paths);
   for (const W2Floor& floor : comparison.floors) {
     file.append("/model/w2_floor", std::vector<double>{floor.mean, floor.deviation});
   }
@@ -235,6 +250,18 @@ void write_closed_loop(Hdf5File& file, const std::string& group,
   append("unsafe", unsafe);
   append("certified", certified);
   append("unsafe_periods", unsafe_periods);
+}
+
+void write_next_step(Hdf5File& file, const std::string& group,
+                     const std::vector<EpisodeResult>& episodes) {
+  for (std::size_t n = 0; n < episodes.size(); ++n) {
+    const EpisodeResult& episode = episodes[n];
+    file.append(group + "/next_step/episode",
+                std::vector<std::int64_t>(episode.certified.size(), static_cast<std::int64_t>(n)));
+    file.append(group + "/next_step/certified", episode.certified);
+    file.append(group + "/next_step/unsafe",
+                std::vector<std::int64_t>(episode.unsafe_next.begin(), episode.unsafe_next.end()));
+  }
 }
 
 void write_residuals(Hdf5File& file, const std::string& group, const PlantComparison& plant) {
@@ -281,9 +308,11 @@ void write_hdf5(const Comparison& comparison, const std::string& path) {
     const PlantComparison& plant = comparison.plants[n];
     file.set_text(groups[n], "name", plant.name);
     write_closed_loop(file, groups[n], plant.episodes);
+    write_next_step(file, groups[n], plant.episodes);
     write_residuals(file, groups[n], plant);
     write_horizon(file, groups[n], plant, comparison.paths);
   }
+  file.append("/timing/speed", column_of(comparison.plants, &PlantComparison::speed));
   file.close();
 }
 
@@ -314,9 +343,14 @@ std::vector<DatasetSpec> comparison_layout(const Comparison& comparison) {
   add_model(layout, sizes, comparison.with_error.has_value());
   for (const std::string& group : plant_groups(comparison)) {
     add_closed_loop(layout, group);
+    add_next_step(layout, group);
     add_residuals(layout, group, sizes);
     add_horizon(layout, group, sizes);
   }
+  layout.push_back({.path = "/timing/speed",
+                    .axes = {"plant"},
+                    .units = {"s/s"},
+                    .comment = "simulated seconds a second of one plant; wall clock"});
   return layout;
 }
 

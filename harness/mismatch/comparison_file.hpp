@@ -38,4 +38,13 @@ struct TextFile {
 void write_comparison(const Comparison& comparison, const std::vector<TextFile>& more,
                       const std::string& folder);
 
+/// What comparison.h5 in `folder` says that tables, figures and pages show. Empty are: the plan,
+/// all paths and particles, residuals and magnitudes of episodes and the words of faults, the
+/// measured model error, lags and `lag1_deviation`; of the certificates there are the values only.
+/// What a file of an older version does not say (speed, p-values of the closed loop) is not a
+/// number, or 0
+/// (`w2_paths`). Throws InputError where the file is damaged, of another schema or something else,
+/// IoError where it cannot be read.
+[[nodiscard]] Comparison read_comparison(const std::string& folder);
+
 }  // namespace qsmpc

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,7 @@ namespace {
 constexpr const char* kStageLabel = "stage";
 constexpr double kLeastResidual = 1e-9;      // what is below is drawn at the foot of the axis
 constexpr double kLeastProbability = 1e-10;  // the same
+constexpr double kSpread = 0.24;  // left and right of a state's name, of what is drawn at it
 
 /// Colours of the plants, blue left to what they are compared with.
 int plant_colour(std::size_t plant) { return 1 + static_cast<int>(plant) % (kPaletteSize - 1); }
@@ -22,10 +24,12 @@ std::string with_unit(const Coordinate& coordinate) {
   return coordinate.unit.empty() ? coordinate.name : coordinate.name + " (" + coordinate.unit + ")";
 }
 
-Series by_coordinate(const std::string& name, int colour, const Eigen::VectorXd& values) {
+/// Values beside the names of the states, `beside` them by a part of the way to the next.
+Series by_coordinate(const std::string& name, int colour, const Eigen::VectorXd& values,
+                     double beside) {
   Series series{.name = name, .colour = colour, .mark = Mark::kPoints};
   for (Eigen::Index i = 0; i < values.size(); ++i) {
-    series.x.push_back(static_cast<double>(i + 1));
+    series.x.push_back(static_cast<double>(i + 1) + beside);
     series.y.push_back(values[i]);
   }
   return series;
@@ -45,10 +49,12 @@ ComparisonFigure residual_figure(const Comparison& comparison, const SystemDescr
   chart.x_includes = {0.5, static_cast<double>(system.states.size()) + 0.5};
   chart.series.push_back(
       by_coordinate("disturbance, for scale", kBlue,
-                    comparison.scenario.disturbance.covariance.diagonal().cwiseSqrt()));
+                    comparison.scenario.disturbance.covariance.diagonal().cwiseSqrt(), -kSpread));
+  const double step = 2.0 * kSpread / static_cast<double>(comparison.plants.size());
   for (std::size_t n = 0; n < comparison.plants.size(); ++n) {
     const PlantComparison& plant = comparison.plants[n];
-    chart.series.push_back(by_coordinate(plant.name, plant_colour(n), plant.one_step.rmse));
+    chart.series.push_back(by_coordinate(plant.name, plant_colour(n), plant.one_step.rmse,
+                                         step * static_cast<double>(n + 1) - kSpread));
   }
   return {.file = "residuals.svg", .charts = {std::move(chart)}};
 }
@@ -89,9 +95,10 @@ ComparisonFigure divergence_figure(const Comparison& comparison, const SystemDes
 ComparisonFigure w2_figure(const Comparison& comparison) {
   Chart chart{.title = "W₂ between the predicted measure and the plant",
               .note = fmt::format(
-                  "Floor: the same for {} paths of the model itself, mean and two standard "
-                  "deviations of {} ensembles. A plant within it cannot be told from the model.",
-                  comparison.w2_paths, kFloorEnsembles),
+                  "Floor: the same for {} of the model itself, mean and two standard deviations "
+                  "of {} ensembles. A plant within it cannot be told from the model.",
+                  comparison.w2_paths > 0 ? fmt::format("{} paths", comparison.w2_paths) : "paths",
+                  kFloorEnsembles),
               .x_label = kStageLabel,
               .y_label = "W₂ distance (state units)",
               .x_includes = {0.0},
@@ -115,18 +122,37 @@ ComparisonFigure w2_figure(const Comparison& comparison) {
   return {.file = "w2.svg", .charts = {std::move(chart)}};
 }
 
+/// A stage at which paths are unsafe is a point with its interval, another one an upper limit.
+void add_observed(const Comparison& comparison, const PlantComparison& plant, Chart& chart) {
+  Series seen{.name = "observed, 99 % interval", .colour = kVermilion, .mark = Mark::kPoints};
+  Series unseen{.name = "none observed: at most", .colour = kVermilion, .mark = Mark::kLimits};
+  for (const HorizonStage& stage : plant.horizon) {
+    if (stage.unsafe == 0) {
+      unseen.x.push_back(stage.stage);
+      unseen.y.push_back(stage.unsafe_limits.upper);
+      continue;
+    }
+    seen.x.push_back(stage.stage);
+    seen.y.push_back(static_cast<double>(stage.unsafe) / static_cast<double>(comparison.paths));
+    seen.lower.push_back(stage.unsafe_limits.lower);
+    seen.upper.push_back(stage.unsafe_limits.upper);
+  }
+  for (Series* series : {&unseen, &seen}) {
+    if (!series->x.empty()) chart.series.push_back(std::move(*series));
+  }
+}
+
 Chart certificate_chart(const Comparison& comparison, const PlantComparison& plant) {
   const auto of = [](const std::vector<StageCertificate>& certificates) {
     return [&certificates](const HorizonStage& stage) {
       return certificates[static_cast<std::size_t>(stage.stage) - 1].value;
     };
   };
-  const auto paths = static_cast<double>(comparison.paths);
   Chart chart{.title = "Certificates: " + plant.name,
               .note =
                   "Bounds of the probability of being unsafe under the plan, and the share of "
-                  "the plant's paths that are. What is below the axis, 0 included, is at its "
-                  "foot.",
+                  "the plant's paths that are. A bound is exceeded where a whole interval is "
+                  "above it.",
               .x_label = kStageLabel,
               .y_label = "probability (–)",
               .y_scale = Scale::kLog,
@@ -139,18 +165,7 @@ Chart certificate_chart(const Comparison& comparison, const PlantComparison& pla
     chart.series.push_back(
         by_stage(plant, "certificate with model error", kGreen, of(*comparison.with_error)));
   }
-  chart.series.push_back(by_stage(
-      plant, "observed", kVermilion,
-      [paths](const HorizonStage& stage) { return static_cast<double>(stage.unsafe) / paths; }));
-  chart.series.back().mark = Mark::kPoints;
-  chart.series.push_back(
-      by_stage(plant, "observed: lower limit (99 %)", kPurple,
-               [](const HorizonStage& stage) { return stage.unsafe_limits.lower; }));
-  chart.series.back().dashed = true;
-  chart.series.push_back(
-      by_stage(plant, "observed: upper limit (99 %)", kVermilion,
-               [](const HorizonStage& stage) { return stage.unsafe_limits.upper; }));
-  chart.series.back().dashed = true;
+  add_observed(comparison, plant, chart);
   return chart;
 }
 

@@ -1,6 +1,7 @@
 // A comparison of plants as figures.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,12 @@ struct ComparisonFigure {
   std::string file;  ///< e.g. "w2.svg"
   std::vector<Chart> charts;
 };
+
+/// Places in what comparison_figures returns.
+inline constexpr std::size_t kResidualFigure = 0;
+inline constexpr std::size_t kDivergenceFigure = 1;
+inline constexpr std::size_t kW2Figure = 2;
+inline constexpr std::size_t kCertificateFigure = 3;
 
 /// residuals.svg (root mean square by state), divergence.svg (by stage, one chart a state), w2.svg
 /// (with the floor, by stage) and certificates.svg (against what was observed, one chart a plant).

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "harness/report/chart_marks.hpp"
 #include "harness/report/html.hpp"
 #include "harness/report/page_style.hpp"
 
@@ -23,6 +25,8 @@ constexpr const char* kAreaClass = "area";
 constexpr int kTicksAcross = 6;
 constexpr int kTicksUp = 5;
 constexpr std::size_t kMostPoints = 1000;  // of a line; more would not be seen
+constexpr std::size_t kMarksOnLine = 8;    // where it has many points
+constexpr std::size_t kAllMarked = 12;     // a line of so many points has a mark at each
 
 struct Frame {
   Axis x;
@@ -70,6 +74,8 @@ std::vector<std::size_t> drawn_indices(const Series& series) {
   return indices;
 }
 
+int palette_index(const Series& series) { return std::clamp(series.colour, 0, kPaletteSize - 1); }
+
 struct PathData {
   std::string line;
   std::string dots;  ///< points that no line leads to
@@ -108,7 +114,7 @@ PathData path_data(const Series& series, const Frame& frame) {
     if (series.mark == Mark::kLimits) {
       data.line += limit_arrow(x, y);
     } else if (series.mark == Mark::kPoints || (begins && !shown(n + 1))) {
-      data.dots += fmt::format("M{:.1f} {:.1f}h0", x, y);
+      data.dots += mark_data(palette_index(series), x, y);
     } else if (begins) {
       data.line += fmt::format("M{:.1f} {:.1f}", x, y);
     } else if (series.mark == Mark::kSteps) {
@@ -120,11 +126,36 @@ PathData path_data(const Series& series, const Frame& frame) {
   return data;
 }
 
-int palette_index(const Series& series) { return std::clamp(series.colour, 0, kPaletteSize - 1); }
+/// Whether a line has signs along it, by which it can be told from others.
+bool is_marked(const Series& series) { return series.mark == Mark::kLine && !series.dashed; }
+bool has_marks(const Chart& chart, const Series& series) {
+  return is_marked(series) && std::ranges::count_if(chart.series, is_marked) > 1;
+}
+
+/// Signs along a line, at other places for another colour.
+std::string line_marks(const Series& series, const Frame& frame) {
+  std::vector<std::size_t> shown;
+  for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
+    if (is_shown(series, i)) shown.push_back(i);
+  }
+  const std::size_t marks = shown.size() <= kAllMarked ? shown.size() : kMarksOnLine;
+  const int colour = palette_index(series);
+  std::string data;
+  for (std::size_t n = 0; n < marks; ++n) {
+    const std::size_t place = (n * kPaletteSize + static_cast<std::size_t>(colour)) * shown.size() /
+                              (marks * kPaletteSize);
+    const std::size_t i = shown[marks == shown.size() ? n : place];
+    data += mark_data(colour, frame.across(series.x[i]), frame.up(series.y[i]));
+  }
+  return data;
+}
+
+std::string marks_svg(const Series& series, const std::string& data) {
+  return fmt::format("<path class=\"{}\" d=\"{}\"/>", mark_classes(palette_index(series)), data);
+}
 
 std::string line_classes(const Series& series) {
-  return fmt::format("{} c{}{}", series.mark == Mark::kPoints ? "points" : "line",
-                     palette_index(series), series.dashed ? " dash" : "");
+  return fmt::format("line c{}{}", palette_index(series), series.dashed ? " dash" : "");
 }
 
 Frame frame_of(const Chart& chart) {
@@ -221,9 +252,13 @@ std::vector<LegendEntry> chart_legend(const Chart& chart) {
            .name = series.name});
       continue;
     }
-    const bool points = series.mark == Mark::kPoints;
-    entries.push_back(points ? dot_entry(line_classes(series), series.name)
-                             : line_entry(line_classes(series), series.name));
+    LegendEntry entry = line_entry(line_classes(series), series.name);
+    if (series.mark == Mark::kPoints) entry.drawing.clear();
+    if (series.mark == Mark::kPoints || has_marks(chart, series)) {
+      entry.drawing += marks_svg(
+          series, mark_data(palette_index(series), kSwatchWidth / 2.0, kSwatchHeight / 2.0));
+    }
+    entries.push_back(std::move(entry));
   }
   for (const Rule& rule : chart.rules) {
     if (!rule.name.empty() && is_drawable(rule.value)) {
@@ -268,9 +303,9 @@ std::string chart_drawing(const Chart& chart, double x, double y) {
     if (!data.line.empty()) {
       svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", line_classes(series), data.line);
     }
-    if (!data.dots.empty()) {
-      svg += fmt::format("<path class=\"points c{}\" d=\"{}\"/>", palette_index(series), data.dots);
-    }
+    const std::string marks =
+        data.dots + (has_marks(chart, series) ? line_marks(series, frame) : std::string());
+    if (!marks.empty()) svg += marks_svg(series, marks);
   }
   return svg + "</svg>\n";
 }

@@ -30,6 +30,15 @@ constexpr unsigned kReadAttempts = 20;
 /// More elements than this (4 GiB) in one dataset come from a damaged or hostile file.
 constexpr hsize_t kElementLimit = hsize_t{1} << 29;
 
+/// Texts of `length` bytes each, shorter ones padded with zeros.
+std::vector<std::string> texts_in(const std::string& padded, std::size_t length) {
+  std::vector<std::string> texts;
+  for (std::size_t at = 0; at < padded.size(); at += length) {
+    texts.emplace_back(padded.data() + at, ::strnlen(padded.data() + at, length));
+  }
+  return texts;
+}
+
 }  // namespace
 
 struct Hdf5File::Impl {
@@ -90,8 +99,18 @@ struct Hdf5File::Impl {
   void open_groups_above(const std::string& path_of_object);
   void set_attribute(const std::string& object, const std::string& name, hid_t type, hid_t space,
                      const void* value) const;
+  [[nodiscard]] Handle attribute_of(const std::string& object, const std::string& name) const {
+    return checked(
+        H5Aopen_by_name(file.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
+        H5Aclose, object + "@" + name);
+  }
   void read_scalar(const std::string& object, const std::string& name, hid_t type,
-                   void* value) const;
+                   void* value) const {
+    read_attribute(object, name, type, 1, value);
+  }
+  void read_attribute(const std::string& object, const std::string& name, hid_t type, hsize_t count,
+                      void* values) const;
+  [[nodiscard]] hsize_t attribute_length(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::size_t text_bytes(const std::string& object, const std::string& name) const;
   void append_rows(const std::string& name, hid_t type, const void* values, std::size_t count);
   [[nodiscard]] hsize_t readable_elements(const std::string& name, H5T_class_t wanted);
@@ -120,31 +139,35 @@ void Hdf5File::Impl::set_attribute(const std::string& object, const std::string&
   check(H5Awrite(made.get(), type, value), what);
 }
 
-void Hdf5File::Impl::read_scalar(const std::string& object, const std::string& name, hid_t type,
-                                 void* value) const {
+void Hdf5File::Impl::read_attribute(const std::string& object, const std::string& name, hid_t type,
+                                    hsize_t count, void* values) const {
   const std::string what = object + "@" + name;
-  const Handle attribute =
-      checked(H5Aopen_by_name(file.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-              H5Aclose, what);
+  const Handle attribute = attribute_of(object, name);
   const Handle stored = checked(H5Aget_type(attribute.get()), H5Tclose, what);
   const Handle space = checked(H5Aget_space(attribute.get()), H5Sclose, what);
-  // What follows writes through `value`, so it must not read more than one element of this type.
+  // What follows writes through `values`, so it must not read more than so many of this type.
   if (H5Tget_class(stored.get()) != H5Tget_class(type) ||
       H5Tis_variable_str(stored.get()) != H5Tis_variable_str(type) ||
-      H5Sget_simple_extent_npoints(space.get()) != 1) {
+      H5Sget_simple_extent_npoints(space.get()) != static_cast<hssize_t>(count)) {
     throw InputError({.file = path,
                       .key = what,
                       .found = "another type of attribute",
                       .expected = H5Tget_class(type) == H5T_STRING ? "one text" : "one integer"});
   }
-  check(H5Aread(attribute.get(), type, value), what);
+  check(H5Aread(attribute.get(), type, values), what);
+}
+
+/// At most as many as may be read; `read_attribute` refuses where there are others.
+hsize_t Hdf5File::Impl::attribute_length(const std::string& object, const std::string& name) const {
+  const Handle attribute = attribute_of(object, name);
+  const Handle space = checked(H5Aget_space(attribute.get()), H5Sclose, object + "@" + name);
+  const hsize_t most = kElementLimit / text_bytes(object, name);
+  return std::min(most, static_cast<hsize_t>(H5Sget_simple_extent_npoints(space.get())));
 }
 
 std::size_t Hdf5File::Impl::text_bytes(const std::string& object, const std::string& name) const {
   const std::string what = object + "@" + name;
-  const Handle attribute =
-      checked(H5Aopen_by_name(file.get(), object.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-              H5Aclose, what);
+  const Handle attribute = attribute_of(object, name);
   const Handle stored = checked(H5Aget_type(attribute.get()), H5Tclose, what);
   const bool fixed = H5Tget_class(stored.get()) == H5T_STRING &&
                      H5Tis_variable_str(stored.get()) == 0 && H5Tget_size(stored.get()) > 0;
@@ -408,6 +431,15 @@ std::string Hdf5File::text(const std::string& object, const std::string& name) c
   return value;
 }
 
+std::vector<std::string> Hdf5File::texts(const std::string& object, const std::string& name) const {
+  const Lock lock;
+  const std::size_t bytes = impl_->text_bytes(object, name);
+  const hsize_t count = impl_->attribute_length(object, name);
+  std::string padded(count * bytes, '\0');
+  impl_->read_attribute(object, name, text_type(bytes).get(), count, padded.data());
+  return texts_in(padded, bytes);
+}
+
 std::int64_t Hdf5File::integer(const std::string& object, const std::string& name) const {
   const Lock lock;
   std::int64_t value = 0;
@@ -460,12 +492,7 @@ std::vector<std::string> Hdf5File::texts(const std::string& path) const {
   impl_->check(H5Dread(impl_->dataset(path), text_type(kTextBytes).get(), H5S_ALL, H5S_ALL,
                        H5P_DEFAULT, bytes.data()),
                path);
-  std::vector<std::string> values(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    const char* const begin = bytes.data() + i * kTextBytes;
-    values[i].assign(begin, ::strnlen(begin, kTextBytes));
-  }
-  return values;
+  return texts_in(bytes, kTextBytes);
 }
 
 }  // namespace qsmpc

@@ -90,6 +90,9 @@ class Hdf5File {
   [[nodiscard]] bool left_open_by_writer() const;
   [[nodiscard]] bool has_attribute(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::string text(const std::string& object, const std::string& name) const;
+  /// What set_texts wrote.
+  [[nodiscard]] std::vector<std::string> texts(const std::string& object,
+                                               const std::string& name) const;
   [[nodiscard]] std::int64_t integer(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::uint64_t unsigned_integer(const std::string& object,
                                                const std::string& name) const;

@@ -55,7 +55,7 @@ TEST(Compare, leaves_numbers_data_scenario_and_figures) {
   EXPECT_EQ(result.output, read_text(folder.path() + "/comparison.json"));
   EXPECT_THAT(files_in(folder.path()),
               ElementsAre("certificates.svg", "comparison.h5", "comparison.json", "divergence.svg",
-                          "residuals.svg", "scenario.yaml", "w2.svg"));
+                          "report.html", "residuals.svg", "scenario.yaml", "w2.svg"));
   const auto json = nlohmann::json::parse(result.output);
   ASSERT_EQ(json["plants"].size(), 2U);
   const auto& model = json["plants"]["analytic"];
@@ -70,6 +70,23 @@ TEST(Compare, leaves_numbers_data_scenario_and_figures) {
   EXPECT_GE(car["closed_loop"]["unsafe_interval"][1], car["closed_loop"]["unsafe_rate"]);
   EXPECT_EQ(Hdf5File::open(folder.path() + "/comparison.h5").text("/", "kind"), "comparison");
   EXPECT_THAT(read_text(folder.path() + "/w2.svg"), HasSubstr("mujoco_car"));
+}
+
+TEST(Compare, report_makes_the_page_again_from_the_folder) {
+  const TemporaryFolder folder;
+  ASSERT_EQ(compare("dubins_corridor", folder.path(), {"--plant", "mujoco_car"}).exit_code, 0);
+  const std::string page = folder.path() + "/report.html";
+  const std::string before = read_text(page);
+  EXPECT_THAT(before, HasSubstr("Farthest from the model: mujoco_car"));
+  fs::remove(page);
+  const ProcessResult result = run_qsmpc({"report", folder.path()});
+  EXPECT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_EQ(result.output, page + "\n");
+  EXPECT_TRUE(read_text(page) == before);
+  fs::resize_file(folder.path() + "/comparison.h5", 5000);
+  const ProcessResult damaged = run_qsmpc({"report", folder.path()});
+  EXPECT_EQ(damaged.exit_code, 2);
+  EXPECT_THAT(damaged.errors, HasSubstr("comparison.h5"));
 }
 
 TEST(Compare, prints_a_table_and_uses_the_named_folder_by_default) {

@@ -1,0 +1,230 @@
+#include "harness/report/comparison_page.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/episode/assembly.hpp"
+#include "harness/report/comparison_charts.hpp"
+#include "harness/report/comparison_verdict.hpp"
+#include "harness/report/html.hpp"
+#include "harness/report/numbers.hpp"
+#include "harness/report/page_frame.hpp"
+#include "harness/report/svg_figure.hpp"
+#include "harness/report/table_page.hpp"
+
+namespace qsmpc {
+namespace {
+
+std::string kicker(const Comparison& comparison) {
+  const Scenario& scenario = comparison.scenario;
+  return fmt::format(
+      "<p class=\"kicker\">{} plants beside the model {} · {} episodes and {} paths of each · "
+      "horizon {} · seed {}</p>\n",
+      comparison.plants.size(), escape_html(scenario.model.system),
+      comparison.plants.front().closed_loop.episodes, comparison.paths, scenario.controller.horizon,
+      scenario.seed);
+}
+
+std::string plus_minus(double value, double deviation) {
+  if (!std::isfinite(deviation)) return number_html(value);
+  return fmt::format("{} <span class=\"soft\">± {}</span>", number_html(value),
+                     number_html(deviation));
+}
+
+std::int64_t count_of(const ClosedLoop& loop, const std::string& outcome) {
+  const auto found = loop.outcomes.find(outcome);
+  return found == loop.outcomes.end() ? 0 : found->second;
+}
+
+std::string closed_loop_section(const Comparison& comparison) {
+  PageTable table{
+      .label = "Closed loop, by plant",
+      .heads = {"plant", "episodes", "reached", "unsafe", "faults", "share unsafe, 99 % interval",
+                "cost", "least clearance", "speed (× real time)"},
+      .rows = {}};
+  for (const PlantComparison& plant : comparison.plants) {
+    const ClosedLoop& loop = plant.closed_loop;
+    table.rows.push_back(
+        {escape_html(plant.name), fmt::format("{}", loop.episodes),
+         fmt::format("{}", count_of(loop, "reached")), fmt::format("{}", loop.unsafe),
+         fmt::format("{}", count_of(loop, "fault")), interval_html(loop.unsafe_limits),
+         plus_minus(loop.cost, loop.cost_deviation), number_html(loop.min_clearance),
+         number_html(plant.speed)});
+  }
+  return section_head("Closed loop",
+                      "Episodes with the same seeds. Unsafe: the true state entered the unsafe set "
+                      "at a control instant. Mean cost with its standard error. Speed: simulated "
+                      "seconds a second of one plant in one thread, without planner; wall clock.") +
+         table_html(table);
+}
+
+PageTable residual_table(const Comparison& comparison, const PlantComparison& plant,
+                         const SystemDescription& system) {
+  PageTable table{.label = "One period, by state: " + plant.name,
+                  .heads = {"state", "root mean square", "mean", "disturbance", "rounding",
+                            "correlation with the next", "p, no memory"},
+                  .rows = {}};
+  for (const Coordinate& state : system.states) {
+    table.heads.push_back("covariance with " + escape_html(state.name));
+  }
+  const ResidualStatistics& own = plant.one_step;
+  for (Eigen::Index i = 0; i < own.rmse.size(); ++i) {
+    const Coordinate& state = system.states[static_cast<std::size_t>(i)];
+    std::vector<std::string> row = {
+        escape_html(state.unit.empty() ? state.name : state.name + " (" + state.unit + ")"),
+        number_html(own.rmse[i]),
+        plus_minus(own.mean[i], own.mean_deviation[i]),
+        number_html(std::sqrt(comparison.scenario.disturbance.covariance(i, i))),
+        number_html(own.rounding[i]),
+        number_html(own.whiteness.lag1[i]),
+        number_html(own.whiteness.p_value[i])};
+    for (Eigen::Index j = 0; j < own.covariance.cols(); ++j) {
+      row.push_back(number_html(own.covariance(i, j)));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string figures(const ComparisonFigure& figure) {
+  std::string html = "<div class=\"grid\">\n";
+  for (const Chart& chart : figure.charts) html += panel_figure(chart);
+  return html + "</div>\n";
+}
+
+std::string name_head(const PlantComparison& plant) {
+  std::string html = "<h3 class=\"name\">" + escape_html(plant.name);
+  if (is_the_model(plant)) html += " <span class=\"soft\">– the model, but for rounding</span>";
+  return html + "</h3>\n";
+}
+
+std::string residual_section(const Comparison& comparison, const SystemDescription& system,
+                             const ComparisonFigure& figure) {
+  std::string html = section_head(
+      "One period: what the plant adds to model and disturbance",
+      "Over all periods of all episodes. Mean with its standard error; the disturbance’s standard "
+      "deviation for scale; a root mean square below “rounding” is rounding. p is small where a "
+      "residual says something of the next ones.");
+  for (const PlantComparison& plant : comparison.plants) {
+    html += name_head(plant) + table_html(residual_table(comparison, plant, system));
+  }
+  return html + figures(figure);
+}
+
+/// Whether the certificate in force at the stage at place `k` is exceeded.
+bool is_exceeded(const PlantComparison& plant, std::size_t k) {
+  const std::vector<int>& stages = plant.exceeded_stages;
+  return std::ranges::find(stages, plant.horizon[k].stage) != stages.end();
+}
+
+std::string rate_html(const Comparison& comparison, const HorizonStage& stage) {
+  return number_html(static_cast<double>(stage.unsafe) / static_cast<double>(comparison.paths)) +
+         " " + interval_html(stage.unsafe_limits);
+}
+
+PageTable stage_table(const Comparison& comparison, const PlantComparison& plant,
+                      const SystemDescription& system) {
+  PageTable table{
+      .label = "Along the plan, by stage: " + plant.name, .heads = {"stage"}, .rows = {}};
+  for (const Coordinate& state : system.states) {
+    table.heads.push_back("divergence, " + escape_html(state.name));
+  }
+  for (const char* head : {"W₂", "floor of W₂", "certified"}) table.heads.emplace_back(head);
+  if (comparison.with_error) table.heads.emplace_back("with model error");
+  table.heads.emplace_back("observed, 99 % interval");
+  table.heads.emplace_back("exceeded");
+  for (std::size_t k = 0; k < plant.horizon.size(); ++k) {
+    const HorizonStage& stage = plant.horizon[k];
+    const W2Floor& floor = comparison.floors[static_cast<std::size_t>(stage.stage)];
+    std::vector<std::string> row = {fmt::format("{}", stage.stage)};
+    for (const double value : stage.divergence_rmse) row.push_back(number_html(value));
+    row.push_back(number_html(stage.w2));
+    row.push_back(plus_minus(floor.mean, floor.deviation));
+    row.push_back(number_html(comparison.certificates[k].value));
+    if (comparison.with_error) row.push_back(number_html((*comparison.with_error)[k].value));
+    row.push_back(rate_html(comparison, stage));
+    row.emplace_back(is_exceeded(plant, k) ? "<strong>yes</strong>" : "no");
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string plan_section(const Comparison& comparison, const SystemDescription& system,
+                         const std::vector<ComparisonFigure>& all) {
+  std::string html =
+      section_head("Along the plan: divergence, W₂ and its floor",
+                   "Paths of each plant under one plan from the initial belief, with the same "
+                   "initial states and disturbances as the model’s.");
+  html += figures(all[kDivergenceFigure]) + figures(all[kW2Figure]);
+  for (const PlantComparison& plant : comparison.plants) {
+    html +=
+        fmt::format("<details>\n<summary>Numbers by stage: {}</summary>\n{}</details>\n",
+                    escape_html(plant.name), table_html(stage_table(comparison, plant, system)));
+  }
+  return html;
+}
+
+/// The stage at which most paths are unsafe; the first of those.
+const HorizonStage& worst_stage(const PlantComparison& plant) {
+  return *std::ranges::max_element(plant.horizon, {}, &HorizonStage::unsafe);
+}
+
+std::string certificate_section(const Comparison& comparison, const ComparisonFigure& figure) {
+  PageTable table{.label = "Certificates against what was observed, by plant",
+                  .heads = {"plant", "stages exceeded", "worst stage", "certified there",
+                            "observed there, 99 % interval", "paths broken", "periods",
+                            "ended unsafe", "certified", "p", "exceeded in closed loop"},
+                  .rows = {}};
+  for (const PlantComparison& plant : comparison.plants) {
+    const HorizonStage& worst = worst_stage(plant);
+    const ClosedLoop& loop = plant.closed_loop;
+    const double certified = comparison.in_force()[static_cast<std::size_t>(worst.stage) - 1].value;
+    table.rows.push_back({escape_html(plant.name),
+                          plant.exceeded_stages.empty()
+                              ? fmt::format("none of {}", plant.horizon.size())
+                              : "<strong>" + stages_text(plant.exceeded_stages) + "</strong>",
+                          worst.unsafe > 0 ? fmt::format("{}", worst.stage) : "–",
+                          worst.unsafe > 0 ? number_html(certified) : "–",
+                          rate_html(comparison, worst),
+                          fmt::format("{} of {}", plant.paths.faults, comparison.paths),
+                          fmt::format("{}", loop.periods), fmt::format("{}", loop.unsafe_periods),
+                          number_html(loop.certified_periods), number_html(loop.p_value),
+                          is_exceeded_in_closed_loop(plant) ? "<strong>yes</strong>"
+                          : std::isfinite(loop.p_value)     ? "no"
+                                                            : "–"});
+  }
+  return section_head(
+             fmt::format("Certificates {} model error, against what was observed",
+                         comparison.with_error ? "with the scenario’s" : "without"),
+             "Under the plan: a stage is exceeded where the whole interval of the observed share "
+             "of unsafe paths lies above its certificate; the worst one is where most paths are "
+             "unsafe. In "
+             "closed loop: the periods that ended unsafe beside the sum of what was certified for "
+             "them; p is small where these are more than the certificates allow.") +
+         table_html(table) + figures(figure);
+}
+
+}  // namespace
+
+std::string comparison_page(const Comparison& comparison) {
+  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
+  const SystemDescription& system = model->description();
+  const std::vector<ComparisonFigure> all = comparison_figures(comparison);
+  std::string html = table_page_head(comparison.scenario.name + ": comparison of plants");
+  html += "<h1>" + escape_html(comparison.scenario.name) + ": plants beside the model</h1>\n";
+  html += kicker(comparison) + verdict_html(comparison_verdict(comparison));
+  html += closed_loop_section(comparison);
+  html += certificate_section(comparison, all[kCertificateFigure]);
+  html += residual_section(comparison, system, all[kResidualFigure]);
+  html += plan_section(comparison, system, all);
+  html += "<details>\n<summary>The scenario, with every default filled in</summary>\n<pre>" +
+          escape_html(comparison.scenario_text) + "</pre>\n</details>\n";
+  return html + page_foot(comparison.version);
+}
+
+}  // namespace qsmpc

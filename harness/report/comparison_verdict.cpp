@@ -1,0 +1,104 @@
+#include "harness/report/comparison_verdict.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+#include "harness/report/numbers.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr std::size_t kNameLimit = 120;  // bytes of a plant's name, which may be a path
+
+std::string name_of(const PlantComparison& plant) { return printable(plant.name, kNameLimit); }
+
+/// What is exceeded on `plant`; empty if nothing is.
+std::string exceeded_text(const PlantComparison& plant) {
+  std::string text;
+  if (!plant.exceeded_stages.empty()) {
+    text = fmt::format("at stage{} {} of the plan", plant.exceeded_stages.size() == 1 ? "" : "s",
+                       stages_text(plant.exceeded_stages));
+  }
+  if (is_exceeded_in_closed_loop(plant)) {
+    text += fmt::format("{}in closed loop (p = {})", text.empty() ? "" : " and ",
+                        format_short(plant.closed_loop.p_value));
+  }
+  return text.empty() ? text : fmt::format("On {} {}.", name_of(plant), text);
+}
+
+std::string farthest_text(const Comparison& comparison) {
+  if (std::ranges::all_of(comparison.plants, is_the_model)) {
+    return "Every plant is the model, but for rounding.";
+  }
+  const PlantComparison& plant =
+      *std::ranges::max_element(comparison.plants, {}, largest_divergence);
+  const double divergence = largest_divergence(plant);
+  if (!std::isfinite(divergence)) {
+    return fmt::format("Farthest from the model: {}, which broke on every path.", name_of(plant));
+  }
+  return fmt::format(
+      "Farthest from the model: {}. Its paths under the plan diverge from the model’s by up to {} "
+      "(root mean square, norm of the state).",
+      name_of(plant), format_short(divergence));
+}
+
+}  // namespace
+
+bool is_exceeded_in_closed_loop(const PlantComparison& plant) {
+  return plant.closed_loop.p_value < kExceededBelow;
+}
+
+double largest_divergence(const PlantComparison& plant) {
+  double largest = -1.0;
+  for (const HorizonStage& stage : plant.horizon) {
+    const double norm = stage.divergence_rmse.norm();
+    if (std::isfinite(norm)) largest = std::max(largest, norm);
+  }
+  return largest < 0.0 ? std::numeric_limits<double>::infinity() : largest;
+}
+
+bool is_the_model(const PlantComparison& plant) {
+  return plant.paths.faults == 0 &&
+         (plant.one_step.rmse.array() <= plant.one_step.rounding.array()).all();
+}
+
+std::string stages_text(const std::vector<int>& stages) {
+  std::string text;
+  for (std::size_t n = 0; n < stages.size();) {
+    std::size_t last = n;
+    while (last + 1 < stages.size() && stages[last + 1] == stages[last] + 1) ++last;
+    text += text.empty() ? "" : ", ";
+    text += last > n + 1 ? fmt::format("{} to {}", stages[n], stages[last])
+                         : fmt::format("{}", stages[n]);
+    n = last > n + 1 ? last + 1 : n + 1;
+  }
+  return text;
+}
+
+PageVerdict comparison_verdict(const Comparison& comparison) {
+  PageVerdict verdict;
+  for (const PlantComparison& plant : comparison.plants) {
+    const std::string text = exceeded_text(plant);
+    if (!text.empty()) verdict.sentences.push_back(text);
+  }
+  verdict.is_good = verdict.sentences.empty();
+  verdict.title = verdict.is_good ? "No certificate is exceeded on any plant"
+                                  : fmt::format("Certificates are exceeded on {} of {} plants",
+                                                verdict.sentences.size(), comparison.plants.size());
+  verdict.sentences.push_back(farthest_text(comparison));
+  if (verdict.is_good) {
+    verdict.sentences.push_back(fmt::format(
+        "This is no proof: none of {} paths unsafe is still compatible with a "
+        "probability of {}.",
+        comparison.paths,
+        format_bound(
+            clopper_pearson(0, std::max<std::int64_t>(1, comparison.paths), kIntervalTail).upper)));
+  }
+  return verdict;
+}
+
+}  // namespace qsmpc

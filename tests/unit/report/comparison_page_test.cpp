@@ -1,0 +1,122 @@
+#include "harness/report/comparison_page.hpp"
+
+#include <filesystem>
+#include <limits>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "harness/mismatch/comparison_file.hpp"
+#include "harness/report/comparison_charts.hpp"
+#include "harness/report/comparison_verdict.hpp"
+#include "tests/unit/mismatch/mismatch_fixture.hpp"
+#include "tests/unit/report/page_checks.hpp"
+
+namespace qsmpc {
+namespace {
+
+using testing::contains;
+using testing::occurrences;
+using testing::short_scenario;
+using testing::tag_problem;
+
+Comparison example() {
+  ComparisonOptions options;
+  options.plants = {"analytic", "mujoco_car"};
+  options.episodes = 2;
+  options.paths = 40;
+  return *compare_plants(short_scenario(), options);
+}
+
+TEST(ComparisonPage, is_the_same_byte_for_byte_when_made_again_from_the_file) {
+  const Comparison comparison = example();
+  std::string name = ::testing::TempDir() + "comparison_page_XXXXXX";
+  const std::string folder = ::mkdtemp(name.data());
+  write_comparison(comparison, {}, folder);
+  EXPECT_TRUE(comparison_page(comparison) == comparison_page(read_comparison(folder)));
+  std::filesystem::remove_all(folder);
+}
+
+TEST(ComparisonPage, has_all_parts_and_is_well_formed) {
+  const std::string page = comparison_page(example());
+  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
+  for (const char* part :
+       {"No certificate is exceeded on any plant", "Farthest from the model: mujoco_car",
+        "<h2>Closed loop</h2>", "Certificates without model error", "covariance with heading",
+        "– the model, but for rounding", "W₂ between the predicted measure and the plant",
+        "Divergence from the model: y", "Numbers by stage: mujoco_car", "× real time",
+        "every default filled in", "horizon: 3"}) {
+    EXPECT_TRUE(contains(page, part)) << part;
+  }
+  EXPECT_FALSE(contains(page, "<script"));
+  EXPECT_FALSE(contains(page, "http://"));
+  EXPECT_FALSE(contains(page, ">nan<"));
+  EXPECT_FALSE(contains(page, ">inf<"));
+  EXPECT_EQ(occurrences(page, "tabindex=\"0\""), occurrences(page, "<table"));
+  EXPECT_EQ(occurrences(page, "role=\"region\""),
+            occurrences(page, "aria-label=\"") - occurrences(page, "role=\"img\""));
+}
+
+TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
+  Comparison comparison = example();
+  PlantComparison& car = comparison.plants[1];
+  car.exceeded_stages = {1, 2, 3};
+  car.closed_loop.p_value = 1e-4;
+  const PageVerdict verdict = comparison_verdict(comparison);
+  EXPECT_FALSE(verdict.is_good);
+  EXPECT_EQ(verdict.title, "Certificates are exceeded on 1 of 2 plants");
+  EXPECT_EQ(verdict.sentences[0],
+            "On mujoco_car at stages 1 to 3 of the plan and in closed loop (p = 1 × 10⁻⁴).");
+  const std::string page = comparison_page(comparison);
+  EXPECT_LT(page.find("class=\"outcome bad\""), page.find("<h2>"));
+  EXPECT_TRUE(contains(page, "<strong>1 to 3</strong>"));
+}
+
+TEST(ComparisonVerdict, names_the_farthest_plant) {
+  Comparison comparison = example();
+  PlantComparison& car = comparison.plants[1];
+  for (HorizonStage& stage : car.horizon) stage.divergence_rmse = Eigen::Vector3d(3, 4, 0);
+  EXPECT_TRUE(contains(comparison_verdict(comparison).sentences[0], "mujoco_car"));
+  EXPECT_TRUE(contains(comparison_verdict(comparison).sentences[0], "up to 5 "));
+  for (HorizonStage& stage : car.horizon) {
+    stage.divergence_rmse.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
+  EXPECT_TRUE(contains(comparison_verdict(comparison).sentences[0], "broke on every path"));
+  comparison.plants.pop_back();
+  EXPECT_EQ(comparison_verdict(comparison).sentences[0],
+            "Every plant is the model, but for rounding.");
+}
+
+TEST(ComparisonVerdict, stages_in_a_row_are_a_range) {
+  EXPECT_EQ(stages_text({2}), "2");
+  EXPECT_EQ(stages_text({1, 2}), "1, 2");
+  EXPECT_EQ(stages_text({1, 3, 4, 5, 7, 8}), "1, 3 to 5, 7, 8");
+  EXPECT_EQ(stages_text({}), "");
+}
+
+TEST(ComparisonPage, texts_are_escaped) {
+  Comparison comparison = example();
+  comparison.plants[1].name = "<script>alert(1)</script>";
+  comparison.scenario.name = "\"><b>";
+  const std::string page = comparison_page(comparison);
+  EXPECT_FALSE(contains(page, "<script"));
+  EXPECT_FALSE(contains(page, "<b>"));
+  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
+}
+
+TEST(ComparisonFigures, stages_without_an_unsafe_path_are_upper_limits) {
+  Comparison comparison = example();
+  PlantComparison& car = comparison.plants[1];
+  for (HorizonStage& stage : car.horizon) stage.unsafe = 0;
+  car.horizon[1].unsafe = 10;
+  car.horizon[1].unsafe_limits = {.lower = 0.1, .upper = 0.4};
+  const Chart chart = comparison_figures(comparison)[kCertificateFigure].charts[1];
+  ASSERT_EQ(chart.series.size(), 3U);
+  EXPECT_EQ(chart.series[1].mark, Mark::kLimits);
+  EXPECT_EQ(chart.series[1].x.size(), car.horizon.size() - 1);
+  EXPECT_EQ(chart.series[2].y, (std::vector<double>{0.25}));
+  EXPECT_EQ(chart.series[2].lower, (std::vector<double>{0.1}));
+}
+
+}  // namespace
+}  // namespace qsmpc
