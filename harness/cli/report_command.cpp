@@ -1,6 +1,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -13,24 +14,40 @@
 #include "harness/cli/output.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/report/comparison_page.hpp"
+#include "harness/report/figure_files.hpp"
 
 namespace qsmpc {
 namespace {
+
+struct ReportArguments {
+  std::string folder;
+  bool figures = false;
+};
 
 bool has(const std::string& folder, const char* file) {
   std::error_code ignored;
   return std::filesystem::exists(folder + "/" + file, ignored);
 }
 
-int report(const std::string& folder) {
+int report(const ReportArguments& arguments) {
+  const std::string& folder = arguments.folder;
+  std::vector<FigureFile> figures;
   if (has(folder, kStoreFile)) {
-    write_campaign_results(folder);
+    figures = figures_of(write_campaign_results(folder));
   } else if (has(folder, kComparisonFile)) {
-    write_file(folder + "/" + kPageFile, comparison_page(read_comparison(folder)));
+    const Comparison comparison = read_comparison(folder);
+    figures = figures_of(comparison);
+    write_file(folder + "/" + kPageFile, comparison_page(comparison));
   } else {
-    write_page(read_folder(folder), folder, has(folder, kVideoFile));
+    const Trace trace = read_folder(folder);
+    write_page(trace, folder, has(folder, kVideoFile));
+    if (arguments.figures) figures = episode_figures(trace);
   }
-  print_result(folder + "/" + kPageFile + "\n");
+  std::string paths = folder + "/" + kPageFile + "\n";
+  if (arguments.figures) {
+    for (const std::string& path : write_figures(figures, folder)) paths += path + "\n";
+  }
+  print_result(paths);
   return kDone;
 }
 
@@ -42,10 +59,13 @@ void add_report_command(CLI::App& app, int& exit_code) {
                                          "trace, a comparison's data or a campaign's\nstore, with "
                                          "its numbers, tables and figures.");
   command->footer("Example: qsmpc report out/dubins_obstacles-0");
-  const auto folder = std::make_shared<std::string>();
-  command->add_option("folder", *folder, "folder of an episode, a comparison or a campaign")
+  const auto arguments = std::make_shared<ReportArguments>();
+  command
+      ->add_option("folder", arguments->folder, "folder of an episode, a comparison or a campaign")
       ->required();
-  command->callback([folder, &exit_code] { exit_code = report(*folder); });
+  command->add_flag("--figures", arguments->figures,
+                    "write the charts as SVG and PDF files, too: FOLDER/figures");
+  command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 
 }  // namespace qsmpc

@@ -134,9 +134,14 @@ PlaneMap episode_ground(const Trace& trace, const SystemDescription& system) {
   return EpisodeMap(trace, system).ground_of_drive();
 }
 
+std::optional<PlaneMap> episode_plane_map(const Trace& trace, const SystemDescription& system) {
+  if (!has_position(system)) return std::nullopt;
+  return EpisodeMap(trace, system).map();
+}
+
 std::string episode_map(const Trace& trace, const SystemDescription& system) {
-  if (!has_position(system)) return {};
-  return map_figure(EpisodeMap(trace, system).map());
+  const std::optional<PlaneMap> map = episode_plane_map(trace, system);
+  return map ? map_figure(*map) : std::string();
 }
 
 }  // namespace qsmpc

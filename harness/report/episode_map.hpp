@@ -2,6 +2,7 @@
 // be.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "harness/report/plane_map.hpp"
@@ -9,6 +10,10 @@
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
+
+/// None for a system without a position in the plane.
+[[nodiscard]] std::optional<PlaneMap> episode_plane_map(const Trace& trace,
+                                                        const SystemDescription& system);
 
 /// A <figure>; empty for a system without a position in the plane.
 [[nodiscard]] std::string episode_map(const Trace& trace, const SystemDescription& system);

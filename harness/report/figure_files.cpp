@@ -1,0 +1,121 @@
+#include "harness/report/figure_files.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <memory>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/atomic_file.hpp"
+#include "harness/episode/assembly.hpp"
+#include "harness/report/campaign_charts.hpp"
+#include "harness/report/comparison_charts.hpp"
+#include "harness/report/episode_charts.hpp"
+#include "harness/report/episode_map.hpp"
+#include "harness/report/pdf_figure.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr std::string_view kInputTitle = "Input: ";
+
+/// Of figures with a file name of their own, e.g. "w2.svg".
+template <class Figure>
+std::vector<FigureFile> named_by_file(const std::vector<Figure>& figures) {
+  std::vector<FigureFile> files;
+  for (const Figure& figure : figures) {
+    files.push_back({.name = figure.file.substr(0, figure.file.rfind('.')),
+                     .panels = {figure.charts.begin(), figure.charts.end()}});
+  }
+  return files;
+}
+
+/// A figure's name that no other one has.
+std::string free_name(const std::vector<FigureFile>& figures, const std::string& name) {
+  std::string free = name;
+  for (int n = 2; std::ranges::find(figures, free, &FigureFile::name) != figures.end(); ++n) {
+    free = fmt::format("{}-{}", name, n);
+  }
+  return free;
+}
+
+/// How much of `title` says what is drawn; the rest says how.
+std::size_t first_words(std::string_view title) {
+  std::size_t end = title.size();
+  for (const std::string_view rest : {":", ",", " (", " at ", " of ", " against "}) {
+    end = std::min(end, title.find(rest));
+  }
+  return end;
+}
+
+std::string title_of(const Panel& panel) {
+  return std::visit([](const auto& own) { return own.title; }, panel);
+}
+
+}  // namespace
+
+std::string figure_name(const std::string& title) {
+  const std::string words =
+      title.starts_with(kInputTitle) ? title : title.substr(0, first_words(title));
+  std::string name;
+  for (const char c : words) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x80 && std::isalnum(byte) != 0) {
+      name += static_cast<char>(std::tolower(byte));
+    } else if (!name.empty() && name.back() != '-') {
+      name += '-';
+    }
+  }
+  while (name.ends_with('-')) name.pop_back();
+  return name.empty() ? "figure" : name;
+}
+
+std::vector<FigureFile> episode_figures(const Trace& trace) {
+  const std::unique_ptr<const Dynamics> model = model_of(trace.scenario);
+  const SystemDescription& system = model->description();
+  std::vector<FigureFile> figures;
+  if (std::optional<PlaneMap> map = episode_plane_map(trace, system)) {
+    figures.push_back({.name = "map", .panels = {std::move(*map)}});
+  }
+  for (Chart& chart : episode_charts(trace, system)) {
+    const std::string name = free_name(figures, figure_name(chart.title));
+    figures.push_back({.name = name, .panels = {std::move(chart)}});
+  }
+  return figures;
+}
+
+std::vector<FigureFile> figures_of(const Comparison& comparison) {
+  return named_by_file(comparison_figures(comparison));
+}
+
+std::vector<FigureFile> figures_of(const CampaignStatistics& statistics) {
+  return named_by_file(campaign_figures(statistics));
+}
+
+std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
+                                       const std::string& folder) {
+  const std::string target = folder + "/" + kFigureFolder;
+  make_output_folder(target);
+  std::vector<std::unique_ptr<PendingFile>> files;
+  const auto write = [&](const std::string& name, const std::string& bytes) {
+    files.push_back(std::make_unique<PendingFile>(target + "/" + name));
+    files.back()->write(bytes);
+  };
+  for (const FigureFile& figure : figures) {
+    const std::string svg = svg_figure(figure.panels);
+    const std::string title = figure.panels.empty() ? figure.name : title_of(figure.panels.front());
+    write(figure.name + ".svg", svg);
+    write(figure.name + ".pdf", pdf_figure(svg, title));
+  }
+  std::vector<std::string> paths;
+  for (const std::unique_ptr<PendingFile>& file : files) {
+    file->commit();
+    paths.push_back(file->path());
+  }
+  return paths;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,46 @@
+// Figures for papers: the charts and maps of a page as files.
+//
+//   write_figures(episode_figures(trace), folder);  // FOLDER/figures/map.svg, map.pdf, …
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "harness/campaign/statistics/statistics.hpp"
+#include "harness/mismatch/comparison.hpp"
+#include "harness/report/svg_figure.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc {
+
+/// Where figures stand within a folder.
+inline constexpr const char* kFigureFolder = "figures";
+
+/// Panels that stand together.
+struct FigureFile {
+  std::string name;  ///< of its files, without what follows the dot
+  std::vector<Panel> panels;
+};
+
+/// "map", of a system with a position in the plane, and each chart along the drive, named by the
+/// first words of its title: "certificates", "clearance", "input-yaw-rate",
+/// "solve-time", "expected-cost", "error-budget", …
+[[nodiscard]] std::vector<FigureFile> episode_figures(const Trace& trace);
+
+/// "residuals", "divergence", "w2", "certificates".
+[[nodiscard]] std::vector<FigureFile> figures_of(const Comparison& comparison);
+
+/// "reliability", "outcomes", and "differences" where variants are compared.
+[[nodiscard]] std::vector<FigureFile> figures_of(const CampaignStatistics& statistics);
+
+/// Writes each as SVG and PDF into `folder`/figures, which is made if need be; none has its name
+/// before all are written. Returns their paths. Throws IoError.
+std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
+                                       const std::string& folder);
+
+/// The name of a figure with the title `title`: its first words, up to a colon, a comma, a bracket,
+/// "at", "of" or "against" (of "Input: …", all of it), in lower case, with a hyphen for all that is
+/// no letter or digit.
+[[nodiscard]] std::string figure_name(const std::string& title);
+
+}  // namespace qsmpc
