@@ -1,9 +1,9 @@
 #include "render/smoothing.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 namespace qsmpc {
 namespace {
@@ -12,38 +12,55 @@ constexpr int kLeastContrast = 14;     // of 255: below it nobody sees an edge
 constexpr float kLongestReach = 2.5F;  // pixels along an edge; more would eat the particles
 constexpr float kReduction = 1.0F / 8.0F;
 constexpr float kLeastReduction = 255.0F / 128.0F;
+constexpr int kFraction = 256;  // a pixel's side, in the units of places within it
 
-using Rgb = std::array<float, 3>;
+// Red, blue and green of a pixel, 16 bits each, so that all are blended by one multiplication.
+using Lanes = std::uint64_t;
+constexpr Lanes kLowBytes = 0x00ff'00ff'00ff'00ffU;
+constexpr Lanes kRounding = 0x0080'0080'0080'0080U;  // half, where 8 bits are dropped
+constexpr Lanes kHalfOfTwo = 0x0001'0001'0001'0001U;
+constexpr int kBlueShift = 16;
+constexpr int kGreenShift = 32;
 
-// Red and blue count little: the weights are those of the eye, in eighths.
-unsigned char luma_of(const unsigned char* pixel) {
-  return static_cast<unsigned char>((2 * pixel[0] + 5 * pixel[1] + pixel[2]) / 8);
+Lanes lanes_of(std::uint32_t pixel) {
+  return (pixel & 0x00ff00ffU) | static_cast<Lanes>(pixel & 0xff00ff00U) << 24U;
 }
 
-float luma_of(const Rgb& colour) {
-  return (2.0F * colour[0] + 5.0F * colour[1] + colour[2]) / 8.0F;
+// `share` / 256 of b, the rest of a.
+Lanes blend(Lanes a, Lanes b, unsigned share) {
+  return ((a * (kFraction - share) + b * share + kRounding) >> 8U) & kLowBytes;
+}
+
+Lanes mean(Lanes a, Lanes b) { return ((a + b + kHalfOfTwo) >> 1U) & kLowBytes; }
+
+// Red and blue count little: the weights are those of the eye, in eighths.
+int luma_of(int red, int green, int blue) { return (2 * red + 5 * green + blue) / 8; }
+
+int luma_of(Lanes colour) {
+  return luma_of(static_cast<int>(colour & 0xffU), static_cast<int>(colour >> kGreenShift & 0xffU),
+                 static_cast<int>(colour >> kBlueShift & 0xffU));
 }
 
 class EdgeFilter {
  public:
   EdgeFilter(Image& image, SmoothingWorkspace& workspace)
       : image_(image), workspace_(workspace), width_(image.width), height_(image.height) {
-    workspace_.original = image.rgb;
-    workspace_.luma.resize(image.rgb.size() / 3);
-    workspace_.edges.resize(static_cast<std::size_t>(width_));
-    for (std::size_t i = 0; i < workspace_.luma.size(); ++i) {
-      workspace_.luma[i] = luma_of(&image.rgb[3 * i]);
+    const std::size_t count = image.rgb.size() / 3;
+    workspace_.original.resize(count);
+    workspace_.luma.resize(count);
+    workspace_.edges.assign(static_cast<std::size_t>(width_), 0);
+    const unsigned char* rgb = image.rgb.data();
+    for (std::size_t i = 0; i < count; ++i, rgb += 3) {
+      workspace_.original[i] = rgb[0] | static_cast<std::uint32_t>(rgb[1]) << 8U |
+                               static_cast<std::uint32_t>(rgb[2]) << 16U;
+      workspace_.luma[i] = static_cast<unsigned char>(luma_of(rgb[0], rgb[1], rgb[2]));
     }
   }
 
   void run() {
     for (int y = 1; y + 1 < height_; ++y) {
       find_edges(y);
-      for (int x = 1; x + 1 < width_; ++x) {
-        if (workspace_.edges[static_cast<std::size_t>(x)] > kLeastContrast) {
-          smooth_pixel(x, y);
-        }
-      }
+      smooth_row(y);
     }
   }
 
@@ -65,66 +82,78 @@ class EdgeFilter {
                                           std::max(middle[x - 1], middle[x + 1]));
       const unsigned char low = std::min(std::min(std::min(above[x], below[x]), middle[x]),
                                          std::min(middle[x - 1], middle[x + 1]));
-      edges[x] = static_cast<unsigned char>(high - low);
+      const auto contrast = static_cast<unsigned char>(high - low);
+      edges[x] = contrast > kLeastContrast ? 1 : 0;
     }
   }
 
-  // Bilinear between pixel centres; places outside of the picture are moved to its border.
-  [[nodiscard]] Rgb sample(float x, float y) const {
-    const float cx = std::clamp(x, 0.0F, static_cast<float>(width_ - 1));
-    const float cy = std::clamp(y, 0.0F, static_cast<float>(height_ - 1));
-    const int x0 = std::min(static_cast<int>(cx), width_ - 2);
-    const int y0 = std::min(static_cast<int>(cy), height_ - 2);
-    const float fx = cx - static_cast<float>(x0);
-    const float fy = cy - static_cast<float>(y0);
-    const unsigned char* const upper = &workspace_.original[3 * index(x0, y0)];
-    const unsigned char* const lower = &workspace_.original[3 * index(x0, y0 + 1)];
-    Rgb colour{};
-    for (std::size_t i = 0; i < 3; ++i) {
-      const float top = (1.0F - fx) * upper[i] + fx * upper[i + 3];
-      const float bottom = (1.0F - fx) * lower[i] + fx * lower[i + 3];
-      colour[i] = (1.0F - fy) * top + fy * bottom;
+  // Eight pixels without an edge are passed over at once.
+  void smooth_row(int y) {
+    constexpr int kBlock = 8;
+    const unsigned char* const edges = workspace_.edges.data();
+    for (int begin = 0; begin < width_; begin += kBlock) {
+      const int end = std::min(begin + kBlock, width_);
+      std::uint64_t any = 1;
+      if (end - begin == kBlock) {
+        std::memcpy(&any, edges + begin, sizeof any);
+      }
+      for (int x = begin; any != 0 && x < end; ++x) {
+        if (edges[x] != 0) {
+          smooth_pixel(x, y);
+        }
+      }
     }
-    return colour;
   }
 
-  [[nodiscard]] Rgb mean_of_two(float x, float y, float dx, float dy, float reach) const {
-    const Rgb a = sample(x - reach * dx, y - reach * dy);
-    const Rgb b = sample(x + reach * dx, y + reach * dy);
-    return {0.5F * (a[0] + b[0]), 0.5F * (a[1] + b[1]), 0.5F * (a[2] + b[2])};
+  // Bilinear between pixel centres, at a place in units of 1 / kFraction; places outside of the
+  // picture are moved to its border.
+  [[nodiscard]] Lanes sample(int x, int y) const {
+    const int cx = std::clamp(x, 0, (width_ - 1) * kFraction - 1);
+    const int cy = std::clamp(y, 0, (height_ - 1) * kFraction - 1);
+    const std::uint32_t* const upper = &workspace_.original[index(cx / kFraction, cy / kFraction)];
+    const std::uint32_t* const lower = upper + width_;
+    const auto across = static_cast<unsigned>(cx % kFraction);
+    const auto down = static_cast<unsigned>(cy % kFraction);
+    return blend(blend(lanes_of(upper[0]), lanes_of(upper[1]), across),
+                 blend(lanes_of(lower[0]), lanes_of(lower[1]), across), down);
   }
 
   void smooth_pixel(int x, int y) {
-    const auto luma = [this](int column, int row) -> float {
+    const auto luma = [this](int column, int row) -> int {
       return workspace_.luma[index(column, row)];
     };
-    const float nw = luma(x - 1, y - 1);
-    const float ne = luma(x + 1, y - 1);
-    const float sw = luma(x - 1, y + 1);
-    const float se = luma(x + 1, y + 1);
-    const float middle = luma(x, y);
+    const int nw = luma(x - 1, y - 1);
+    const int ne = luma(x + 1, y - 1);
+    const int sw = luma(x - 1, y + 1);
+    const int se = luma(x + 1, y + 1);
+    const int middle = luma(x, y);
     // Along the edge, i.e. across the gradient.
-    const float across = (sw + se) - (nw + ne);
-    const float upright = (nw + sw) - (ne + se);
-    const float reduction = std::max((nw + ne + sw + se) * 0.25F * kReduction, kLeastReduction);
+    const auto across = static_cast<float>((sw + se) - (nw + ne));
+    const auto upright = static_cast<float>((nw + sw) - (ne + se));
+    const float total = static_cast<float>(nw + ne + sw + se);
+    const float reduction = std::max(total * 0.25F * kReduction, kLeastReduction);
     const float scale = 1.0F / (std::min(std::abs(across), std::abs(upright)) + reduction);
-    const float dx = std::clamp(across * scale, -kLongestReach, kLongestReach);
-    const float dy = std::clamp(upright * scale, -kLongestReach, kLongestReach);
-    const auto px = static_cast<float>(x);
-    const auto py = static_cast<float>(y);
-    const Rgb near = mean_of_two(px, py, dx, dy, 1.0F / 6.0F);
-    const Rgb far = mean_of_two(px, py, dx, dy, 0.5F);
-    const Rgb wide{0.5F * (near[0] + far[0]), 0.5F * (near[1] + far[1]), 0.5F * (near[2] + far[2])};
+    const float dx = kFraction * std::clamp(across * scale, -kLongestReach, kLongestReach);
+    const float dy = kFraction * std::clamp(upright * scale, -kLongestReach, kLongestReach);
+    const auto mean_of_two = [&](float reach) {
+      const auto rx = static_cast<int>(reach * dx);
+      const auto ry = static_cast<int>(reach * dy);
+      const int px = x * kFraction;
+      const int py = y * kFraction;
+      return mean(sample(px - rx, py - ry), sample(px + rx, py + ry));
+    };
+    const Lanes near = mean_of_two(1.0F / 6.0F);
+    const Lanes wide = mean(near, mean_of_two(0.5F));
     // The wide mean may have reached across another edge; then it is brighter or darker than all
     // here.
-    const float low = std::min({nw, ne, sw, se, middle});
-    const float high = std::max({nw, ne, sw, se, middle});
+    const int low = std::min({nw, ne, sw, se, middle});
+    const int high = std::max({nw, ne, sw, se, middle});
     const bool astray = luma_of(wide) < low || luma_of(wide) > high;
-    const Rgb& chosen = astray ? near : wide;
+    const Lanes chosen = astray ? near : wide;
     unsigned char* const pixel = &image_.rgb[3 * index(x, y)];
-    for (std::size_t i = 0; i < 3; ++i) {
-      pixel[i] = static_cast<unsigned char>(std::lround(chosen[i]));
-    }
+    pixel[0] = static_cast<unsigned char>(chosen & 0xffU);
+    pixel[1] = static_cast<unsigned char>(chosen >> kGreenShift & 0xffU);
+    pixel[2] = static_cast<unsigned char>(chosen >> kBlueShift & 0xffU);
   }
 
   Image& image_;
