@@ -2,138 +2,100 @@
 
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <cstring>
 #include <stdexcept>
-#include <utility>
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include "render/libav.hpp"
+#include "render/animated_picture.hpp"
+#include "render/media_file.hpp"
 
 namespace qsmpc {
 namespace {
 
-// A file being written, its format and its name for messages.
-class OutputFile {
- public:
-  OutputFile(const std::string& path, std::string what) : path_(path), what_(std::move(what)) {
-    // "file:" keeps a colon in a path from being read as a protocol.
-    const std::string url = "file:" + path;
-    libav::check(avformat_alloc_output_context2(&format_, nullptr, "mp4", url.c_str()), what_);
-    const int code = avio_open(&format_->pb, url.c_str(), AVIO_FLAG_WRITE);
-    if (code < 0) {
-      avformat_free_context(format_);
-      libav::check(code, what_);
-    }
-  }
-
-  ~OutputFile() {
-    avio_closep(&format_->pb);
-    avformat_free_context(format_);
-  }
-  OutputFile(const OutputFile&) = delete;
-  OutputFile& operator=(const OutputFile&) = delete;
-
-  AVStream* add_stream() {
-    return libav::check_allocated(avformat_new_stream(format_, nullptr), what_);
-  }
-
-  void write_header(const char* flags) {
-    AVDictionary* settings = nullptr;
-    av_dict_set(&settings, "movflags", flags, 0);
-    const int code = avformat_write_header(format_, &settings);
-    av_dict_free(&settings);
-    libav::check(code, what_);
-  }
-
-  // Every fragment reaches the file at once, where it survives the death of this process.
-  void flush_always() { format_->flags |= AVFMT_FLAG_FLUSH_PACKETS; }
-
-  void write(AVPacket* packet) { libav::check(av_interleaved_write_frame(format_, packet), what_); }
-
-  void close() {
-    libav::check(av_write_trailer(format_), what_);
-    libav::check(format_->pb->error, what_);
-    libav::check(avio_closep(&format_->pb), what_);
-  }
-
-  [[nodiscard]] const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-  std::string what_;
-  AVFormatContext* format_ = nullptr;
-};
-
-struct InputDeleter {
-  void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
-};
-using InputPointer = std::unique_ptr<AVFormatContext, InputDeleter>;
-
-InputPointer open_input(const std::string& path, const std::string& what) {
-  AVFormatContext* format = nullptr;
-  libav::check(avformat_open_input(&format, ("file:" + path).c_str(), nullptr, nullptr), what);
-  InputPointer input(format);
-  libav::check(avformat_find_stream_info(format, nullptr), what);
-  return input;
+// `best` at quality 100, `worst` at quality 0, and between them in proportion.
+int on_scale(int quality, double best, double worst) {
+  return static_cast<int>(std::lround(best + (worst - best) * (kBestQuality - quality) / 100.0));
 }
 
-void flush_to_disk(const std::string& path, const std::string& what) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0 || fsync(file) != 0) {
-    const int code = AVERROR(errno);
-    if (file >= 0) {
-      close(file);
+VideoFormat chosen_format(const std::string& path, const VideoOptions& options,
+                          const std::string& what) {
+  const std::optional<VideoFormat> format = options.format ? options.format : video_format_of(path);
+  if (!format) {
+    std::string known;
+    for (const std::string& name : video_format_names()) {
+      known += (known.empty() ? "." : ", .") + name;
     }
-    libav::check(code, what);
+    throw std::invalid_argument(what + ": its name must end with one of " + known);
   }
-  close(file);
+  return *format;
 }
 
-// Copies the fragments of `source` into a plain MP4 whose index comes first.
-void remux(const std::string& source, const std::string& target, const std::string& what) {
-  const InputPointer input = open_input(source, what);
-  OutputFile output(target, what);
-  AVStream* const stream = output.add_stream();
-  const AVStream* const from = input->streams[0];
-  libav::check(avcodec_parameters_copy(stream->codecpar, from->codecpar), what);
-  stream->codecpar->codec_tag = 0;
-  stream->time_base = from->time_base;
-  stream->avg_frame_rate = from->avg_frame_rate;
-  output.write_header("+faststart");
-  const libav::Pointer<AVPacket> packet(libav::check_allocated(av_packet_alloc(), what));
-  std::int64_t begin = AV_NOPTS_VALUE;
-  while (true) {
-    const int code = av_read_frame(input.get(), packet.get());
-    if (code == AVERROR_EOF) {
-      break;
-    }
-    libav::check(code, what);
-    // Fragments cannot begin before 0, so reordered frames made the first one late.
-    begin = begin == AV_NOPTS_VALUE ? packet->pts : begin;
-    packet->pts -= begin;
-    packet->dts -= begin;
-    av_packet_rescale_ts(packet.get(), from->time_base, stream->time_base);
-    packet->pos = -1;
-    output.write(packet.get());
-  }
-  output.close();
-}
-
-void check_request(const std::string& what, int width, int height, int frames_per_second) {
-  const std::string size = std::to_string(width) + "x" + std::to_string(height);
-  if (width <= 0 || height <= 0 || width % 2 != 0 || height % 2 != 0) {
-    throw std::invalid_argument(what + ": its size " + size +
+void check_request(const std::string& what, const libav::EncoderSettings& wanted,
+                   const VideoOptions& options, VideoFormat format) {
+  const int fps = wanted.frames_per_second;
+  if (wanted.width <= 0 || wanted.height <= 0 || wanted.width % 2 != 0 || wanted.height % 2 != 0) {
+    throw std::invalid_argument(what + ": its size " + std::to_string(wanted.width) + "x" +
+                                std::to_string(wanted.height) +
                                 " must be two positive even numbers of pixels");
   }
-  if (frames_per_second <= 0) {
-    throw std::invalid_argument(what + ": " + std::to_string(frames_per_second) +
+  if (fps <= 0) {
+    throw std::invalid_argument(what + ": " + std::to_string(fps) +
                                 " frames a second is not positive");
   }
+  if (fps > most_frames_per_second(format)) {
+    throw std::invalid_argument(what + ": " + std::to_string(fps) +
+                                " frames a second are more than " +
+                                std::to_string(most_frames_per_second(format)));
+  }
+  if (options.quality < 0 || options.quality > kBestQuality) {
+    throw std::invalid_argument(what + ": a quality of " + std::to_string(options.quality) +
+                                " is not within 0 … 100");
+  }
+}
+
+libav::Settings fragments() {
+  return {{"movflags", "+frag_keyframe+empty_moov+default_base_moof"}};
+}
+
+// How the partial file is written, and how a finished one is where it holds the same pictures.
+struct Recipe {
+  std::string encoder;
+  AVPixelFormat pixels = AV_PIX_FMT_YUV420P;
+  libav::Settings options;
+  libav::Container partial;
+  libav::Container finished;
+};
+
+Recipe recipe_of(VideoFormat format, const VideoOptions& options) {
+  switch (format) {
+    case VideoFormat::kMp4:
+      return {.encoder = "libx264",
+              .options = {{"preset", options.preset},
+                          {"crf", std::to_string(on_scale(options.quality, 1.0, 48.5))}},
+              .partial = {"mp4", fragments()},
+              .finished = {"mp4", {{"movflags", "+faststart"}}}};
+    case VideoFormat::kWebm:
+      return {.encoder = "libvpx-vp9",
+              .options = {{"deadline", "realtime"},
+                          {"cpu-used", "8"},
+                          {"lag-in-frames", "0"},  // a killed process has written what it was given
+                          {"row-mt", "1"},
+                          {"tile-columns", "2"},
+                          {"b", "0"},
+                          {"crf", std::to_string(on_scale(options.quality, 4.0, 59.0))}},
+              .partial = {"webm", {{"cluster_time_limit", "1000"}}},
+              .finished = {"webm", {{"cues_to_front", "1"}}}};
+    case VideoFormat::kGif:
+    case VideoFormat::kWebp:
+      break;
+  }
+  return {.encoder = "libx264rgb",
+          .pixels = AV_PIX_FMT_RGB24,
+          .options = {{"preset", "ultrafast"}, {"qp", "0"}},
+          .partial = {"mp4", fragments()},
+          .finished = {}};
 }
 
 }  // namespace
@@ -141,51 +103,21 @@ void check_request(const std::string& what, int width, int height, int frames_pe
 struct VideoWriter::Encoder {
   std::string path;
   std::string what;
+  VideoFormat format;
   int frames_per_second;
+  int quality;
+  Recipe recipe;
   libav::Pointer<AVCodecContext> codec;
   libav::Pointer<SwsContext> scaler;
   libav::Pointer<AVFrame> frame;
-  libav::Pointer<AVPacket> packet;
-  std::unique_ptr<OutputFile> output;
-  AVStream* stream = nullptr;
+  std::unique_ptr<libav::OutputFile> output;
   std::int64_t frames = 0;
   bool failed = false;
 
   [[nodiscard]] std::string partial_path() const { return path + ".partial"; }
 
-  void open_codec(int width, int height, const VideoOptions& options) {
-    const AVCodec* const h264 = avcodec_find_encoder_by_name("libx264");
-    if (h264 == nullptr) {
-      throw std::runtime_error(what + ": this FFmpeg has no H.264 encoder (libx264)");
-    }
-    codec.reset(libav::check_allocated(avcodec_alloc_context3(h264), what));
-    codec->width = width;
-    codec->height = height;
-    codec->pix_fmt = AV_PIX_FMT_YUV420P;
-    codec->time_base = {1, frames_per_second};
-    codec->framerate = {frames_per_second, 1};
-    codec->gop_size = frames_per_second;  // a fragment begins at a key frame: one a second
-    codec->thread_count = options.threads;
-    codec->color_range = AVCOL_RANGE_MPEG;
-    codec->color_primaries = AVCOL_PRI_BT709;
-    codec->color_trc = AVCOL_TRC_BT709;
-    codec->colorspace = AVCOL_SPC_BT709;
-    codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
-    AVDictionary* settings = nullptr;
-    av_dict_set(&settings, "preset", options.preset.c_str(), 0);
-    av_dict_set_int(&settings, "crf", options.quality, 0);
-    const int code = avcodec_open2(codec.get(), h264, &settings);
-    av_dict_free(&settings);
-    libav::check(code, what);
-  }
-
   void open_converter() {
-    frame.reset(libav::check_allocated(av_frame_alloc(), what));
-    frame->width = codec->width;
-    frame->height = codec->height;
-    frame->format = codec->pix_fmt;
-    libav::check(av_frame_get_buffer(frame.get(), 0), what);
-    packet.reset(libav::check_allocated(av_packet_alloc(), what));
+    frame = libav::allocate_frame(*codec, what);
     scaler.reset(libav::check_allocated(
         sws_getContext(codec->width, codec->height, AV_PIX_FMT_RGB24, codec->width, codec->height,
                        codec->pix_fmt, SWS_BILINEAR, nullptr, nullptr, nullptr),
@@ -196,49 +128,54 @@ struct VideoWriter::Encoder {
   }
 
   void open_output() {
-    output = std::make_unique<OutputFile>(partial_path(), what);
-    stream = output->add_stream();
-    stream->time_base = codec->time_base;
-    stream->avg_frame_rate = codec->framerate;
-    libav::check(avcodec_parameters_from_context(stream->codecpar, codec.get()), what);
+    output = std::make_unique<libav::OutputFile>(partial_path(), recipe.partial, what);
+    AVStream& stream = output->stream();
+    stream.time_base = codec->time_base;
+    stream.avg_frame_rate = codec->framerate;
+    libav::check(avcodec_parameters_from_context(stream.codecpar, codec.get()), what);
     output->flush_always();
-    output->write_header("+frag_keyframe+empty_moov+default_base_moof");
-  }
-
-  // Sends one frame, or the end of all where `next` is null, and writes what comes out.
-  void encode(const AVFrame* next) {
-    libav::check(avcodec_send_frame(codec.get(), next), what);
-    while (true) {
-      const int code = avcodec_receive_packet(codec.get(), packet.get());
-      if (code == AVERROR(EAGAIN) || code == AVERROR_EOF) {
-        return;
-      }
-      libav::check(code, what);
-      packet->duration = 1;
-      av_packet_rescale_ts(packet.get(), codec->time_base, stream->time_base);
-      packet->stream_index = stream->index;
-      output->write(packet.get());
-    }
+    output->write_header();
   }
 
   void close_partial() {
-    encode(nullptr);
+    output->encode(*codec, nullptr);
     output->close();
     output.reset();
+  }
+
+  void write_finished(const std::string& target) const {
+    if (is_animated_picture(format)) {
+      write_animated_picture(
+          {.format = format, .frames_per_second = frames_per_second, .quality = quality},
+          partial_path(), target, what);
+    } else {
+      libav::copy_stream(partial_path(), target, recipe.finished, what);
+    }
   }
 };
 
 VideoWriter::VideoWriter(const std::string& path, int width, int height, int frames_per_second,
                          const VideoOptions& options)
     : encoder_(std::make_unique<Encoder>()) {
-  encoder_->path = path;
-  encoder_->what = "video \"" + path + "\"";
-  encoder_->frames_per_second = frames_per_second;
-  check_request(encoder_->what, width, height, frames_per_second);
+  Encoder& e = *encoder_;
+  e.path = path;
+  e.what = "video \"" + path + "\"";
+  e.format = chosen_format(path, options, e.what);
+  e.frames_per_second = frames_per_second;
+  e.quality = options.quality;
+  e.recipe = recipe_of(e.format, options);
+  const libav::EncoderSettings settings{.encoder = e.recipe.encoder,
+                                        .pixels = e.recipe.pixels,
+                                        .width = width,
+                                        .height = height,
+                                        .frames_per_second = frames_per_second,
+                                        .threads = options.threads,
+                                        .options = e.recipe.options};
+  check_request(e.what, settings, options, e.format);
   libav::silence_log();
-  encoder_->open_codec(width, height, options);
-  encoder_->open_converter();
-  encoder_->open_output();
+  e.codec = libav::open_encoder(settings, e.what);
+  e.open_converter();
+  e.open_output();
 }
 
 VideoWriter::~VideoWriter() {
@@ -252,6 +189,8 @@ VideoWriter::~VideoWriter() {
     encoder_->failed = true;
   }
 }
+
+VideoFormat VideoWriter::format() const { return encoder_->format; }
 
 void VideoWriter::add(const Image& image) {
   Encoder& e = *encoder_;
@@ -272,7 +211,7 @@ void VideoWriter::add(const Image& image) {
     sws_scale(e.scaler.get(), planes.data(), strides.data(), 0, image.height, e.frame->data,
               e.frame->linesize);
     e.frame->pts = e.frames++;
-    e.encode(e.frame.get());
+    e.output->encode(*e.codec, e.frame.get());
   } catch (...) {
     e.failed = true;
     throw;
@@ -284,11 +223,10 @@ void VideoWriter::finish() {
   if (e.output == nullptr || e.failed || e.frames == 0) {
     throw std::runtime_error(e.what + ": there is nothing to finish");
   }
-  const std::string aside = e.path + ".remux.partial";
+  const std::string aside = e.path + ".finished.partial";
   try {
     e.close_partial();
-    remux(e.partial_path(), aside, e.what);
-    flush_to_disk(aside, e.what);
+    e.write_finished(aside);
     if (std::rename(aside.c_str(), e.path.c_str()) != 0) {
       libav::check(AVERROR(errno), e.what);
     }

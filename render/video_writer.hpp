@@ -1,5 +1,5 @@
-// H.264 video files, written so that whatever happens there is either a whole file or none under
-// the name asked for, and something playable beside it.
+// Video files, written so that whatever happens there is either a whole file or none under the name
+// asked for, and something playable beside it.
 //
 //   qsmpc::VideoWriter video("episode.mp4", 1280, 720, 30);
 //   for (…) { renderer.draw(frame, image); video.add(image); }
@@ -7,26 +7,31 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "render/frame.hpp"
+#include "render/video_format.hpp"
 
 namespace qsmpc {
 
 struct VideoOptions {
-  std::string preset = "veryfast";  ///< x264's trade of time against size
-  int quality = 20;                 ///< x264's constant rate factor: 0 lossless … 51 worst
+  std::optional<VideoFormat> format = std::nullopt;  ///< without: by the path's ending
+  /// 0 (smallest file) … 100 (best picture). MP4: x264's rate factor 48 … 1; WebM: VP9's quantiser
+  /// 59 … 4; GIF: 31 … 255 colours, all of them from 60 on; WebP: libwebp's quality 37 … 100.
+  int quality = kUsualQuality;
+  std::string preset = "veryfast";  ///< of MP4: x264's trade of time against size
   /// Encoder threads. The pictures do not depend on them; this x264's bytes differ from run to run.
   int threads = 2;
 };
 
-/// Writes fragments of a second each to PATH.partial, which stays playable if the process is
-/// killed, and turns it into PATH at the end.
+/// Writes pieces of a second each to PATH.partial, which stays playable if the process is killed,
+/// and turns it into PATH at the end. The partial file of a GIF or WebP is a lossless MP4.
 class VideoWriter {
  public:
-  /// Throws std::invalid_argument when width or height is odd (4:2:0 halves them) or a number is
-  /// not positive, std::runtime_error with the path and the system's words when it cannot be
-  /// written.
+  /// Throws std::invalid_argument when width or height is odd (4:2:0 halves them), a number is not
+  /// positive or not within its range, or `path` ends with no known format and none is given;
+  /// std::runtime_error with the path and the system's words when it cannot be written.
   VideoWriter(const std::string& path, int width, int height, int frames_per_second,
               const VideoOptions& options = {});
 
@@ -35,12 +40,14 @@ class VideoWriter {
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
+  [[nodiscard]] VideoFormat format() const;
+
   /// Adds the next frame. Throws std::invalid_argument when its size is another one,
   /// std::runtime_error when it cannot be written.
   void add(const Image& image);
 
-  /// Writes PATH as a plain MP4 that plays before it is wholly read, flushed to disk, and removes
-  /// PATH.partial. At least one frame must have been added. Throws std::runtime_error; PATH is then
+  /// Writes PATH, flushed to disk, and removes PATH.partial. An MP4 or WebM plays before it is
+  /// wholly read. At least one frame must have been added. Throws std::runtime_error; PATH is then
   /// as it was before.
   void finish();
 

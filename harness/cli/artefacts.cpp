@@ -1,8 +1,10 @@
 #include "harness/cli/artefacts.hpp"
 
-#include <cmath>
 #include <filesystem>
+#include <iostream>
+#include <stdexcept>
 #include <system_error>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -17,7 +19,9 @@
 namespace qsmpc {
 namespace {
 
-std::string in_folder(const std::string& folder, const char* file) { return folder + "/" + file; }
+std::string in_folder(const std::string& folder, const std::string& file) {
+  return folder + "/" + file;
+}
 
 std::string row(const std::string& name, const std::string& value) {
   return fmt::format("  {:<28} {}\n", name, value);
@@ -26,10 +30,12 @@ std::string row(const std::string& name, const std::string& value) {
 }  // namespace
 
 void discard_artefacts(const std::string& folder) {
-  for (const char* file : {kSummaryFile, kVideoFile, kPageFile}) {
-    std::error_code error;
-    std::filesystem::remove(in_folder(folder, file), error);
-    if (error) throw IoError(in_folder(folder, file) + ": " + error.message());
+  std::vector<std::string> files{kSummaryFile, kVideoNumbersFile, kPageFile};
+  for (const std::string& format : video_format_names()) {
+    files.push_back("episode." + format);
+  }
+  for (const std::string& file : files) {
+    remove_file(in_folder(folder, file));
   }
 }
 
@@ -42,15 +48,28 @@ EpisodeVideoOptions video_options(const Scenario& scenario) {
   return options;
 }
 
-void make_video(const Trace& trace, const std::string& folder, const EpisodeVideoOptions& options,
-                bool quiet) {
-  Progress progress("rendering", quiet);
+void make_video(const Trace& trace, const VideoFiles& files, const EpisodeVideoOptions& options,
+                const VideoTalk& talk) {
+  remove_file(files.numbers);  // those of an earlier video
   const int before = interrupts();
+  VideoTimings timings;
   try {
-    write_episode_video(trace, options, in_folder(folder, kVideoFile), [&](int done, int total) {
+    Progress progress("rendering", talk.quiet);
+    timings = write_episode_video(trace, options, files.video, [&](int done, int total) {
       progress.update(done, total, "frames");
       return interrupts() == before;
     });
+  } catch (const std::runtime_error& error) {
+    throw IoError(error.what());
+  }
+  write_file(files.numbers, video_json(timings));
+  if (talk.verbose) std::cerr << video_line(timings) << '\n';
+}
+
+void make_still(const Trace& trace, const std::string& path, const EpisodeVideoOptions& options,
+                double time) {
+  try {
+    write_episode_still(trace, options, time, path);
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
   }

@@ -10,18 +10,33 @@ namespace qsmpc {
 
 inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kVideoFile = "episode.mp4";
+inline constexpr const char* kVideoNumbersFile = "video.json";
 inline constexpr const char* kPageFile = "report.html";
 
-/// Removes the summary, video and page in `folder`. Throws IoError.
+/// Removes the summary, videos and page in `folder`. Throws IoError.
 void discard_artefacts(const std::string& folder);
 
 /// What the scenario says of its video.
 [[nodiscard]] EpisodeVideoOptions video_options(const Scenario& scenario);
 
-/// Renders the video with a progress bar; a second Ctrl-C ends it early and keeps what is rendered.
+struct VideoFiles {
+  std::string video;
+  std::string numbers;  ///< the video's size, length and cost as JSON
+};
+
+struct VideoTalk {
+  bool quiet = false;    ///< no progress
+  bool verbose = false;  ///< one line on speed, on standard error
+};
+
+/// Renders the video with a progress bar; another Ctrl-C ends it early and keeps what is rendered.
 /// Throws IoError.
-void make_video(const Trace& trace, const std::string& folder, const EpisodeVideoOptions& options,
-                bool quiet);
+void make_video(const Trace& trace, const VideoFiles& files, const EpisodeVideoOptions& options,
+                const VideoTalk& talk);
+
+/// Renders the picture at `time` (s) into the PNG file at `path`. Throws IoError.
+void make_still(const Trace& trace, const std::string& path, const EpisodeVideoOptions& options,
+                double time);
 
 /// Writes summary.json. Throws IoError.
 void write_summary(const Trace& trace, const std::string& folder, bool with_video);

@@ -1,8 +1,11 @@
+#include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/commands.hpp"
@@ -16,11 +19,21 @@
 namespace qsmpc {
 namespace {
 
+// What suits a page of documentation; a film in an animated picture is large.
+constexpr int kPictureWidth = 640;
+constexpr int kPictureHeight = 360;
+constexpr int kPictureFps = 12;
+
 struct RenderArguments {
   std::string folder;
+  std::string out;
+  std::optional<std::string> format;
   std::optional<std::string> camera;
   std::optional<std::string> size;
   std::optional<int> fps;
+  std::optional<double> still;
+  EpisodeVideoOptions video;  // what has one default for all formats
+  bool verbose = false;
   bool quiet = false;
 };
 
@@ -32,28 +45,143 @@ void set_size(const std::string& text, EpisodeVideoOptions& options) {
   options.height = size->height;
 }
 
-int render(const RenderArguments& arguments) {
-  const Trace trace = read_folder(arguments.folder);
-  EpisodeVideoOptions options = video_options(trace.scenario);
-  if (arguments.camera) options.camera = *arguments.camera;
-  if (arguments.size) set_size(*arguments.size, options);
+VideoFormat chosen_format(const RenderArguments& arguments) {
+  if (arguments.format) return video_format(*arguments.format).value();  // its option is checked
+  if (arguments.out.empty()) return VideoFormat::kMp4;
+  const std::optional<VideoFormat> format = video_format_of(arguments.out);
+  if (!format) {
+    throw InputError({.key = "--out",
+                      .found = arguments.out,
+                      .expected = fmt::format("a file name that ends with .{}, or --format",
+                                              fmt::join(video_format_names(), ", ."))});
+  }
+  return *format;
+}
+
+void set_format(const RenderArguments& arguments, EpisodeVideoOptions& options) {
+  const VideoFormat format = chosen_format(arguments);
+  options.format = format;
+  if (is_animated_picture(format)) {
+    options.width = kPictureWidth;
+    options.height = kPictureHeight;
+    options.fps = kPictureFps;
+  }
+  const int most = most_frames_per_second(format);
+  if (arguments.fps.value_or(1) > most) {
+    throw InputError(
+        {.key = "--fps",
+         .found = fmt::format("{}", *arguments.fps),
+         .expected = fmt::format("at most {} for {}", most, video_format_name(format))});
+  }
+}
+
+EpisodeVideoOptions chosen_options(const RenderArguments& arguments, const Scenario& scenario) {
+  EpisodeVideoOptions options = arguments.video;
+  const EpisodeVideoOptions usual = video_options(scenario);
+  options.camera = arguments.camera.value_or(usual.camera);
+  options.width = usual.width;
+  options.height = usual.height;
+  options.fps = usual.fps;
+  if (!arguments.still) set_format(arguments, options);
   if (arguments.fps) options.fps = *arguments.fps;
-  make_video(trace, arguments.folder, options, arguments.quiet);
-  print_result(arguments.folder + "/" + kVideoFile + "\n");
+  if (arguments.size) set_size(*arguments.size, options);
+  return options;
+}
+
+/// Throws InputError where --from, --to or --still lie outside of the episode.
+void check_times(const RenderArguments& arguments, const Trace& trace) {
+  const double end = episode_duration(trace);
+  const auto check = [end](const char* key, double time, double first) {
+    if (time >= first && time <= end) return;
+    throw InputError({.key = key,
+                      .found = fmt::format("{:g}", time),
+                      .expected = fmt::format("a time from {:g} s to {:g} s", first, end)});
+  };
+  check("--from", arguments.video.from, 0.0);
+  if (std::isfinite(arguments.video.to)) check("--to", arguments.video.to, arguments.video.from);
+  if (arguments.still) check("--still", *arguments.still, 0.0);
+}
+
+std::string output_path(const RenderArguments& arguments, const EpisodeVideoOptions& options) {
+  if (!arguments.out.empty()) return arguments.out;
+  if (arguments.still) return fmt::format("{}/still-{:g}.png", arguments.folder, *arguments.still);
+  return arguments.folder + "/episode." + video_format_name(*options.format);
+}
+
+/// Throws InputError where a still picture would not be a PNG.
+void check_still(const RenderArguments& arguments) {
+  if (!arguments.still || arguments.out.empty() || arguments.out.ends_with(".png")) return;
+  throw InputError(
+      {.key = "--out", .found = arguments.out, .expected = "a file name that ends with .png"});
+}
+
+int render(const RenderArguments& arguments) {
+  check_still(arguments);
+  const Trace trace = read_folder(arguments.folder);
+  check_times(arguments, trace);
+  const EpisodeVideoOptions options = chosen_options(arguments, trace.scenario);
+  const std::string path = output_path(arguments, options);
+  if (arguments.still) {
+    make_still(trace, path, options, *arguments.still);
+  } else {
+    const std::string numbers =
+        arguments.out.empty() ? arguments.folder + "/" + kVideoNumbersFile : path + ".json";
+    make_video(trace, {.video = path, .numbers = numbers}, options,
+               {.quiet = arguments.quiet, .verbose = arguments.verbose});
+  }
+  print_result(path + "\n");
   return interrupts() > 0 ? kInterruptedExit : kDone;
+}
+
+void add_video_options(CLI::App& command, RenderArguments& arguments) {
+  EpisodeVideoOptions& video = arguments.video;
+  command.add_option("--camera", arguments.camera, "chase, top or fixed")
+      ->check(CLI::IsMember(camera_names()));
+  command.add_option("--size", arguments.size,
+                     "WIDTHxHEIGHT in pixels, both even; default: the scenario's, 640x360 for gif "
+                     "and webp");
+  command
+      .add_option("--fps", arguments.fps,
+                  "frames a second; default: the scenario's, 12 for gif and webp")
+      ->check(CLI::Range(1, 240));
+  command
+      .add_option("--speed", video.speed, "seconds of the episode shown in a second; default: 1")
+      ->check(CLI::Range(0.1, 100.0));
+  command
+      .add_option("--quality", video.quality,
+                  "0, the smallest file, to 100, the best picture; default: 60")
+      ->check(CLI::Range(0, kBestQuality));
+  command.add_option("--from", video.from, "where the video begins, in seconds of the episode");
+  command.add_option("--to", video.to, "where it ends, in seconds of the episode");
+  command.add_option("--threads", video.threads, "that draw; default: 2")->check(CLI::Range(1, 64));
 }
 
 }  // namespace
 
 void add_render_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("render", "Makes the video again, from the trace.");
-  command->footer("Example: qsmpc render out/dubins_obstacles-0 --camera top --size 1920x1080");
+  CLI::App* command =
+      app.add_subcommand("render", "Makes the video again, or a still picture, from the trace.");
+  command->footer(
+      "Examples: qsmpc render out/dubins_obstacles-0 --camera top --size 1920x1080\n"
+      "          qsmpc render out/dubins_obstacles-0 --out drive.gif --speed 2");
   const auto arguments = std::make_shared<RenderArguments>();
   command->add_option("folder", arguments->folder, "folder of an episode")->required();
-  command->add_option("--camera", arguments->camera, "chase, top or fixed")
-      ->check(CLI::IsMember(camera_names()));
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT in pixels, both even");
-  command->add_option("--fps", arguments->fps, "frames a second")->check(CLI::Range(1, 240));
+  command->add_option("--out", arguments->out, "file to write; default: episode.mp4 in the folder");
+  add_video_options(*command, *arguments);
+  command
+      ->add_option("--format", arguments->format,
+                   "mp4, webm, gif or webp; default: by the ending of --out")
+      ->check(CLI::IsMember(video_format_names()));
+  command
+      ->add_option("--still", arguments->still,
+                   "one picture (PNG) of this second of the episode instead of a video")
+      ->excludes("--format")
+      ->excludes("--from")
+      ->excludes("--to")
+      ->excludes("--speed")
+      ->excludes("--quality")
+      ->excludes("--fps");
+  command->add_flag("--verbose", arguments->verbose, "say how long it took");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
 }

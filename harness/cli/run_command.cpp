@@ -38,6 +38,7 @@ struct RunArguments {
   std::optional<std::uint64_t> seed;
   std::string out;
   bool video = true;
+  bool verbose = false;
   bool quiet = false;
   bool json = false;
   std::vector<std::string> fail_on = {"fault"};
@@ -86,7 +87,9 @@ int run(const RunArguments& arguments) {
   if (arguments.video && !no_video.empty()) std::cerr << "qsmpc: no video: " << no_video << '\n';
   const bool with_video = arguments.video && no_video.empty() && !trace.steps.empty();
   if (with_video) {
-    make_video(trace, folder, video_options(scenario), arguments.quiet);
+    make_video(trace,
+               {.video = folder + "/" + kVideoFile, .numbers = folder + "/" + kVideoNumbersFile},
+               video_options(scenario), {.quiet = arguments.quiet, .verbose = arguments.verbose});
     write_summary(trace, folder, with_video);
   }
   write_page(trace, folder, with_video);
@@ -117,6 +120,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
                    "collision, none); default: fault")
       ->delimiter(',')
       ->check(CLI::IsMember({"reached", "timeout", "left_safe_set", "fault", "collision", "none"}));
+  command->add_flag("--verbose", arguments->verbose, "say how long the video took");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print summary.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -1,18 +1,16 @@
 #include "harness/video/episode_video.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <condition_variable>
-#include <cstddef>
-#include <exception>
-#include <mutex>
+#include <memory>
 #include <stdexcept>
 #include <string>
-#include <thread>
-#include <utility>
-#include <vector>
+
+#include <fmt/format.h>
 
 #include "harness/video/episode_frames.hpp"
+#include "harness/video/ordered_drawing.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "render/png_file.hpp"
 #include "render/renderer.hpp"
@@ -21,8 +19,17 @@
 namespace qsmpc {
 namespace {
 
-constexpr double kHoldTime = 1.0;     // s, how long the outcome is shown
-constexpr double kPlansInView = 2.8;  // chase camera's distance in lengths of the longest plan
+using Clock = std::chrono::steady_clock;
+
+constexpr double kHoldTime = 1.0;         // s, how long the outcome is shown
+constexpr double kPlansInView = 2.8;      // chase camera's distance in lengths of the longest plan
+constexpr double kSlowest = 0.1;          // s of the episode in a second
+constexpr double kFastest = 100.0;        // the same
+constexpr double kFrameTolerance = 1e-6;  // of a frame: less of the episode needs none of its own
+
+double seconds_since(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
 
 RenderOptions render_options(const EpisodeVideoOptions& options, const EpisodeFrames& frames) {
   return {.width = options.width,
@@ -32,99 +39,53 @@ RenderOptions render_options(const EpisodeVideoOptions& options, const EpisodeFr
           .region = frames.region()};
 }
 
-// Threads that draw frames ahead of the one who takes them in order. OpenGL contexts belong to a
-// thread, so each thread has a renderer of its own and draws every n-th frame.
-class DrawingThreads {
+// Which moment of the episode each frame of the video shows.
+class Timetable {
  public:
-  DrawingThreads(const EpisodeFrames& frames, const EpisodeVideoOptions& options,
-                 std::string mjcf_path, int total)
-      : frames_(frames),
-        options_(options),
-        mjcf_path_(std::move(mjcf_path)),
-        total_(total),
-        slots_(2 * static_cast<std::size_t>(options.threads)) {
-    for (int worker = 0; worker < options.threads; ++worker) {
-      threads_.emplace_back([this, worker] { draw_every_nth(worker); });
+  Timetable(const EpisodeVideoOptions& options, double duration)
+      : from_(options.from),
+        to_(std::min(options.to, duration)),
+        step_(options.speed / options.fps) {
+    if (!(options.speed >= kSlowest && options.speed <= kFastest)) {
+      throw std::invalid_argument(fmt::format("video: a speed of {} is not within {} … {}",
+                                              options.speed, kSlowest, kFastest));
     }
+    if (!(from_ >= 0.0 && from_ <= to_)) {
+      throw std::invalid_argument(fmt::format(
+          "video: from {} s to {} s is no part of an episode of {:.6g} s", from_, to_, duration));
+    }
+    const double hold = to_ >= duration ? kHoldTime * options.fps : 0.0;
+    const double frames = (to_ - from_) / step_ + hold;
+    total_ = std::max(1, static_cast<int>(std::ceil(frames - kFrameTolerance)));
   }
 
-  ~DrawingThreads() {
-    {
-      const std::lock_guard lock(mutex_);
-      stop_ = true;
-    }
-    changed_.notify_all();
-    for (std::thread& thread : threads_) {
-      thread.join();
-    }
-  }
-  DrawingThreads(const DrawingThreads&) = delete;
-  DrawingThreads& operator=(const DrawingThreads&) = delete;
-
-  // Swaps the picture of frame `index` into `image`. To be called for 0, 1, 2, … in order; throws
-  // what a thread threw.
-  void take(int index, Image& image) {
-    std::unique_lock lock(mutex_);
-    Slot& slot = slot_of(index);
-    changed_.wait(lock, [&] { return error_ != nullptr || slot.frame == index; });
-    if (error_ != nullptr) {
-      std::rethrow_exception(error_);
-    }
-    std::swap(slot.image, image);
-    slot.frame = -1;
-    taken_ = index + 1;
-    lock.unlock();
-    changed_.notify_all();
-  }
+  [[nodiscard]] int total() const { return total_; }
+  [[nodiscard]] double time(int index) const { return std::min(from_ + step_ * index, to_); }
 
  private:
-  struct Slot {
-    int frame = -1;  // whose picture it holds; -1: none
-    Image image;
-  };
-
-  Slot& slot_of(int index) { return slots_[static_cast<std::size_t>(index) % slots_.size()]; }
-
-  // Whether the slot of frame `index` is free, which it is when the frame before in it was taken.
-  bool wait_for_slot(int index) {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [&] { return stop_ || index < taken_ + static_cast<int>(slots_.size()); });
-    return !stop_;
-  }
-
-  void draw_every_nth(int worker) {
-    try {
-      Renderer renderer(render_options(options_, frames_), frames_.world(), mjcf_path_);
-      for (int index = worker; index < total_ && wait_for_slot(index); index += options_.threads) {
-        // Nobody else touches this slot until its frame number is set.
-        renderer.draw(frames_.at(static_cast<double>(index) / options_.fps), slot_of(index).image);
-        {
-          const std::lock_guard lock(mutex_);
-          slot_of(index).frame = index;
-        }
-        changed_.notify_all();
-      }
-    } catch (...) {
-      {
-        const std::lock_guard lock(mutex_);
-        error_ = error_ == nullptr ? std::current_exception() : error_;
-      }
-      changed_.notify_all();
-    }
-  }
-
-  const EpisodeFrames& frames_;
-  EpisodeVideoOptions options_;
-  std::string mjcf_path_;
-  int total_;
-  std::vector<Slot> slots_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  int taken_ = 0;
-  bool stop_ = false;
-  std::exception_ptr error_;
-  std::vector<std::thread> threads_;  // last: they use the rest
+  double from_;
+  double to_;
+  double step_;  // s of the episode from frame to frame
+  int total_ = 0;
 };
+
+// What each drawing thread draws with; OpenGL contexts belong to a thread, so each has its own.
+OrderedDrawing::Drawer make_drawer(const EpisodeFrames& frames, const EpisodeVideoOptions& options,
+                                   const std::string& mjcf_path, const Timetable& timetable) {
+  const auto renderer =
+      std::make_shared<Renderer>(render_options(options, frames), frames.world(), mjcf_path);
+  return [renderer, &frames, timetable](int index, Image& out) {
+    renderer->draw(frames.at(timetable.time(index)), out);
+  };
+}
+
+double mean_simulation_ms(const Trace& trace) {
+  double sum = 0.0;
+  for (const StepRecord& step : trace.steps) {
+    sum += step.timing.simulate;
+  }
+  return trace.steps.empty() ? 0.0 : sum / static_cast<double>(trace.steps.size());
+}
 
 void check_drawable(const Scenario& scenario) {
   const std::string reason = why_not_drawn(scenario);
@@ -143,26 +104,49 @@ std::string why_not_drawn(const Scenario& scenario) {
   return scenario.plant.mjcf.empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
 }
 
-void write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
-                         const std::string& path,
-                         const std::function<bool(int done, int total)>& progress) {
+double episode_duration(const Trace& trace) {
+  return trace.steps.empty() ? 0.0 : trace.steps.back().time + trace.scenario.time_step;
+}
+
+VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
+                                 const std::string& path,
+                                 const std::function<bool(int done, int total)>& progress) {
   if (options.threads < 1) {
     throw std::invalid_argument("video: at least one thread must draw");
   }
   check_drawable(trace.scenario);
+  const Clock::time_point begin = Clock::now();
   const EpisodeFrames frames(trace);
-  VideoWriter video(path, options.width, options.height, options.fps);
-  const int total = static_cast<int>(std::ceil((frames.duration() + kHoldTime) * options.fps));
-  DrawingThreads drawing(frames, options, trace.scenario.plant.mjcf, total);
+  const Timetable timetable(options, frames.duration());
+  VideoWriter video(path, options.width, options.height, options.fps,
+                    {.format = options.format, .quality = options.quality});
+  OrderedDrawing drawing({.total = timetable.total(), .threads = options.threads}, [&] {
+    return make_drawer(frames, options, trace.scenario.plant.mjcf, timetable);
+  });
+  VideoTimings timings{.fps = options.fps,
+                       .width = options.width,
+                       .height = options.height,
+                       .codec = video_codec(video.format()),
+                       .simulation_ms = mean_simulation_ms(trace)};
+  double encoding = 0.0;
   Image image;
-  for (int index = 0; index < total; ++index) {
-    drawing.take(index, image);
+  bool go_on = true;
+  while (go_on && timings.frames < timetable.total()) {
+    drawing.take(image);
+    const Clock::time_point taken = Clock::now();
     video.add(image);
-    if (progress && !progress(index + 1, total)) {
-      break;
-    }
+    encoding += seconds_since(taken);
+    ++timings.frames;
+    go_on = !progress || progress(timings.frames, timetable.total());
   }
+  const double drawn = drawing.drawing_seconds();
+  const Clock::time_point added = Clock::now();
   video.finish();
+  encoding += seconds_since(added);
+  timings.wall_s = seconds_since(begin);
+  timings.drawing_ms = 1e3 * drawn / timings.frames;
+  timings.encoding_ms = 1e3 * encoding / timings.frames;
+  return timings;
 }
 
 Frame episode_frame(const Trace& trace, double time) { return EpisodeFrames(trace).at(time); }

@@ -2,10 +2,14 @@
 #pragma once
 
 #include <functional>
+#include <limits>
+#include <optional>
 #include <string>
 
 #include "harness/trace/trace.hpp"
+#include "harness/video/video_timings.hpp"
 #include "render/frame.hpp"
+#include "render/video_format.hpp"
 
 namespace qsmpc {
 
@@ -15,21 +19,29 @@ struct EpisodeVideoOptions {
   int fps = 30;                  ///< frames a second
   std::string camera = "chase";  ///< "chase", "top" or "fixed"
   int threads = 2;               ///< that draw, at least 1; the result does not depend on it
+  double speed = 1.0;            ///< s of the episode shown in a second, 0.1 … 100
+  double from = 0.0;             ///< s of the episode, where the video begins
+  double to = std::numeric_limits<double>::infinity();  ///< s, where it ends; at most the whole
+  std::optional<VideoFormat> format = std::nullopt;     ///< without: by the path's ending
+  int quality = kUsualQuality;                          ///< see VideoOptions
 };
 
 /// Why an episode of this scenario cannot be drawn, e.g. "double_integrator has no position in the
 /// plane"; empty if it has a position and a vehicle.
 [[nodiscard]] std::string why_not_drawn(const Scenario& scenario);
 
-/// Writes an MP4 to `path` that ends with a second in which the outcome is shown. `progress` (may
-/// be empty) is called on this thread after each frame; when it returns false, the video is
-/// finished with the frames so far. At most two pictures a thread are held in memory. Throws
-/// std::invalid_argument on options that are none, std::runtime_error when there is nothing to draw
-/// (see `why_not_drawn`), the vehicle cannot be drawn or the file not be written; nothing new is
-/// then under `path`.
-void write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
-                         const std::string& path,
-                         const std::function<bool(int done, int total)>& progress = {});
+/// s, from the start to the end of the last control period.
+[[nodiscard]] double episode_duration(const Trace& trace);
+
+/// Writes a video to `path`. If it shows the end of the episode, it ends with a second in which the
+/// outcome is shown, whatever the speed. `progress` (may be empty) is called on this thread after
+/// each frame; when it returns false, the video is finished with the frames so far. At most two
+/// pictures a thread are held in memory. Throws std::invalid_argument on options that are none,
+/// std::runtime_error when there is nothing to draw (see `why_not_drawn`), the vehicle cannot be
+/// drawn or the file not be written; nothing new is then under `path`.
+VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
+                                 const std::string& path,
+                                 const std::function<bool(int done, int total)>& progress = {});
 
 /// What the video shows at `time` (s since the start). To draw more than one frame of a trace, make
 /// an EpisodeFrames.

@@ -191,6 +191,87 @@ TEST(episode_video, does_not_depend_on_the_number_of_threads) {
   EXPECT_EQ(one.first.rgb, three.first.rgb);
 }
 
+TEST(episode_video, speed_shortens_the_episode_and_not_the_second_of_its_outcome) {
+  const std::string path = fresh_folder() / "episode.mp4";
+  EpisodeVideoOptions options = kSmallVideo;
+  options.speed = 2.0;
+  const VideoTimings timings = write_episode_video(straight_trace(), options, path);
+  EXPECT_EQ(timings.frames, 13);  // 0.3 s and 1 s at 10 frames a second
+  EXPECT_EQ(decode_video(path).frames, 13);
+}
+
+TEST(episode_video, part_of_an_episode_has_the_length_of_the_part) {
+  const auto folder = fresh_folder();
+  EpisodeVideoOptions options = kSmallVideo;
+  options.from = 0.2;
+  options.to = 0.5;
+  write_episode_video(straight_trace(), options, folder / "part.mp4");
+  EXPECT_EQ(decode_video(folder / "part.mp4").frames, 3);  // no outcome is shown
+  // It begins where the whole one is then.
+  write_episode_still(straight_trace(), options, 0.2, folder / "still.png");
+  const Image begin = decode_video(folder / "part.mp4").first;
+  const Image still = decode_video(folder / "still.png").first;
+  double difference = 0.0;
+  for (std::size_t i = 0; i < still.rgb.size(); ++i) {
+    difference += std::abs(begin.rgb[i] - still.rgb[i]);
+  }
+  EXPECT_LT(difference / static_cast<double>(still.rgb.size()), 4.0);  // of 255, lossy coding
+}
+
+TEST(episode_video, speeds_and_times_that_are_none_are_refused_and_leave_no_file) {
+  const auto folder = fresh_folder();
+  const auto refused = [&](double speed, double from, double to) {
+    EpisodeVideoOptions options = kSmallVideo;
+    options.speed = speed;
+    options.from = from;
+    options.to = to;
+    EXPECT_THROW(write_episode_video(straight_trace(), options, folder / "episode.mp4"),
+                 std::invalid_argument)
+        << speed << " " << from << " " << to;
+  };
+  refused(0.05, 0.0, 1.0);
+  refused(101.0, 0.0, 1.0);
+  refused(std::nan(""), 0.0, 1.0);
+  refused(1.0, -0.1, 1.0);
+  refused(1.0, 0.4, 0.3);
+  refused(1.0, 0.7, 9.0);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+}
+
+TEST(episode_video, every_format_shows_the_whole_episode) {
+  const auto folder = fresh_folder();
+  for (const std::string name : {"webm", "gif"}) {
+    const std::string path = folder / ("episode." + name);
+    write_episode_video(straight_trace(), kSmallVideo, path);
+    const DecodedVideo video = decode_video(path);
+    EXPECT_EQ(video.frames, 16) << name;
+    EXPECT_NEAR(video.duration, 1.6, 0.02) << name;
+    EXPECT_EQ(video.width, 320) << name;
+  }
+}
+
+TEST(episode_video, timings_say_what_was_made_and_what_it_cost) {
+  Trace trace = straight_trace();
+  for (StepRecord& step : trace.steps) {
+    step.timing.simulate = 2.5;
+  }
+  const VideoTimings timings =
+      write_episode_video(trace, kSmallVideo, fresh_folder() / "episode.mp4");
+  EXPECT_EQ(timings.frames, 16);
+  EXPECT_EQ(timings.codec, "h264");
+  EXPECT_EQ(timings.width, 320);
+  EXPECT_DOUBLE_EQ(timings.seconds(), 1.6);
+  EXPECT_DOUBLE_EQ(timings.simulation_ms, 2.5);
+  EXPECT_GT(timings.drawing_ms, 0.0);
+  EXPECT_GT(timings.encoding_ms, 0.0);
+  EXPECT_NEAR(timings.frames_per_second(), 16 / timings.wall_s, 1e-9);
+  for (const char* key : {"\"frames\": 16", "\"fps\": 10", "\"height\": 180", "\"codec\": \"h264\"",
+                          "\"seconds\": 1.6", "\"simulation_ms\": 2.5", "\"drawing_ms\": "}) {
+    EXPECT_THAT(video_json(timings), HasSubstr(key));
+  }
+  EXPECT_THAT(video_line(timings), HasSubstr("video: 16 frames in "));
+}
+
 TEST(episode_video, stopping_early_keeps_what_is_done) {
   const std::string path = fresh_folder() / "episode.mp4";
   write_episode_video(straight_trace(), kSmallVideo, path,

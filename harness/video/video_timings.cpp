@@ -1,0 +1,36 @@
+#include "harness/video/video_timings.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace qsmpc {
+
+double VideoTimings::seconds() const { return fps > 0 ? static_cast<double>(frames) / fps : 0.0; }
+
+double VideoTimings::frames_per_second() const { return wall_s > 0.0 ? frames / wall_s : 0.0; }
+
+std::string video_line(const VideoTimings& timings) {
+  return fmt::format(
+      "video: {} frames in {:.1f} s ({:.0f} frames/s; drawing {:.0f} ms, encoding {:.0f} ms a "
+      "frame)",
+      timings.frames, timings.wall_s, timings.frames_per_second(), timings.drawing_ms,
+      timings.encoding_ms);
+}
+
+std::string video_json(const VideoTimings& timings) {
+  const nlohmann::ordered_json json{{"frames", timings.frames},
+                                    {"fps", timings.fps},
+                                    {"width", timings.width},
+                                    {"height", timings.height},
+                                    {"codec", timings.codec},
+                                    {"seconds", timings.seconds()},
+                                    {"wall_s", timings.wall_s},
+                                    {"frames_per_second", timings.frames_per_second()},
+                                    {"drawing_ms", timings.drawing_ms},
+                                    {"encoding_ms", timings.encoding_ms},
+                                    {"simulation_ms", timings.simulation_ms},
+                                    {"gl", timings.gl}};
+  return json.dump(2) + "\n";
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,36 @@
+// Kinds of video files, and how good their pictures are.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace qsmpc {
+
+enum class VideoFormat { kMp4, kWebm, kGif, kWebp };
+
+/// One scale for all formats: 100 is best, 0 the smallest file.
+inline constexpr int kUsualQuality = 60;
+inline constexpr int kBestQuality = 100;
+
+/// "mp4", "webm", "gif", "webp": what a file's name ends with.
+[[nodiscard]] const std::vector<std::string>& video_format_names();
+[[nodiscard]] const std::string& video_format_name(VideoFormat format);
+
+/// The inverse; nothing where `name` is none of them.
+[[nodiscard]] std::optional<VideoFormat> video_format(const std::string& name);
+
+/// The format that the ending of `path` asks for, in whatever case; nothing where it is none.
+[[nodiscard]] std::optional<VideoFormat> video_format_of(const std::string& path);
+
+/// The codec of such a file as ffprobe names it, e.g. "h264".
+[[nodiscard]] std::string video_codec(VideoFormat format);
+
+/// More frames a second than this cannot be shown: a GIF's clock counts hundredths, of which
+/// viewers want two.
+[[nodiscard]] int most_frames_per_second(VideoFormat format);
+
+/// Whether it is an animated picture: shown where pictures are, again and again, but large.
+[[nodiscard]] bool is_animated_picture(VideoFormat format);
+
+}  // namespace qsmpc

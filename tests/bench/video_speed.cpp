@@ -1,0 +1,255 @@
+// How fast a video is drawn and encoded, and where the time goes. An episode with as many particles
+// as asked for is made up; its pictures are then drawn part by part on one thread, which tells the
+// parts, and made into a video as `qsmpc render` does, which tells the whole.
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <ctime>
+#include <iostream>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <GL/gl.h>
+#include <fmt/format.h>
+
+#include "harness/scenario/value_checks.hpp"
+#include "harness/video/episode_frames.hpp"
+#include "harness/video/episode_video.hpp"
+#include "render/camera.hpp"
+#include "render/hud.hpp"
+#include "render/offscreen_context.hpp"
+#include "render/scene_painter.hpp"
+#include "render/smoothing.hpp"
+#include "render/vehicle.hpp"
+#include "render/video_writer.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr int kStages = 9;
+constexpr double kPeriod = 0.1;  // s
+constexpr double kSpeed = 1.5;   // m/s
+constexpr double kRadius = 5.0;  // m, of the circle that is driven
+
+struct Options {
+  int points = 1800;
+  std::string size = "1280x720";
+  int frames = 150;
+  std::string format = "mp4";
+  int threads = 2;
+  double at_least = 30.0;  // frames a second
+};
+
+Eigen::Vector3d state_at(double time) {
+  const double angle = kSpeed * time / kRadius;
+  return {kRadius * std::sin(angle), kRadius * (1.0 - std::cos(angle)), angle};
+}
+
+// Points of a sunflower: evenly spread, without a random number.
+StageParticles particles_about(const Eigen::Vector3d& centre, int stage, int count) {
+  StageParticles particles{StateBatch(3, count), Eigen::VectorXd::Constant(count, 1.0 / count)};
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.39996 * i;
+    const double radius = 0.08 * (stage + 1) * std::sqrt((i + 0.5) / count);
+    particles.locations.col(i) =
+        centre + Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), 0.0);
+  }
+  return particles;
+}
+
+StepRecord step_at(int index, int points) {
+  StepRecord step;
+  step.time = kPeriod * index;
+  step.state = state_at(step.time);
+  step.input = Eigen::VectorXd::Constant(1, kSpeed / kRadius);
+  step.disturbance = Eigen::Vector3d::Zero();
+  step.plan_states.resize(3, kStages);
+  for (int stage = 0; stage < kStages; ++stage) {
+    const Eigen::Vector3d state = state_at(step.time + kPeriod * stage);
+    step.plan_states.col(stage) = state;
+    step.particles.push_back(particles_about(state, stage, points / kStages));
+  }
+  step.certificates.resize(kStages - 1);
+  step.certificates.front().value = 1e-4;
+  return step;
+}
+
+Trace made_up_trace(const Options& options, int fps) {
+  Trace trace;
+  Scenario& scenario = trace.scenario;
+  scenario.name = "video speed";
+  scenario.model = {"dubins", {{"speed", kSpeed}}};
+  scenario.plant = {"analytic", QSMPC_SOURCE_DIR "/models/mjcf/dubins_car.xml"};
+  scenario.time_step = kPeriod;
+  scenario.safe_set = unbounded_safe_set(3);
+  scenario.safe_set.bounds.lower << -7.0, -2.0, -HUGE_VAL;
+  scenario.safe_set.bounds.upper << 7.0, 12.0, HUGE_VAL;
+  for (const double x : {-2.0, 2.0}) {
+    Box obstacle = unbounded_safe_set(3).bounds;
+    obstacle.lower.head(2) << x - 0.6, 4.0;
+    obstacle.upper.head(2) << x + 0.6, 6.0;
+    scenario.safe_set.obstacles.push_back(obstacle);
+  }
+  scenario.target = {Eigen::Vector3d(0.0, 10.0, 0.0), 0.5};
+  const int steps = std::max(1, static_cast<int>(std::ceil(options.frames / (fps * kPeriod))));
+  for (int index = 0; index < steps; ++index) {
+    trace.steps.push_back(step_at(index, options.points));
+  }
+  trace.final_state = state_at(kPeriod * steps);
+  trace.outcome = Outcome::kReached;
+  return trace;
+}
+
+double seconds_of(clockid_t clock) {
+  timespec time{};
+  clock_gettime(clock, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+// Wall-clock time and the processor's time in all threads.
+class Part {
+ public:
+  explicit Part(std::string name) : name_(std::move(name)) {}
+
+  template <typename Action>
+  void measure(const Action& action) {
+    const double wall = seconds_of(CLOCK_MONOTONIC);
+    const double processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+    action();
+    wall_ += seconds_of(CLOCK_MONOTONIC) - wall;
+    processor_ += seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor;
+  }
+
+  void print(int frames) const {
+    std::cout << fmt::format("  {:<22} {:7.1f} {:10.1f}\n", name_, 1e3 * wall_ / frames,
+                             1e3 * processor_ / frames);
+  }
+
+ private:
+  std::string name_;
+  double wall_ = 0.0;
+  double processor_ = 0.0;
+};
+
+struct Parts {
+  Part vehicle{"vehicle"};
+  Part scene{"scene without points"};
+  Part scene_with_points{"scene with points"};
+  Part reading{"read-back"};
+  Part smoothing{"smoothing"};
+  Part hud{"head-up display"};
+  Part encoding{"conversion, encoding"};
+
+  void print(int frames) const {
+    std::cout << "ms a frame, one after the other    wall  processor\n";
+    for (const Part* part :
+         {&vehicle, &scene, &scene_with_points, &reading, &smoothing, &hud, &encoding}) {
+      part->print(frames);
+    }
+  }
+};
+
+// Draws as Renderer::draw does, waiting for all drawing after each part.
+class PartByPart {
+ public:
+  PartByPart(const Trace& trace, const EpisodeFrames& frames, const EpisodeVideoOptions& video,
+             const std::string& path)
+      : frames_(frames),
+        video_(video),
+        vehicle_(trace.scenario.plant.mjcf, video.width, video.height),
+        painter_(frames.world(), frames.region()),
+        hud_(video.width, video.height),
+        writer_(path, video.width, video.height, video.fps) {}
+
+  void draw(int index, Parts& parts) {
+    const Frame frame = frames_.at(static_cast<double>(index) / video_.fps);
+    Frame bare = frame;
+    bare.particles.clear();
+    const View view =
+        chase_view(*frame.followed, 4.0, {video_.width, video_.height, hud_.covered_share(frame)});
+    vehicle_.place(frame);
+    parts.vehicle.measure([&] { draw_vehicle(view); });
+    parts.scene.measure([&] { paint(bare, view); });
+    draw_vehicle(view);
+    parts.scene_with_points.measure([&] { paint(frame, view); });
+    parts.reading.measure([&] { vehicle_.read_picture(image_); });
+    parts.smoothing.measure([&] { smooth_edges(image_, workspace_); });
+    parts.hud.measure([&] { hud_.draw(frame, image_); });
+    parts.encoding.measure([&] { writer_.add(image_); });
+  }
+
+ private:
+  void draw_vehicle(const View& view) {
+    vehicle_.draw(view);
+    glFinish();
+  }
+  void paint(const Frame& frame, const View& view) {
+    painter_.paint(frame, view, vehicle_.shadows());
+    glFinish();
+  }
+
+  const EpisodeFrames& frames_;
+  EpisodeVideoOptions video_;
+  OffscreenContext context_;  // before what draws with it
+  Vehicle vehicle_;
+  ScenePainter painter_;
+  Hud hud_;
+  SmoothingWorkspace workspace_;
+  Image image_;
+  VideoWriter writer_;
+};
+
+bool run(const Options& options) {
+  const std::optional<FrameSize> size = parse_frame_size(options.size);
+  if (!size) throw std::invalid_argument("--size: expected " + expected_frame_size());
+  EpisodeVideoOptions video{.width = size->width, .height = size->height};
+  video.threads = options.threads;
+  const testing::TemporaryFolder folder;
+  const Trace trace = made_up_trace(options, video.fps);
+  const EpisodeFrames frames(trace);
+  {
+    constexpr int kWarmUp = 3;  // pictures in which shaders are compiled
+    constexpr int kMeasured = 40;
+    PartByPart drawing(trace, frames, video, folder / ("parts." + options.format));
+    Parts warm_up;
+    Parts parts;
+    for (int index = 0; index < kWarmUp + kMeasured; ++index) {
+      drawing.draw(index, index < kWarmUp ? warm_up : parts);
+    }
+    parts.print(kMeasured);
+  }
+  const double processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+  const VideoTimings timings =
+      write_episode_video(trace, video, folder / ("whole." + options.format));
+  const double spent = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor;
+  std::cout << fmt::format("{}, {} points, {}, {} threads\n{}\n  {:.1f} ms of processor a frame\n",
+                           options.size, options.points, options.format, options.threads,
+                           video_line(timings), 1e3 * spent / timings.frames);
+  return timings.frames_per_second() >= options.at_least;
+}
+
+}  // namespace
+}  // namespace qsmpc
+
+int main(int argc, char** argv) {
+  qsmpc::Options options;
+  CLI::App app("Speed of drawing and encoding a video, and how it splits");
+  app.add_option("--points", options.points, "Particles in a frame")->check(CLI::PositiveNumber);
+  app.add_option("--size", options.size, "WIDTHxHEIGHT in pixels");
+  app.add_option("--frames", options.frames, "Frames of the episode, at 30 a second")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--format", options.format, "mp4, webm, gif or webp");
+  app.add_option("--threads", options.threads, "Threads that draw")->check(CLI::PositiveNumber);
+  app.add_option("--at-least", options.at_least, "Frames a second, below which it has failed");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return qsmpc::run(options) ? EXIT_SUCCESS : EXIT_FAILURE;
+  } catch (const std::exception& error) {
+    std::cerr << error.what() << '\n';
+    return EXIT_FAILURE;
+  }
+}
