@@ -44,16 +44,6 @@ void upright_face(const PlanarPoint& from, const PlanarPoint& to, double height,
   glVertex3d(from.x, from.y, height);
 }
 
-// A corner of a shape that faces the camera.
-void facing_vertex(const View& view, const SpacePoint& centre, double radius,
-                   const PlanarPoint& direction) {
-  const double across = radius * direction.x;
-  const double upwards = radius * direction.y;
-  glVertex3d(centre[0] + across * view.right[0] + upwards * view.up[0],
-             centre[1] + across * view.right[1] + upwards * view.up[1],
-             centre[2] + across * view.right[2] + upwards * view.up[2]);
-}
-
 void load_view(const View& view) {
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();
@@ -238,31 +228,6 @@ void draw_path(const std::vector<PlanarPoint>& points, double height, double wid
   glBegin(GL_LINE_STRIP);
   for (const PlanarPoint& point : points) {
     glVertex3d(point.x, point.y, height);
-  }
-  glEnd();
-}
-
-void draw_points(const View& view, const std::vector<GlPoint>& points) {
-  constexpr int kSides = 12;
-  static const std::array<PlanarPoint, kSides + 1> unit_circle = [] {
-    std::array<PlanarPoint, kSides + 1> circle;
-    for (int side = 0; side <= kSides; ++side) {
-      const double angle = 2.0 * std::numbers::pi * side / kSides;
-      circle[static_cast<std::size_t>(side)] = {std::cos(angle), std::sin(angle)};
-    }
-    return circle;
-  }();
-  const double pixel = 2.0 * view.half_height / view.near_plane / view.height;  // m at 1 m
-  glBegin(GL_TRIANGLES);
-  for (const GlPoint& point : points) {
-    const double radius =
-        0.5 * static_cast<double>(point.size) * pixel * camera_coordinates(view, point.position)[2];
-    set_colour(point.colour);
-    for (std::size_t side = 0; side < kSides; ++side) {
-      glVertex3dv(point.position.data());
-      facing_vertex(view, point.position, radius, unit_circle[side]);
-      facing_vertex(view, point.position, radius, unit_circle[side + 1]);
-    }
   }
   glEnd();
 }

@@ -60,15 +60,4 @@ void draw_segments(const std::vector<SpacePoint>& ends, double width, const Colo
 void draw_path(const std::vector<PlanarPoint>& points, double height, double width,
                const Colour& colour);
 
-/// A round point of `size` pixels across.
-struct GlPoint {
-  SpacePoint position{};
-  float size = 1.0F;
-  Colour colour;
-};
-
-/// Discs that face the camera, in the order given. OpenGL's own points come out square or crossed
-/// at these sizes.
-void draw_points(const View& view, const std::vector<GlPoint>& points);
-
 }  // namespace qsmpc

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "render/gl_points.hpp"
 #include "render/gl_shapes.hpp"
 #include "render/palette.hpp"
 #include "render/shadow.hpp"
