@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <numbers>
 
-#include <GL/gl.h>
+#include "render/gl_functions.hpp"
 
 namespace qsmpc {
 namespace {

@@ -1,53 +1,39 @@
 #include "render/offscreen_context.hpp"
 
-#include <array>
-#include <cstddef>
 #include <stdexcept>
 
-#include <GL/gl.h>
-#include <GL/osmesa.h>
+#include "render/gl_context.hpp"
+#include "render/gl_functions.hpp"
+#include "render/gl_library.hpp"
 
 namespace qsmpc {
 namespace {
 
-// MuJoCo draws into a framebuffer object of its own; the context's buffer only has to exist.
-constexpr std::size_t kBufferSide = 16;  // pixels
-constexpr int kDepthBits = 24;
-constexpr int kStencilBits = 8;
-
 const char* gl_string(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
+
+std::unique_ptr<GlContext> make_context(const GlLibrary& library) {
+  return library.backend == GlBackend::kOsmesa ? make_osmesa_context(library.handle)
+                                               : make_egl_context(library.handle);
+}
 
 }  // namespace
 
 struct OffscreenContext::Handle {
-  OSMesaContext context = nullptr;
-  std::array<unsigned char, 4 * kBufferSide * kBufferSide> pixels{};
+  std::unique_ptr<GlContext> context;
   std::string description;
-
-  ~Handle() {
-    if (context != nullptr) {
-      OSMesaMakeCurrent(nullptr, nullptr, 0, 0, 0);
-      OSMesaDestroyContext(context);
-    }
-  }
 };
 
 OffscreenContext::OffscreenContext() : handle_(std::make_unique<Handle>()) {
-  handle_->context = OSMesaCreateContextExt(OSMESA_RGBA, kDepthBits, kStencilBits, 0, nullptr);
-  if (handle_->context == nullptr) {
-    throw std::runtime_error("off-screen rendering: OSMesa cannot make a context");
-  }
-  if (OSMesaMakeCurrent(handle_->context, handle_->pixels.data(), GL_UNSIGNED_BYTE,
-                        GLsizei{kBufferSide}, GLsizei{kBufferSide}) == GL_FALSE) {
-    throw std::runtime_error("off-screen rendering: OSMesa cannot make its context current");
-  }
-  // Where another OpenGL library comes first in the link order, calls end there and return nothing.
+  handle_->context = make_context(loaded_gl());
+  load_gl_functions(handle_->context->lookup());
+  // Nothing is returned where calls do not end in the library that the context is of.
   const char* version = gl_string(GL_VERSION);
   const char* renderer = gl_string(GL_RENDERER);
   if (version == nullptr || renderer == nullptr) {
-    throw std::runtime_error("off-screen rendering: OpenGL calls do not reach OSMesa");
+    throw std::runtime_error("off-screen rendering: OpenGL calls do not reach the context");
   }
-  handle_->description = std::string(version) + ", " + renderer;
+  describe_gl(version, renderer);
+  handle_->description = gl_description();
 }
 
 OffscreenContext::~OffscreenContext() = default;

@@ -1,5 +1,5 @@
-// An OpenGL context without a display: OSMesa, which draws on the CPU and needs neither an X server
-// nor an environment variable.
+// An OpenGL context without a display and without an environment variable: OSMesa, which draws on
+// the CPU, or EGL. Which of them is the process's choice: see gl_library.hpp.
 #pragma once
 
 #include <memory>
@@ -11,13 +11,15 @@ namespace qsmpc {
 /// destroy it on that thread; each thread may have one of its own.
 class OffscreenContext {
  public:
-  /// Throws std::runtime_error when no context can be made or OpenGL calls do not reach it.
+  /// Throws std::runtime_error when there is no library to draw with (naming those looked for), no
+  /// context can be made or OpenGL calls do not reach it.
   OffscreenContext();
   ~OffscreenContext();
   OffscreenContext(const OffscreenContext&) = delete;
   OffscreenContext& operator=(const OffscreenContext&) = delete;
 
-  /// Version and renderer in OpenGL's own words, e.g. "4.5 (Compatibility Profile) Mesa, llvmpipe".
+  /// The library, and version and renderer in OpenGL's own words, e.g. "osmesa: 4.5 (Compatibility
+  /// Profile) Mesa, llvmpipe".
   [[nodiscard]] const std::string& description() const;
 
  private:

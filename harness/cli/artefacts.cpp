@@ -15,6 +15,7 @@
 #include "harness/report/episode_page.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "render/gl_library.hpp"
 
 namespace qsmpc {
 namespace {
@@ -36,6 +37,23 @@ void discard_artefacts(const std::string& folder) {
   }
   for (const std::string& file : files) {
     remove_file(in_folder(folder, file));
+  }
+}
+
+void choose_gl(const std::string& name) {
+  try {
+    use_gl(name);
+  } catch (const std::runtime_error& error) {
+    throw IoError(error.what());
+  }
+}
+
+std::string why_no_gl() {
+  try {
+    use_gl("auto");
+    return "";
+  } catch (const std::runtime_error& error) {
+    return error.what();
   }
 }
 
@@ -63,16 +81,17 @@ void make_video(const Trace& trace, const VideoFiles& files, const EpisodeVideoO
     throw IoError(error.what());
   }
   write_file(files.numbers, video_json(timings));
-  if (talk.verbose) std::cerr << video_line(timings) << '\n';
+  if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n{}\n", timings.gl, video_line(timings));
 }
 
 void make_still(const Trace& trace, const std::string& path, const EpisodeVideoOptions& options,
-                double time) {
+                double time, const VideoTalk& talk) {
   try {
     write_episode_still(trace, options, time, path);
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
   }
+  if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n", gl_description());
 }
 
 void write_summary(const Trace& trace, const std::string& folder, bool with_video) {

@@ -16,6 +16,13 @@ inline constexpr const char* kPageFile = "report.html";
 /// Removes the summary, videos and page in `folder`. Throws IoError.
 void discard_artefacts(const std::string& folder);
 
+/// Draws with the OpenGL library of this name (see gl_names) from now on. Throws IoError when it is
+/// not to be had.
+void choose_gl(const std::string& name);
+
+/// Why nothing can be drawn on this machine; empty where something can.
+[[nodiscard]] std::string why_no_gl();
+
 /// What the scenario says of its video.
 [[nodiscard]] EpisodeVideoOptions video_options(const Scenario& scenario);
 
@@ -26,7 +33,7 @@ struct VideoFiles {
 
 struct VideoTalk {
   bool quiet = false;    ///< no progress
-  bool verbose = false;  ///< one line on speed, on standard error
+  bool verbose = false;  ///< on standard error: what drew, and how fast
 };
 
 /// Renders the video with a progress bar; another Ctrl-C ends it early and keeps what is rendered.
@@ -36,7 +43,7 @@ void make_video(const Trace& trace, const VideoFiles& files, const EpisodeVideoO
 
 /// Renders the picture at `time` (s) into the PNG file at `path`. Throws IoError.
 void make_still(const Trace& trace, const std::string& path, const EpisodeVideoOptions& options,
-                double time);
+                double time, const VideoTalk& talk);
 
 /// Writes summary.json. Throws IoError.
 void write_summary(const Trace& trace, const std::string& folder, bool with_video);

@@ -15,6 +15,7 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
+#include "render/gl_library.hpp"
 
 namespace qsmpc {
 namespace {
@@ -33,6 +34,7 @@ struct RenderArguments {
   std::optional<int> fps;
   std::optional<double> still;
   EpisodeVideoOptions video;  // what has one default for all formats
+  std::string gl = "auto";
   bool verbose = false;
   bool quiet = false;
 };
@@ -120,14 +122,15 @@ int render(const RenderArguments& arguments) {
   const Trace trace = read_folder(arguments.folder);
   check_times(arguments, trace);
   const EpisodeVideoOptions options = chosen_options(arguments, trace.scenario);
+  choose_gl(arguments.gl);
   const std::string path = output_path(arguments, options);
+  const VideoTalk talk{.quiet = arguments.quiet, .verbose = arguments.verbose};
   if (arguments.still) {
-    make_still(trace, path, options, *arguments.still);
+    make_still(trace, path, options, *arguments.still, talk);
   } else {
     const std::string numbers =
         arguments.out.empty() ? arguments.folder + "/" + kVideoNumbersFile : path + ".json";
-    make_video(trace, {.video = path, .numbers = numbers}, options,
-               {.quiet = arguments.quiet, .verbose = arguments.verbose});
+    make_video(trace, {.video = path, .numbers = numbers}, options, talk);
   }
   print_result(path + "\n");
   return interrupts() > 0 ? kInterruptedExit : kDone;
@@ -181,7 +184,11 @@ void add_render_command(CLI::App& app, int& exit_code) {
       ->excludes("--speed")
       ->excludes("--quality")
       ->excludes("--fps");
-  command->add_flag("--verbose", arguments->verbose, "say how long it took");
+  command
+      ->add_option("--gl", arguments->gl,
+                   "what draws: osmesa, egl, or auto, the first of them that is installed")
+      ->check(CLI::IsMember(gl_names()));
+  command->add_flag("--verbose", arguments->verbose, "say what drew and how long it took");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
 }

@@ -22,6 +22,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "render/gl_library.hpp"
 
 namespace qsmpc {
 namespace {
@@ -38,6 +39,7 @@ struct RunArguments {
   std::optional<std::uint64_t> seed;
   std::string out;
   bool video = true;
+  std::string gl = "auto";
   bool verbose = false;
   bool quiet = false;
   bool json = false;
@@ -67,6 +69,8 @@ bool asked_to_tell(const std::vector<std::string>& fail_on, const Summary& summa
 }
 
 int run(const RunArguments& arguments) {
+  if (arguments.video && arguments.gl != "auto")
+    choose_gl(arguments.gl);  // or fail before the work
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
@@ -83,7 +87,8 @@ int run(const RunArguments& arguments) {
     std::cerr << "qsmpc: the plant broke: " << printable(trace.fault, 1000) << '\n';
   }
   // An episode that ended before it began, e.g. because its plant's file is broken, shows nothing.
-  const std::string no_video = why_not_drawn(scenario);
+  std::string no_video = why_not_drawn(scenario);
+  if (arguments.video && no_video.empty()) no_video = why_no_gl();
   if (arguments.video && !no_video.empty()) std::cerr << "qsmpc: no video: " << no_video << '\n';
   const bool with_video = arguments.video && no_video.empty() && !trace.steps.empty();
   if (with_video) {
@@ -120,7 +125,12 @@ void add_run_command(CLI::App& app, int& exit_code) {
                    "collision, none); default: fault")
       ->delimiter(',')
       ->check(CLI::IsMember({"reached", "timeout", "left_safe_set", "fault", "collision", "none"}));
-  command->add_flag("--verbose", arguments->verbose, "say how long the video took");
+  command
+      ->add_option("--gl", arguments->gl,
+                   "what draws the video: osmesa, egl, or auto, the first that is installed")
+      ->check(CLI::IsMember(gl_names()));
+  command->add_flag("--verbose", arguments->verbose,
+                    "say what drew the video and how long it took");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print summary.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });

@@ -12,6 +12,7 @@
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/ordered_drawing.hpp"
 #include "models/dynamics/dynamics.hpp"
+#include "render/gl_library.hpp"
 #include "render/png_file.hpp"
 #include "render/renderer.hpp"
 #include "render/video_writer.hpp"
@@ -145,6 +146,7 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
   encoding += seconds_since(added);
   timings.wall_s = seconds_since(begin);
   timings.drawing_ms = 1e3 * drawn / timings.frames;
+  timings.gl = gl_description();
   timings.encoding_ms = 1e3 * encoding / timings.frames;
   return timings;
 }

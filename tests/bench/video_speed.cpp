@@ -12,13 +12,13 @@
 #include <utility>
 
 #include <CLI/CLI.hpp>
-#include <GL/gl.h>
 #include <fmt/format.h>
 
 #include "harness/scenario/value_checks.hpp"
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/episode_video.hpp"
 #include "render/camera.hpp"
+#include "render/gl_functions.hpp"
 #include "render/hud.hpp"
 #include "render/offscreen_context.hpp"
 #include "render/scene_painter.hpp"
