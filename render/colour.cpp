@@ -22,18 +22,44 @@ constexpr std::array<Colour, 11> kPlasma{{{0.050F, 0.030F, 0.528F},
                                           {0.940F, 0.975F, 0.131F}}};
 constexpr double kPalestShare = 0.86;
 
-}  // namespace
+// Lightness falls evenly (CIE L* about 90, 75, 60, 46, 31), so that the order is seen with any
+// colour vision; pale and blue is calm, dark and red is not.
+constexpr std::array<Colour, 5> kRisk{{{0.70F, 0.93F, 0.87F},
+                                       {0.42F, 0.75F, 0.86F},
+                                       {0.45F, 0.53F, 0.83F},
+                                       {0.60F, 0.27F, 0.60F},
+                                       {0.56F, 0.02F, 0.13F}}};
+// Vermilion, amber and blue of Okabe and Ito, a little darker.
+constexpr std::array<Colour, 3> kClearance{
+    {{0.82F, 0.27F, 0.02F}, {0.90F, 0.62F, 0.10F}, {0.05F, 0.36F, 0.66F}}};
 
-Colour plasma(double share) {
-  const double position = std::clamp(share, 0.0, 1.0) * (kPlasma.size() - 1);
-  const auto index = std::min(static_cast<std::size_t>(position), kPlasma.size() - 2);
-  return mix(kPlasma[index], kPlasma[index + 1],
+template <std::size_t count>
+Colour on_ramp(const std::array<Colour, count>& ramp, double share) {
+  const double position = std::clamp(share, 0.0, 1.0) * (count - 1);
+  const auto index = std::min(static_cast<std::size_t>(position), count - 2);
+  return mix(ramp[index], ramp[index + 1],
              static_cast<float>(position - static_cast<double>(index)));
 }
+
+}  // namespace
+
+Colour plasma(double share) { return on_ramp(kPlasma, share); }
 
 Colour stage_colour(int stage, int stages) {
   const double share = stages > 1 ? static_cast<double>(stage) / (stages - 1) : 0.0;
   return plasma(kPalestShare * share);
+}
+
+Colour risk_colour(double probability) {
+  if (!(probability > 0.0)) {
+    return std::isnan(probability) ? kRisk.back() : kRisk.front();
+  }
+  const double least = std::log10(kLeastRisk);
+  return on_ramp(kRisk, (std::log10(probability) - least) / -least);
+}
+
+Colour clearance_colour(double clearance) {
+  return on_ramp(kClearance, clearance / kCalmClearance);
 }
 
 }  // namespace qsmpc

@@ -28,4 +28,17 @@ struct Colour {
 /// The colour of `stage` among `stages`: plasma without its palest end, which light ground drowns.
 [[nodiscard]] Colour stage_colour(int stage, int stages);
 
+/// Probabilities up to this one have the calmest colour.
+inline constexpr double kLeastRisk = 1e-6;
+
+/// The colour of a probability (bound) of being unsafe, on a logarithmic scale from kLeastRisk
+/// to 1. One that is not a number counts as 1.
+[[nodiscard]] Colour risk_colour(double probability);
+
+/// m, from which on a clearance has the calmest colour.
+inline constexpr double kCalmClearance = 1.0;
+
+/// The colour of a distance (m) to the unsafe set: warning up to 0, calm from kCalmClearance on.
+[[nodiscard]] Colour clearance_colour(double clearance);
+
 }  // namespace qsmpc

@@ -2,6 +2,7 @@
 // Lengths are metres in the plane of the ground unless a name says otherwise.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,13 +41,42 @@ struct ParticleStage {
   std::vector<double> weights;  ///< as many as points; they sum to one
 };
 
-/// One line of a strip chart in the head-up display: the history of a quantity up to now.
+/// An ellipse: its centre, and the vectors from there to the ends of its two axes.
+struct PlanarEllipse {
+  PlanarPoint centre;
+  PlanarPoint first_axis;
+  PlanarPoint second_axis;
+};
+
+/// The smallest ellipses that hold 50 % and 95 % of a Gaussian with one stage's moments.
+struct BeliefEllipses {
+  PlanarEllipse half;
+  PlanarEllipse most;
+};
+
+/// One stage of the tube along the plan: its two edges, and how likely the state is unsafe there.
+struct TubeSection {
+  PlanarPoint left;
+  PlanarPoint right;
+  double bound = 1.0;  ///< of the probability, in [0, 1]
+};
+
+/// A horizontal line in a strip chart, e.g. a deadline.
+struct ChartLimit {
+  double value = 0.0;
+  std::string label{};  ///< ASCII
+};
+
+/// One strip chart of the head-up display: the history of a quantity up to now.
 struct StripChart {
-  std::string label;           ///< e.g. "yaw_rate [rad/s]"; ASCII
-  std::vector<double> values;  ///< one a control period, oldest first
-  double lower = 0.0;          ///< range of the chart
+  std::string label{};           ///< e.g. "yaw_rate [rad/s]"; ASCII
+  std::string value{};           ///< the newest, as text
+  std::vector<double> values{};  ///< one a control period, oldest first
+  std::size_t slots = 0;  ///< periods that the time axis holds; less than values: their number
+  double lower = 0.0;     ///< range of the chart
   double upper = 1.0;
   bool logarithmic = false;
+  std::optional<ChartLimit> limit{};
 };
 
 /// What the head-up display says: rows of a name and a value.
@@ -62,8 +92,13 @@ struct Frame {
   PlanarPose pose;           ///< where the vehicle stands if `qpos` is empty
   std::optional<PlanarPose> followed;     ///< what the chase camera follows; without it `pose`
   std::vector<PlanarPoint> driven_path;   ///< oldest first
+  std::vector<double> clearances;         ///< m, of driven_path's points; none: one colour
   std::vector<PlanarPoint> planned_path;  ///< stage 0 first
   std::vector<ParticleStage> particles;   ///< stage 0 first; coloured by stage, sized by weight
+  std::vector<PlanarPoint> raw_points;    ///< what was compressed to the particles
+  std::vector<BeliefEllipses> ellipses;   ///< stage 0 first; coloured by stage
+  std::vector<TubeSection> tube;          ///< stage 0 first; coloured by bound
+  std::optional<PlanarPose> ghost;        ///< where the vehicle was predicted to be now
   std::string title;
   std::vector<HudRow> hud;
   std::vector<StripChart> charts;

@@ -44,6 +44,15 @@ void upright_face(const PlanarPoint& from, const PlanarPoint& to, double height,
   glVertex3d(from.x, from.y, height);
 }
 
+void draw_vertices(GLenum primitive, const std::vector<ColouredPoint>& points) {
+  glBegin(primitive);
+  for (const ColouredPoint& point : points) {
+    set_colour(point.colour);
+    glVertex3dv(point.position.data());
+  }
+  glEnd();
+}
+
 void load_view(const View& view) {
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();
@@ -230,6 +239,28 @@ void draw_path(const std::vector<PlanarPoint>& points, double height, double wid
     glVertex3d(point.x, point.y, height);
   }
   glEnd();
+}
+
+void draw_coloured_path(const std::vector<ColouredPoint>& points, double width) {
+  glLineWidth(static_cast<float>(width));
+  draw_vertices(GL_LINE_STRIP, points);
+}
+
+void draw_band(const std::vector<ColouredPoint>& edges) { draw_vertices(GL_TRIANGLE_STRIP, edges); }
+
+void draw_translucent(const std::vector<ColouredPoint>& corners) {
+  constexpr float kSlopeOffset = 2.0F;
+  constexpr float kDepthOffset = 400.0F;  // smallest depth differences: some millimetres
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(kSlopeOffset, kDepthOffset);
+  // Depth alone first: then only the front is blended, once.
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  write_depth(true);
+  draw_vertices(GL_TRIANGLES, corners);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  write_depth(false);
+  draw_vertices(GL_TRIANGLES, corners);
+  glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 }  // namespace qsmpc

@@ -60,4 +60,20 @@ void draw_segments(const std::vector<SpacePoint>& ends, double width, const Colo
 void draw_path(const std::vector<PlanarPoint>& points, double height, double width,
                const Colour& colour);
 
+/// A corner of a shape with a colour of its own.
+struct ColouredPoint {
+  SpacePoint position{};
+  Colour colour;
+};
+
+/// One line through all points, `width` pixels wide, its colour going over from point to point.
+void draw_coloured_path(const std::vector<ColouredPoint>& points, double width);
+
+/// A band between the points 0, 2, 4, … and the points 1, 3, 5, …, its colour going over.
+void draw_band(const std::vector<ColouredPoint>& edges);
+
+/// Triangles in space, three points each, as a translucent solid: what lies behind its front is not
+/// seen through it, and where it touches something drawn before, that is in front.
+void draw_translucent(const std::vector<ColouredPoint>& corners);
+
 }  // namespace qsmpc

@@ -6,6 +6,7 @@
 #include "render/camera.hpp"
 #include "render/hud.hpp"
 #include "render/offscreen_context.hpp"
+#include "render/palette.hpp"
 #include "render/scene_painter.hpp"
 #include "render/smoothing.hpp"
 #include "render/vehicle.hpp"
@@ -76,7 +77,9 @@ void Renderer::draw(const Frame& frame, Image& out) {
   const View view = parts_->view(frame);
   parts_->vehicle.place(frame);
   parts_->vehicle.draw(view);
-  parts_->painter.paint(frame, view, parts_->vehicle.shadows());
+  std::vector<ColouredPoint> ghost;
+  if (frame.ghost) ghost = parts_->vehicle.ghost(*frame.ghost, palette::kGhost);
+  parts_->painter.paint(frame, view, parts_->vehicle.shadows(), ghost);
   parts_->vehicle.read_picture(out);
   smooth_edges(out, parts_->smoothing);
   parts_->hud.draw(frame, out);

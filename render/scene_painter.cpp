@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include "render/gl_points.hpp"
+#include "render/belief_painter.hpp"
 #include "render/gl_shapes.hpp"
 #include "render/palette.hpp"
 #include "render/shadow.hpp"
@@ -18,25 +18,18 @@ constexpr double kObstacleHeight = 0.40;    // m
 constexpr double kEdgeClearance = 0.004;    // m, or lines are half hidden by their own box
 constexpr double kWallHeight = 0.10;        // m
 constexpr double kWallThickness = 0.06;     // m
+constexpr double kStripeSpacing = 0.35;     // m, of the unsafe set's stripes
+constexpr double kStripedReach = 3.0;       // m beyond the region, where stripes end
+constexpr double kMostStripes = 120.0;      // across the region
 constexpr double kPostHeight = 0.75;        // m, the target's flag
 constexpr double kPostSide = 0.018;         // m
 constexpr double kTubeHeight = 0.35;        // m
-constexpr double kMarkHeight = 0.01;        // m, particles and paths, clear of the ground
 constexpr double kGroundReach = 500.0;      // m beyond the region
 constexpr double kGridReach = 40.0;         // cells beyond the region
 constexpr double kFogBegin = 2.2;           // of the camera's distance
 constexpr double kFogEnd = 9.0;             // of the camera's distance
-constexpr double kReferenceHeight = 720.0;  // pixels, for which the sizes below are
-constexpr double kNearScale = 150.0;        // pixels a metre, from which on marks have full size
-constexpr double kLeastShrinking = 0.55;    // of full size
-constexpr double kPathWidth = 3.0;          // pixels
-constexpr double kPlanWidth = 2.2;          // pixels
-constexpr double kCasingWidth = 5.0;        // pixels
-constexpr double kNodeSize = 8.5;           // pixels
-constexpr double kWholeStageSize = 68.0;    // pixels across, a particle that has all the weight
-constexpr double kLeastSize = 3.6;          // pixels
-constexpr double kLargestSize = 18.0;       // pixels
-constexpr float kParticleOpacity = 0.82F;
+constexpr double kReferenceHeight = 720.0;  // pixels, for which widths are
+constexpr double kPathWidth = 4.0;          // pixels
 
 PlanarRectangle grown(const PlanarRectangle& area, double margin) {
   return {area.x_lower - margin, area.x_upper + margin, area.y_lower - margin,
@@ -95,51 +88,36 @@ std::vector<PlanarRectangle> boundary_walls(const PlanarRectangle& bounds,
   return walls;
 }
 
-// Marks shrink with the vehicle, or seen from afar they would cover it; but not below recognition.
-double mark_scale(const View& view) {
-  const double metre =
-      kReferenceHeight * view.near_plane / (2.0 * view.half_height * view.distance);  // pixels
-  return view.height / kReferenceHeight * std::clamp(metre / kNearScale, kLeastShrinking, 1.0);
+// Diagonal lines that fill `area` at `height`, at multiples of `spacing` of x + y.
+void append_stripes(const PlanarRectangle& area, double height, double spacing,
+                    std::vector<SpacePoint>& ends) {
+  const double begin = area.x_lower + area.y_lower;
+  const double end = area.x_upper + area.y_upper;
+  for (double i = std::floor(begin / spacing) + 1.0; i * spacing < end; ++i) {
+    const double sum = i * spacing;
+    const double x_first = std::max(area.x_lower, sum - area.y_upper);
+    const double x_last = std::min(area.x_upper, sum - area.y_lower);
+    ends.push_back({x_first, sum - x_first, height});
+    ends.push_back({x_last, sum - x_last, height});
+  }
 }
 
-void append_stage(const ParticleStage& stage, const Colour& colour, double scale,
-                  std::vector<GlPoint>& points) {
-  const std::size_t begin = points.size();
-  for (std::size_t i = 0; i < stage.points.size() && i < stage.weights.size(); ++i) {
-    // Area proportional to weight.
-    const double size = kWholeStageSize * std::sqrt(std::max(stage.weights[i], 0.0));
-    points.push_back({{stage.points[i].x, stage.points[i].y, kMarkHeight},
-                      static_cast<float>(scale * std::clamp(size, kLeastSize, kLargestSize)),
-                      colour});
-  }
-  std::stable_sort(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(),
-                   [](const GlPoint& a, const GlPoint& b) { return a.size > b.size; });
+double stripe_spacing(const PlanarRectangle& region) {
+  const double extent = std::max(region.x_upper - region.x_lower, region.y_upper - region.y_lower);
+  return std::max(kStripeSpacing, extent / kMostStripes);
 }
 
-// The last stage first: it spreads widest and would cover the others.
-void paint_particles(const View& view, const std::vector<ParticleStage>& stages, double scale) {
-  std::vector<GlPoint> points;
-  for (std::size_t i = stages.size(); i-- > 0;) {
-    const Colour colour = stage_colour(static_cast<int>(i), static_cast<int>(stages.size()));
-    append_stage(stages[i], colour.with_alpha(kParticleOpacity), scale, points);
+void paint_driven_path(const Frame& frame, double scale) {
+  if (frame.clearances.size() != frame.driven_path.size()) {
+    draw_path(frame.driven_path, kMarkHeight, kPathWidth * scale, palette::kDrivenPath);
+    return;
   }
-  draw_points(view, points);
-}
-
-void paint_plan(const View& view, const std::vector<PlanarPoint>& plan, double scale) {
-  draw_path(plan, kMarkHeight, kCasingWidth * scale, palette::kPlannedCasing);
-  draw_path(plan, kMarkHeight, kPlanWidth * scale, palette::kPlannedPath);
-  std::vector<GlPoint> rims;
-  std::vector<GlPoint> nodes;
-  for (std::size_t i = 0; i < plan.size(); ++i) {
-    const SpacePoint position{plan[i].x, plan[i].y, kMarkHeight};
-    const Colour colour = stage_colour(static_cast<int>(i), static_cast<int>(plan.size()));
-    rims.push_back({position, static_cast<float>((kNodeSize + 3.0) * scale),
-                    palette::kPlannedCasing.with_alpha(1.0F)});
-    nodes.push_back({position, static_cast<float>(kNodeSize * scale), colour});
+  std::vector<ColouredPoint> points;
+  for (std::size_t i = 0; i < frame.driven_path.size(); ++i) {
+    points.push_back({{frame.driven_path[i].x, frame.driven_path[i].y, kMarkHeight},
+                      clearance_colour(frame.clearances[i])});
   }
-  draw_points(view, rims);
-  draw_points(view, nodes);
+  draw_coloured_path(points, kPathWidth * scale);
 }
 
 }  // namespace
@@ -197,8 +175,18 @@ void ScenePainter::paint_edges(double scale) const {
     const SpacePoint b{o.x_upper, o.y_lower, z};
     const SpacePoint c{o.x_upper, o.y_upper, z};
     const SpacePoint d{o.x_lower, o.y_upper, z};
-    draw_segments({a, b, b, c, c, d, d, a}, 1.5 * scale, palette::kObstacleEdge);
+    draw_segments({a, b, b, c, c, d, d, a}, 1.5 * scale, palette::kUnsafeEdge);
   }
+}
+
+// What is unsafe is striped: tops of obstacles, and the ground outside of the bounds.
+void ScenePainter::paint_stripes(double scale) const {
+  std::vector<SpacePoint> ends;
+  for (const PlanarRectangle& obstacle : world_.obstacles) {
+    const PlanarRectangle top = clipped_to(obstacle, grown(region_, kGridReach));
+    append_stripes(top, kObstacleHeight + kEdgeClearance, stripe_spacing(region_), ends);
+  }
+  draw_segments(ends, 1.5 * scale, palette::kUnsafeStripe);
 }
 
 void ScenePainter::paint_ground(const View& view) const {
@@ -206,6 +194,9 @@ void ScenePainter::paint_ground(const View& view) const {
   set_fog(kFogBegin * view.distance, kFogEnd * view.distance, palette::kHorizon);
   const PlanarRectangle all = grown(region_, kGroundReach);
   draw_rectangle(all, 0.0, palette::kOuterGround);
+  std::vector<SpacePoint> stripes;
+  append_stripes(grown(region_, kStripedReach), 0.0, stripe_spacing(region_), stripes);
+  draw_segments(stripes, 1.0, palette::kOuterStripe);
   draw_rectangle(clipped_to(world_.bounds, all), 0.0, palette::kSafeGround);
   draw_segments(grid_lines(region_), 1.0, palette::kGridLine);
 }
@@ -246,7 +237,8 @@ void ScenePainter::paint_target_post() const {
 // Marks on the ground are painted in order and without depth of their own, so that none flickers
 // through another; what stands upright has depth and hides them.
 void ScenePainter::paint(const Frame& frame, const View& view,
-                         const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const {
+                         const std::vector<std::vector<PlanarPoint>>& vehicle_shadows,
+                         const std::vector<ColouredPoint>& ghost) const {
   const FlatDrawing drawing(view);
   const double scale = view.height / kReferenceHeight;
   write_depth(true);
@@ -256,11 +248,12 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   clear_fog();
   paint_target_mark();
   paint_shadows(vehicle_shadows);
-  draw_path(frame.driven_path, kMarkHeight, kPathWidth * scale, palette::kDrivenPath);
-  paint_particles(view, frame.particles, mark_scale(view));
-  paint_plan(view, frame.planned_path, mark_scale(view));
+  paint_driven_path(frame, scale);
+  paint_belief(frame, view);
+  paint_stripes(scale);
   paint_edges(scale);
   paint_target_post();
+  draw_translucent(ghost);
 }
 
 }  // namespace qsmpc

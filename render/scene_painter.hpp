@@ -5,6 +5,7 @@
 
 #include "render/camera.hpp"
 #include "render/frame.hpp"
+#include "render/gl_shapes.hpp"
 
 namespace qsmpc {
 
@@ -18,13 +19,16 @@ class ScenePainter {
   ScenePainter(World world, const PlanarRectangle& region);
 
   /// Draws into the picture in which the vehicle, and nothing else, has been drawn.
-  /// `vehicle_shadows`: outlines on the ground.
+  /// `vehicle_shadows`: outlines on the ground; `ghost`: triangles as `draw_translucent` takes
+  /// them.
   void paint(const Frame& frame, const View& view,
-             const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const;
+             const std::vector<std::vector<PlanarPoint>>& vehicle_shadows,
+             const std::vector<ColouredPoint>& ghost) const;
 
  private:
   void paint_solids() const;
   void paint_edges(double scale) const;
+  void paint_stripes(double scale) const;
   void paint_ground(const View& view) const;
   void paint_shadows(const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const;
   void paint_target_mark() const;

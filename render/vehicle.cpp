@@ -13,6 +13,7 @@
 
 #include "render/mujoco_guard.hpp"
 #include "render/shadow.hpp"
+#include "render/solid_mesh.hpp"
 
 namespace qsmpc {
 namespace {
@@ -76,6 +77,27 @@ SpacePoint half_sides(const mjModel& model, int geom) {
   }
 }
 
+SolidShape solid_shape(const mjModel& model, int geom) {
+  switch (model.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+    case mjGEOM_ELLIPSOID:
+      return SolidShape::kEllipsoid;
+    case mjGEOM_CAPSULE:
+    case mjGEOM_CYLINDER:
+      return SolidShape::kCylinder;
+    default:
+      return SolidShape::kBox;
+  }
+}
+
+SolidPlace solid_place(const mjModel& model, const mjData& data, int geom) {
+  SolidPlace place;
+  place.half_sides = half_sides(model, geom);
+  std::copy_n(data.geom_xpos + static_cast<std::ptrdiff_t>(3) * geom, 3, place.centre.begin());
+  std::copy_n(data.geom_xmat + static_cast<std::ptrdiff_t>(9) * geom, 9, place.axes.begin());
+  return place;
+}
+
 std::vector<SpacePoint> box_corners(const mjModel& model, const mjData& data, int geom) {
   const SpacePoint half = half_sides(model, geom);
   const mjtNum* const centre = data.geom_xpos + static_cast<std::ptrdiff_t>(3) * geom;
@@ -134,6 +156,7 @@ void set_pose(const mjModel& model, const PlanarPose& pose, mjtNum* qpos) {
 struct Vehicle::Simulator {
   ModelPointer model;
   DataPointer data;
+  DataPointer ghost_data;
   mjvOption option{};
   mjvCamera camera{};
   mjvScene scene{};
@@ -146,7 +169,8 @@ struct Vehicle::Simulator {
       : model(load_model(path)), viewport{0, 0, width, height} {
     prepare_model(*model, width, height);
     data.reset(mj_makeData(model.get()));
-    if (!data) {
+    ghost_data.reset(mj_makeData(model.get()));
+    if (!data || !ghost_data) {
       throw std::runtime_error("vehicle \"" + path + "\": MuJoCo cannot allocate its data");
     }
     mjv_defaultOption(&option);
@@ -283,6 +307,24 @@ std::vector<std::vector<PlanarPoint>> Vehicle::shadows() const {
     }
   }
   return outlines;
+}
+
+std::vector<ColouredPoint> Vehicle::ghost(const PlanarPose& pose, const Colour& colour) {
+  if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.heading)) {
+    throw std::invalid_argument("frame: the ghost's pose is not finite");
+  }
+  const mjModel& model = *simulator_->model;
+  mjData& data = *simulator_->ghost_data;
+  std::copy_n(simulator_->data->qpos, model.nq, data.qpos);
+  set_pose(model, pose, data.qpos);
+  mj_kinematics(&model, &data);
+  std::vector<ColouredPoint> corners;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (is_visible(model, geom) && model.geom_bodyid[geom] != 0) {
+      append_solid(solid_shape(model, geom), solid_place(model, data, geom), colour, corners);
+    }
+  }
+  return corners;
 }
 
 double Vehicle::length() const { return simulator_->length; }

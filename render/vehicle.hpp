@@ -7,6 +7,7 @@
 
 #include "render/camera.hpp"
 #include "render/frame.hpp"
+#include "render/gl_shapes.hpp"
 
 namespace qsmpc {
 
@@ -35,6 +36,10 @@ class Vehicle {
 
   /// Outlines of what its parts keep the sun from, on the ground; convex, overlapping.
   [[nodiscard]] std::vector<std::vector<PlanarPoint>> shadows() const;
+
+  /// The surface of the vehicle as last placed, but with its body at `pose`, as triangles for
+  /// `draw_translucent`; meshes as boxes. Throws std::invalid_argument when `pose` is not finite.
+  [[nodiscard]] std::vector<ColouredPoint> ghost(const PlanarPose& pose, const Colour& colour);
 
   /// m, the longest side of the box about all its visible parts, as the model's file has them.
   [[nodiscard]] double length() const;

@@ -77,7 +77,13 @@ const std::vector<std::string>& disturbance_kind_names() {
 }
 
 const std::vector<std::string>& camera_names() {
-  static const std::vector<std::string> names{"chase", "fixed", "top"};
+  static const std::vector<std::string> names{"chase", "fixed", "split", "top"};
+  return names;
+}
+
+const std::vector<std::string>& overlay_names() {
+  static const std::vector<std::string> names{"particles", "ellipses", "tube",
+                                              "ghost",     "raw",      "path"};
   return names;
 }
 

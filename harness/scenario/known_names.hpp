@@ -19,6 +19,8 @@ namespace qsmpc {
 [[nodiscard]] const std::vector<std::string>& plant_kind_names();
 [[nodiscard]] const std::vector<std::string>& disturbance_kind_names();
 [[nodiscard]] const std::vector<std::string>& camera_names();
+/// What may be drawn over the scene of a video.
+[[nodiscard]] const std::vector<std::string>& overlay_names();
 
 /// Least number of bytes to insert, delete, replace, or swap with a neighbour, that makes `a` into
 /// `b` (optimal string alignment distance).

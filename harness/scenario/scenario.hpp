@@ -88,10 +88,12 @@ struct Scenario {
     int threads = 1;  ///< that loops over many particles are divided among
   };
   struct Video {
-    std::string camera = "chase";  ///< "chase", "top" or "fixed"
+    std::string camera = "chase";  ///< "chase", "top", "fixed" or "split"
     int width = 1280;              ///< pixels
     int height = 720;              ///< pixels
     int fps = 30;                  ///< frames a second
+    /// Names from `overlay_names`, each once.
+    std::vector<std::string> overlays{"particles", "ellipses", "tube", "ghost", "path"};
   };
 
   std::string name;

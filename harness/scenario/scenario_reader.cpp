@@ -134,6 +134,7 @@ class ScenarioReader {
   void read_input_bounds(Section& controller);
   void read_limit();
   void read_video();
+  [[nodiscard]] static std::vector<std::string> read_overlays(Section& section);
   void check_safe(Section& section, const std::string& key, const Eigen::VectorXd& point);
   Eigen::MatrixXd semidefinite(Section& section, const std::string& key, Eigen::MatrixXd fallback);
 
@@ -443,6 +444,21 @@ void ScenarioReader::read_limit() {
   section.refuse_unread();
 }
 
+std::vector<std::string> ScenarioReader::read_overlays(Section& section) {
+  const std::vector<std::string>& known = overlay_names();
+  std::vector<std::string> wanted;
+  for (const std::string& name : section.texts("overlays", kLongestName)) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) {
+      section.note("overlays", expected_names(name, known), name);
+    } else if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) {
+      section.note("overlays", "each overlay once", name + " a second time");
+    } else {
+      wanted.push_back(name);
+    }
+  }
+  return wanted;
+}
+
 void ScenarioReader::read_video() {
   Section section = root_.section("video");
   Scenario::Video& video = scenario_.video;
@@ -455,6 +471,8 @@ void ScenarioReader::read_video() {
     section.note("size", expected_frame_size());
   }
   video.fps = section.whole("fps", video.fps, kFpsRange);
+  const std::vector<std::string> overlays = read_overlays(section);
+  if (section.has("overlays")) video.overlays = overlays;
   section.refuse_unread();
 }
 

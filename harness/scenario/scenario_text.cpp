@@ -125,8 +125,9 @@ std::string to_yaml(const Scenario& scenario) {
   out += controller_text(scenario.controller, system.inputs);
   out += fmt::format("limit: {{steps: {}, stop_when_unsafe: {}}}\n", scenario.step_limit,
                      scenario.stop_when_unsafe);
-  out += fmt::format("video: {{camera: {}, size: {}x{}, fps: {}}}\n", video.camera, video.width,
-                     video.height, video.fps);
+  out +=
+      fmt::format("video: {{camera: {}, size: {}x{}, fps: {}, overlays: [{}]}}\n", video.camera,
+                  video.width, video.height, video.fps, fmt::join(video.overlays, ", "));
   return out;
 }
 

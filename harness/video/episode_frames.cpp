@@ -8,14 +8,15 @@
 
 #include <fmt/format.h>
 
+#include "harness/video/belief_shape.hpp"
 #include "render/scene_painter.hpp"
+#include "render/thinning.hpp"
 
 namespace qsmpc {
 namespace {
 
 constexpr double kTimeTolerance = 1e-9;  // s
 constexpr double kFlatHalfWidth = 0.5;   // m, of an obstacle in a direction that a system lacks
-constexpr std::size_t kMostInputRows = 3;
 
 // The box's sides along x and y.
 PlanarRectangle planar_box(const SystemDescription& system, const Box& box, double missing) {
@@ -24,29 +25,6 @@ PlanarRectangle planar_box(const SystemDescription& system, const Box& box, doub
   };
   return {side(box.lower, system.position_x, -1.0), side(box.upper, system.position_x, 1.0),
           side(box.lower, system.position_y, -1.0), side(box.upper, system.position_y, 1.0)};
-}
-
-std::string bound_text(double bound) {
-  return bound < 1.0 ? fmt::format("<= {:.2e}", bound) : "no bound below 1";
-}
-
-double next_certificate(const StepRecord& step) {
-  return step.certificates.empty() ? std::numeric_limits<double>::quiet_NaN()
-                                   : step.certificates.front().value;
-}
-
-// The decade below the least positive certificate of the episode, for the chart's lower edge.
-double certificate_floor(const Trace& trace) {
-  constexpr double kHighestFloor = 1e-2;
-  constexpr double kLowestFloor = 1e-9;
-  double least = kHighestFloor;
-  for (const StepRecord& step : trace.steps) {
-    const double value = next_certificate(step);
-    if (value > 0.0) {
-      least = std::min(least, value);
-    }
-  }
-  return std::max(std::pow(10.0, std::floor(std::log10(least))), kLowestFloor);
 }
 
 std::string banner(const Trace& trace, double time) {
@@ -65,14 +43,44 @@ std::string banner(const Trace& trace, double time) {
   return {};
 }
 
+// The safe set in the plane of position.
+SafeSet planar_safe_set(const World& world) {
+  const auto box = [](const PlanarRectangle& area) {
+    return Box{Eigen::Vector2d(area.x_lower, area.y_lower),
+               Eigen::Vector2d(area.x_upper, area.y_upper)};
+  };
+  SafeSet safe_set{.bounds = box(world.bounds), .obstacles = {}};
+  for (const PlanarRectangle& obstacle : world.obstacles) {
+    safe_set.obstacles.push_back(box(obstacle));
+  }
+  return safe_set;
+}
+
+std::string every_nth(std::size_t every) { return fmt::format("1 of {}", every); }
+
+PlanarPose between(const PlanarPose& a, const PlanarPose& b, double share) {
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
+          a.heading + share * (b.heading - a.heading)};
+}
+
 }  // namespace
 
-EpisodeFrames::EpisodeFrames(const Trace& trace)
+EpisodeFrames::EpisodeFrames(const Trace& trace, const Overlays& overlays)
     : trace_(trace),
+      overlays_(overlays),
       dynamics_(make_dynamics(trace.scenario.model.system, trace.scenario.model.parameters,
                               trace.scenario.time_step)),
       track_(trace, dynamics_->description()),
-      least_certificate_(certificate_floor(trace)) {}
+      planar_safe_set_(planar_safe_set(world())),
+      raw_(trace.scenario, *dynamics_),
+      ranges_(chart_ranges(trace)) {}
+
+std::string EpisodeFrames::heading() const {
+  const Scenario& scenario = trace_.scenario;
+  const bool closed = scenario.controller.policy == "closed_loop";
+  return fmt::format("{}, {} plant, {}", scenario.name, scenario.plant.kind,
+                     closed ? "closed loop" : "open loop");
+}
 
 World EpisodeFrames::world() const {
   const SystemDescription& system = dynamics_->description();
@@ -131,10 +139,17 @@ Frame EpisodeFrames::at(double time) const {
   }
   frame.followed = track_.smooth_pose(now);
   frame.driven_path = track_.driven_path(now);
+  if (overlays_.path) {
+    for (const PlanarPoint& point : frame.driven_path) {
+      frame.clearances.push_back(clearance(Eigen::Vector2d(point.x, point.y), planar_safe_set_));
+    }
+  }
   const std::size_t step = step_at(now);
+  frame.hud = hud_rows(trace_.steps[step], now, speed(now));
   add_plan(trace_.steps[step], frame);
-  frame.hud = rows(trace_.steps[step], now);
-  frame.charts = charts(step);
+  add_belief(trace_.steps[step], frame);
+  if (overlays_.ghost) frame.ghost = ghost(step, now);
+  frame.charts = strip_charts(trace_, dynamics_->description(), ranges_, step);
   if (time >= duration() - kTimeTolerance) {
     frame.banner = banner(trace_, duration());
   }
@@ -147,67 +162,74 @@ void EpisodeFrames::add_plan(const StepRecord& step, Frame& frame) const {
     const PlanarPose pose = planar_pose(system, step.plan_states.col(i));
     frame.planned_path.push_back({pose.x, pose.y});
   }
+}
+
+ParticleStage EpisodeFrames::planar(const DiscreteMeasure& measure) const {
+  ParticleStage stage;
+  for (Eigen::Index i = 0; i < measure.size(); ++i) {
+    const PlanarPose pose = planar_pose(dynamics_->description(), measure.locations.col(i));
+    stage.points.push_back({pose.x, pose.y});
+    stage.weights.push_back(measure.weights[i]);
+  }
+  return stage;
+}
+
+void EpisodeFrames::add_belief(const StepRecord& step, Frame& frame) const {
+  std::vector<ParticleStage> stages;
+  std::vector<PlanarMoments> moments;
+  std::size_t points = 0;
   for (const StageParticles& stage : step.particles) {
-    ParticleStage drawn;
-    for (Eigen::Index i = 0; i < stage.locations.cols(); ++i) {
-      const PlanarPose pose = planar_pose(system, stage.locations.col(i));
-      drawn.points.push_back({pose.x, pose.y});
-      drawn.weights.push_back(stage.weights[i]);
-    }
-    frame.particles.push_back(std::move(drawn));
+    stages.push_back(planar(stage));
+    moments.push_back(planar_moments(stages.back()));
+    points += stages.back().points.size();
   }
+  if (overlays_.ellipses) frame.ellipses = belief_ellipses(moments);
+  if (overlays_.tube) {
+    std::vector<double> bounds;
+    for (const StageCertificate& stage : step.certificates) bounds.push_back(stage.value);
+    frame.tube = belief_tube(moments, bounds);
+  }
+  if (overlays_.particles) {
+    const std::size_t every = thinning(points, kMostOverlayPoints);
+    for (ParticleStage& stage : stages) stage = thinned(stage, every);
+    frame.particles = std::move(stages);
+    if (every > 1) frame.hud.push_back({"particles drawn", every_nth(every)});
+  }
+  if (overlays_.raw) add_raw_points(step, frame);
 }
 
-std::vector<HudRow> EpisodeFrames::rows(const StepRecord& step, double time) const {
+// As many as the particles leave room for, but at least a quarter of all: they would be none where
+// the particles fill the room.
+void EpisodeFrames::add_raw_points(const StepRecord& step, Frame& frame) const {
+  std::size_t drawn = 0;
+  for (const ParticleStage& stage : frame.particles) drawn += stage.points.size();
+  const std::size_t room =
+      std::max(kMostOverlayPoints - std::min(drawn, kMostOverlayPoints), kMostOverlayPoints / 4);
+  const std::size_t every = thinning(raw_.count(step), room);
+  for (const DiscreteMeasure& stage : raw_.stages(step)) {
+    const ParticleStage kept = thinned(planar(stage), every);
+    frame.raw_points.insert(frame.raw_points.end(), kept.points.begin(), kept.points.end());
+  }
+  frame.hud.push_back({"raw points drawn", every > 1 ? every_nth(every) : "all"});
+}
+
+// From the plan of the period before; in the first period, or without one, from its own.
+std::optional<PlanarPose> EpisodeFrames::ghost(std::size_t step, double time) const {
+  const bool known_before = step > 0 && trace_.steps[step - 1].plan_states.cols() > 2;
+  const Eigen::MatrixXd& states = trace_.steps[known_before ? step - 1 : step].plan_states;
+  const Eigen::Index stage = known_before ? 1 : 0;
+  if (states.cols() < stage + 2) return std::nullopt;
   const SystemDescription& system = dynamics_->description();
+  const double share =
+      std::clamp((time - trace_.steps[step].time) / trace_.scenario.time_step, 0.0, 1.0);
+  return between(planar_pose(system, states.col(stage)), planar_pose(system, states.col(stage + 1)),
+                 share);
+}
+
+double EpisodeFrames::speed(double time) const {
   const ParameterMap& parameters = trace_.scenario.model.parameters;
-  const auto constant_speed = parameters.find("speed");
-  const double speed =
-      constant_speed != parameters.end() ? constant_speed->second : track_.smooth_speed(time);
-  std::vector<HudRow> rows;
-  rows.push_back({"time", fmt::format("{:.1f} s", time)});
-  rows.push_back({"speed", fmt::format("{:.2f} m/s", speed)});
-  const std::size_t inputs = std::min(system.inputs.size(), kMostInputRows);
-  for (std::size_t i = 0; i < inputs; ++i) {
-    rows.push_back({"input " + system.inputs[i].name,
-                    fmt::format("{:+.3f} {}", step.input[static_cast<Eigen::Index>(i)],
-                                system.inputs[i].unit)});
-  }
-  rows.push_back({"cost of plan", fmt::format("{:.1f}", step.cost.total())});
-  if (!step.certificates.empty()) {
-    rows.push_back({"P(unsafe) next step", bound_text(next_certificate(step))});
-    rows.push_back({"P(unsafe) whole plan", bound_text(horizon_bound(step.certificates))});
-  }
-  rows.push_back({"planning time", fmt::format("{:.0f} ms{}", step.timing.total,
-                                               step.fallback ? ", fallback" : "")});
-  return rows;
-}
-
-std::vector<StripChart> EpisodeFrames::charts(std::size_t step) const {
-  const SystemDescription& system = dynamics_->description();
-  const Scenario::Controller& controller = trace_.scenario.controller;
-  std::vector<StripChart> charts;
-  if (!system.inputs.empty()) {
-    StripChart input;
-    input.label = fmt::format("{} [{}]", system.inputs[0].name, system.inputs[0].unit);
-    const bool bounded = controller.input_lower.size() > 0 && controller.input_upper.size() > 0;
-    input.lower = bounded ? controller.input_lower[0] : system.input_lower[0];
-    input.upper = bounded ? controller.input_upper[0] : system.input_upper[0];
-    charts.push_back(std::move(input));
-  }
-  StripChart certificate;
-  certificate.label = "P(unsafe) next step, upper bound (log)";
-  certificate.lower = least_certificate_;
-  certificate.upper = 1.0;
-  certificate.logarithmic = true;
-  charts.push_back(std::move(certificate));
-  for (std::size_t i = 0; i <= step && i < trace_.steps.size(); ++i) {
-    if (charts.size() > 1) {
-      charts.front().values.push_back(trace_.steps[i].input[0]);
-    }
-    charts.back().values.push_back(next_certificate(trace_.steps[i]));
-  }
-  return charts;
+  const auto constant = parameters.find("speed");
+  return constant != parameters.end() ? constant->second : track_.smooth_speed(time);
 }
 
 }  // namespace qsmpc

@@ -1,10 +1,17 @@
 // What an episode's pictures show, from its trace alone.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "controller/planning/safe_set.hpp"
 #include "harness/trace/trace.hpp"
+#include "harness/video/episode_hud.hpp"
 #include "harness/video/episode_track.hpp"
+#include "harness/video/overlays.hpp"
+#include "harness/video/raw_points.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "render/frame.hpp"
 
@@ -14,10 +21,16 @@ namespace qsmpc {
 class EpisodeFrames {
  public:
   /// `trace` must outlive it. Throws std::invalid_argument when the trace's system is unknown.
-  explicit EpisodeFrames(const Trace& trace);
+  explicit EpisodeFrames(const Trace& trace, const Overlays& overlays = {});
 
   /// s, from the start to the end of the last control period.
   [[nodiscard]] double duration() const { return track_.duration(); }
+
+  /// The vehicle's XML.
+  [[nodiscard]] const std::string& vehicle() const { return trace_.scenario.plant.mjcf; }
+
+  /// Scenario, plant and policy in one line.
+  [[nodiscard]] std::string heading() const;
 
   /// Bounds, obstacles and target of the scenario, as far as they lie in the plane of position.
   [[nodiscard]] World world() const;
@@ -28,20 +41,31 @@ class EpisodeFrames {
   /// m, the longest plan of the episode: how far a camera must see.
   [[nodiscard]] double longest_plan() const;
 
+  /// The ranges of the strip charts: at first those of this episode.
+  [[nodiscard]] const ChartRanges& ranges() const { return ranges_; }
+  void set_ranges(const ChartRanges& ranges) { ranges_ = ranges; }
+
   /// The frame at `time` (s); from `duration()` on with a banner that tells the outcome. Plan,
-  /// particles and certificate are those of the control period that `time` is in.
+  /// particles and certificate are those of the control period that `time` is in. More than
+  /// kMostOverlayPoints points are thinned, and a row says so.
   [[nodiscard]] Frame at(double time) const;
 
  private:
   [[nodiscard]] std::size_t step_at(double time) const;
   void add_plan(const StepRecord& step, Frame& frame) const;
-  [[nodiscard]] std::vector<HudRow> rows(const StepRecord& step, double time) const;
-  [[nodiscard]] std::vector<StripChart> charts(std::size_t step) const;
+  void add_belief(const StepRecord& step, Frame& frame) const;
+  void add_raw_points(const StepRecord& step, Frame& frame) const;
+  [[nodiscard]] std::optional<PlanarPose> ghost(std::size_t step, double time) const;
+  [[nodiscard]] double speed(double time) const;
+  [[nodiscard]] ParticleStage planar(const DiscreteMeasure& measure) const;
 
   const Trace& trace_;
+  Overlays overlays_;
   std::unique_ptr<const Dynamics> dynamics_;
   EpisodeTrack track_;
-  double least_certificate_;
+  SafeSet planar_safe_set_;
+  RawPoints raw_;
+  ChartRanges ranges_;
 };
 
 }  // namespace qsmpc

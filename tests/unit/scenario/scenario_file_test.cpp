@@ -53,6 +53,7 @@ void expect_equal(const Scenario& a, const Scenario& b) {
   EXPECT_EQ(a.video.width, b.video.width);
   EXPECT_EQ(a.video.height, b.video.height);
   EXPECT_EQ(a.video.fps, b.video.fps);
+  EXPECT_EQ(a.video.overlays, b.video.overlays);
 }
 
 void expect_equal(const Scenario::Controller& a, const Scenario::Controller& b) {
@@ -153,7 +154,7 @@ controller:
   deadline: 0.075
   threads: 3
 limit: {steps: 32, stop_when_unsafe: false}
-video: {camera: fixed, size: 640x360, fps: 24}
+video: {camera: fixed, size: 640x360, fps: 24, overlays: [raw, tube]}
 )";
 
 TEST(ScenarioFile, every_key_reaches_its_value) {
@@ -183,6 +184,7 @@ TEST(ScenarioFile, every_key_reaches_its_value) {
   EXPECT_EQ(scenario.video.width, 640);
   EXPECT_EQ(scenario.video.height, 360);
   EXPECT_EQ(scenario.video.fps, 24);
+  EXPECT_EQ(scenario.video.overlays, (std::vector<std::string>{"raw", "tube"}));
   expect_round_trip(scenario);
 }
 
@@ -290,7 +292,7 @@ TEST(ScenarioFile, awkward_values_survive_being_written_and_loaded) {
       "controller.penalty={shape: thesis, box: 0, obstacle: 1e-5, length: 12345678.9}",
       "controller.propagate_noise=false",
       "limit={steps: 7, stop_when_unsafe: false}",
-      "video={camera: top, size: 64x4320, fps: 240}",
+      "video={camera: split, size: 64x4320, fps: 240, overlays: []}",
   }));
 }
 

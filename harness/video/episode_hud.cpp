@@ -1,0 +1,162 @@
+#include "harness/video/episode_hud.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace qsmpc {
+namespace {
+
+constexpr double kLongestHistory = 20.0;  // s
+constexpr double kShortestHistory = 2.0;  // s
+constexpr double kRoom = 1.15;            // of a chart's range, so that nothing runs along its edge
+
+double next_certificate(const StepRecord& step) {
+  return step.certificates.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                   : step.certificates.front().value;
+}
+
+std::string bound_text(double bound) {
+  return bound < 1.0 ? fmt::format("<= {:.1e}", bound) : "no bound < 1";
+}
+
+double decade_below(double value) { return std::pow(10.0, std::floor(std::log10(value))); }
+double decade_above(double value) { return std::pow(10.0, std::ceil(std::log10(value))); }
+
+/// The part of a trace that charts show.
+class History {
+ public:
+  History(const Trace& trace, const ChartRanges& ranges, std::size_t step) : trace_(trace) {
+    const double span = std::clamp(ranges.time, kShortestHistory, kLongestHistory);
+    slots_ = static_cast<std::size_t>(std::ceil(span / trace.scenario.time_step - 1e-9));
+    end_ = std::min(step + 1, trace.steps.size());
+    begin_ = end_ > slots_ ? end_ - slots_ : 0;
+  }
+
+  [[nodiscard]] StripChart chart(std::string label,
+                                 const std::function<double(const StepRecord&)>& value) const {
+    StripChart chart;
+    chart.label = std::move(label);
+    chart.slots = slots_;
+    for (std::size_t i = begin_; i < end_; ++i) chart.values.push_back(value(trace_.steps[i]));
+    return chart;
+  }
+
+ private:
+  const Trace& trace_;
+  std::size_t slots_ = 0;
+  std::size_t begin_ = 0;
+  std::size_t end_ = 0;
+};
+
+StripChart certificate_chart(const History& history, const ChartRanges& ranges) {
+  StripChart chart = history.chart("P(unsafe) next step", next_certificate);
+  chart.value = bound_text(chart.values.back());
+  chart.lower = ranges.least_certificate;
+  chart.logarithmic = true;
+  return chart;
+}
+
+StripChart input_chart(const History& history, const Scenario::Controller& controller,
+                       const SystemDescription& system, Eigen::Index index) {
+  const Coordinate& input = system.inputs[static_cast<std::size_t>(index)];
+  StripChart chart = history.chart(fmt::format("{} [{}]", input.name, input.unit),
+                                   [index](const StepRecord& step) { return step.input[index]; });
+  chart.value = fmt::format("{:+.2f}", chart.values.back());
+  const bool bounded = controller.input_lower.size() > 0 && controller.input_upper.size() > 0;
+  chart.lower = bounded ? controller.input_lower[index] : system.input_lower[index];
+  chart.upper = bounded ? controller.input_upper[index] : system.input_upper[index];
+  return chart;
+}
+
+StripChart cost_chart(const History& history, const ChartRanges& ranges) {
+  StripChart chart =
+      history.chart("cost of plan", [](const StepRecord& step) { return step.cost.total(); });
+  chart.value = fmt::format("{:.4g}", chart.values.back());
+  chart.lower = ranges.least_cost;
+  chart.upper = ranges.largest_cost;
+  chart.logarithmic = ranges.least_cost > 0.0;
+  return chart;
+}
+
+StripChart solve_time_chart(const History& history, const Scenario& scenario,
+                            const ChartRanges& ranges) {
+  constexpr double kMillisecondsPerSecond = 1000.0;
+  StripChart chart =
+      history.chart("planning time [ms]", [](const StepRecord& step) { return step.timing.total; });
+  chart.value = fmt::format("{:.0f}", chart.values.back());
+  const bool deadline = std::isfinite(scenario.controller.deadline);
+  const double limit =
+      kMillisecondsPerSecond * (deadline ? scenario.controller.deadline : scenario.time_step);
+  chart.limit = {.value = limit,
+                 .label = fmt::format("{} {:.3g}", deadline ? "deadline" : "period", limit)};
+  chart.upper = kRoom * std::max(limit, ranges.largest_solve_time);
+  return chart;
+}
+
+}  // namespace
+
+ChartRanges chart_ranges(const Trace& trace) {
+  constexpr double kLowestFloor = 1e-9;
+  ChartRanges ranges;
+  if (trace.steps.empty()) return ranges;
+  ranges.time = trace.steps.back().time + trace.scenario.time_step;
+  double least = std::numeric_limits<double>::infinity();
+  double largest = -least;
+  for (const StepRecord& step : trace.steps) {
+    const double certificate = next_certificate(step);
+    if (certificate > 0.0) {
+      ranges.least_certificate = std::min(ranges.least_certificate, decade_below(certificate));
+    }
+    ranges.largest_solve_time = std::max(ranges.largest_solve_time, step.timing.total);
+    least = std::min(least, step.cost.total());
+    largest = std::max(largest, step.cost.total());
+  }
+  ranges.least_certificate = std::max(ranges.least_certificate, kLowestFloor);
+  ranges.least_cost = least > 0.0 ? decade_below(least) : 0.0;
+  ranges.largest_cost = largest > 0.0 ? decade_above(largest * kRoom) : 1.0;
+  return ranges;
+}
+
+ChartRanges united(const ChartRanges& a, const ChartRanges& b) {
+  return {.time = std::max(a.time, b.time),
+          .least_certificate = std::min(a.least_certificate, b.least_certificate),
+          .least_cost = std::min(a.least_cost, b.least_cost),
+          .largest_cost = std::max(a.largest_cost, b.largest_cost),
+          .largest_solve_time = std::max(a.largest_solve_time, b.largest_solve_time)};
+}
+
+std::vector<StripChart> strip_charts(const Trace& trace, const SystemDescription& system,
+                                     const ChartRanges& ranges, std::size_t step) {
+  const Scenario& scenario = trace.scenario;
+  const History history(trace, ranges, step);
+  std::vector<StripChart> charts;
+  if (!trace.steps[step].certificates.empty()) {
+    charts.push_back(certificate_chart(history, ranges));
+  }
+  if (!system.inputs.empty()) {
+    charts.push_back(input_chart(history, scenario.controller, system, 0));
+  }
+  charts.push_back(cost_chart(history, ranges));
+  charts.push_back(solve_time_chart(history, scenario, ranges));
+  if (system.inputs.size() > 1) {
+    charts.push_back(input_chart(history, scenario.controller, system, 1));
+  }
+  return charts;
+}
+
+std::vector<HudRow> hud_rows(const StepRecord& step, double time, double speed) {
+  std::vector<HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
+                           {"speed", fmt::format("{:.2f} m/s", speed)}};
+  if (!step.certificates.empty()) {
+    rows.push_back({"P(unsafe) whole plan", bound_text(horizon_bound(step.certificates))});
+  }
+  if (step.fallback) rows.push_back({"applied", "the plan before, shifted"});
+  return rows;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,39 @@
+// What the head-up display says of an episode: rows and strip charts.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "harness/trace/trace.hpp"
+#include "models/dynamics/dynamics.hpp"
+#include "render/frame.hpp"
+
+namespace qsmpc {
+
+/// Ranges of an episode's strip charts, the same in all its frames.
+struct ChartRanges {
+  double time = 0.0;                ///< s, the longest history that a chart must hold
+  double least_certificate = 1e-2;  ///< a power of ten
+  double least_cost = 0.0;          ///< of a plan; a power of ten where all are positive, else 0
+  double largest_cost = 1.0;
+  double largest_solve_time = 1.0;  ///< ms
+};
+
+/// The ranges that hold all of `trace`.
+[[nodiscard]] ChartRanges chart_ranges(const Trace& trace);
+
+/// The ranges that hold both: for episodes that are shown side by side.
+[[nodiscard]] ChartRanges united(const ChartRanges& a, const ChartRanges& b);
+
+/// Histories up to step `step` of the certificate, the first input, the plan's cost, the planning
+/// time against its deadline (without one: the control period), and the second input. They hold up
+/// to 20 s; longer episodes scroll.
+[[nodiscard]] std::vector<StripChart> strip_charts(const Trace& trace,
+                                                   const SystemDescription& system,
+                                                   const ChartRanges& ranges, std::size_t step);
+
+/// Time (s), speed (m/s), the bound for the whole plan of `step`, and whether the plan before was
+/// applied instead.
+[[nodiscard]] std::vector<HudRow> hud_rows(const StepRecord& step, double time, double speed);
+
+}  // namespace qsmpc

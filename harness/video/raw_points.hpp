@@ -1,0 +1,35 @@
+// The points that a prediction compresses, stage by stage, made again from a trace: it holds only
+// what they were compressed to.
+#pragma once
+
+#include <vector>
+
+#include "controller/measure/measures.hpp"
+#include "controller/planning/planner_settings.hpp"
+#include "harness/trace/trace.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+class RawPoints {
+ public:
+  /// `dynamics`: the planner's model of `scenario`; must outlive it.
+  RawPoints(const Scenario& scenario, const Dynamics& dynamics);
+
+  /// How many there are in all stages of `step`.
+  [[nodiscard]] std::size_t count(const StepRecord& step) const;
+
+  /// Element k - 1: the stepped points f(c_i, u_i) of stage k - 1 under the plan's policy, each
+  /// with each point of the noise's product quantiser (or with none where the planner does not
+  /// propagate the noise), and the products of their weights. The gains are those that belong to
+  /// the plan's inputs; a change of gain that was optimised with them is not in the trace and is
+  /// left out. Empty for a step without particles. Const, and safe from several threads.
+  [[nodiscard]] std::vector<DiscreteMeasure> stages(const StepRecord& step) const;
+
+ private:
+  const Dynamics& dynamics_;
+  PlannerSettings settings_;
+  DiscreteMeasure noise_;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,19 @@
+// What the planner believes and intends, drawn on the ground: tube, raw points, particles,
+// ellipses, the planned mean.
+#pragma once
+
+#include "render/camera.hpp"
+#include "render/frame.hpp"
+
+namespace qsmpc {
+
+/// m above the ground, of all marks on it: paths, particles, ellipses, tube.
+inline constexpr double kMarkHeight = 0.01;
+
+/// The point of `ellipse` at `angle` (rad): 0 is the end of its first axis.
+[[nodiscard]] PlanarPoint on_ellipse(const PlanarEllipse& ellipse, double angle);
+
+/// Draws them within a FlatDrawing with `view`, in the order above.
+void paint_belief(const Frame& frame, const View& view);
+
+}  // namespace qsmpc
