@@ -73,6 +73,8 @@ Recipe recipe_of(VideoFormat format, const VideoOptions& options) {
     case VideoFormat::kMp4:
       return {.encoder = "libx264",
               .options = {{"preset", options.preset},
+                          // A quarter of its time for a twentieth of the size.
+                          {"bf", "0"},
                           {"crf", std::to_string(on_scale(options.quality, 1.0, 48.5))}},
               .partial = {"mp4", fragments()},
               .finished = {"mp4", {{"movflags", "+faststart"}}}};
