@@ -12,8 +12,6 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include "harness/atomic_file.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
@@ -45,11 +43,6 @@ std::vector<std::string> digests_of(const Campaign& campaign) {
     digests.push_back(entry->second);
   }
   return digests;
-}
-
-/// Where the trace of an episode is kept, within the campaign's folder.
-std::string trace_folder(std::int64_t variant, std::uint64_t seed) {
-  return fmt::format("episodes/{}/{}", variant, seed);
 }
 
 void remove_traces(const std::string& folder, const std::vector<std::string>& traces) {
@@ -160,7 +153,7 @@ class CampaignRun {
 
   /// Writes the trace to the disk, before the row that speaks of it.
   void keep(const Trace& trace, EpisodeRow& row) {
-    row.trace = trace_folder(row.variant, row.seed);
+    row.trace = episode_folder(row.variant, row.seed);
     const std::string target = folder_ + "/" + row.trace;
     // The library of the traces' format is not made for several threads.
     const std::lock_guard lock(trace_mutex_);

@@ -11,6 +11,7 @@
 #include "harness/campaign/store/store_reader.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/artefacts.hpp"
+#include "harness/cli/campaign_episodes.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/campaign_page.hpp"
@@ -32,7 +33,7 @@ bool is_exceeded(const std::vector<CalibrationBin>& bins) {
 
 }  // namespace
 
-CampaignStatistics write_campaign_results(const std::string& folder) {
+CampaignStatistics write_campaign_results(const std::string& folder, std::size_t worst) {
   const StoreReader store(folder);
   CampaignStatistics statistics = campaign_statistics(store);
   write_episodes_csv(store, folder + "/episodes.csv");
@@ -42,7 +43,8 @@ CampaignStatistics write_campaign_results(const std::string& folder) {
   for (const CampaignFigure& figure : campaign_figures(statistics)) {
     write_file(folder + "/" + figure.file, svg_figure(figure.charts));
   }
-  write_file(folder + "/" + kPageFile, campaign_page(statistics));
+  write_file(folder + "/" + kPageFile,
+             campaign_page(statistics, worst_with_files(store, folder, worst)));
   write_file(folder + "/" + kNumbersFile, campaign_json(statistics));
   return statistics;
 }

@@ -1,6 +1,7 @@
 // What a campaign's store says, as files beside it and on the terminal.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,10 +12,14 @@ namespace qsmpc {
 /// The campaign file as it was given, in the campaign's folder.
 inline constexpr const char* kCampaignCopy = "campaign.yaml";
 
-/// Reads the store in `folder` and writes campaign.json, the CSV files, the figures and the
-/// page beside it,
-/// each in one piece. Throws as StoreReader does, and IoError.
-CampaignStatistics write_campaign_results(const std::string& folder);
+/// Episodes that a campaign's page lists.
+inline constexpr std::size_t kWorstListed = 10;
+
+/// Reads the store in `folder` and writes campaign.json, the CSV files, the figures and the page
+/// with the `worst` worst episodes beside it, each in one piece. Throws as StoreReader does, and
+/// IoError.
+CampaignStatistics write_campaign_results(const std::string& folder,
+                                          std::size_t worst = kWorstListed);
 
 /// Prints the table with the names of the files, or campaign.json.
 void print_campaign_results(const CampaignStatistics& statistics, const std::string& folder,

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -8,10 +10,12 @@
 #include "harness/atomic_file.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/artefacts.hpp"
+#include "harness/cli/campaign_episodes.hpp"
 #include "harness/cli/campaign_results.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/errors.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/report/comparison_page.hpp"
 #include "harness/report/figure_files.hpp"
@@ -19,9 +23,13 @@
 namespace qsmpc {
 namespace {
 
+constexpr std::size_t kMostWorst = 1000;
+
 struct ReportArguments {
   std::string folder;
   bool figures = false;
+  std::size_t worst = 0;  ///< episodes to make pages and videos of; 0: none
+  bool quiet = false;
 };
 
 bool has(const std::string& folder, const char* file) {
@@ -31,9 +39,19 @@ bool has(const std::string& folder, const char* file) {
 
 int report(const ReportArguments& arguments) {
   const std::string& folder = arguments.folder;
+  const bool is_campaign = has(folder, kStoreFile);
+  if (arguments.worst > 0 && !is_campaign) {
+    throw InputError({.key = "--worst",
+                      .found = folder + " without " + kStoreFile,
+                      .expected = "the folder of a campaign"});
+  }
+  bool finished = true;
   std::vector<FigureFile> figures;
-  if (has(folder, kStoreFile)) {
-    figures = figures_of(write_campaign_results(folder));
+  if (is_campaign) {
+    if (arguments.worst > 0) {
+      finished = make_worst_episodes(folder, arguments.worst, arguments.quiet);
+    }
+    figures = figures_of(write_campaign_results(folder, std::max(arguments.worst, kWorstListed)));
   } else if (has(folder, kComparisonFile)) {
     const Comparison comparison = read_comparison(folder);
     figures = figures_of(comparison);
@@ -48,7 +66,7 @@ int report(const ReportArguments& arguments) {
     for (const std::string& path : write_figures(figures, folder)) paths += path + "\n";
   }
   print_result(paths);
-  return kDone;
+  return finished ? kDone : kInterruptedExit;
 }
 
 }  // namespace
@@ -58,13 +76,21 @@ void add_report_command(CLI::App& app, int& exit_code) {
                                          "Writes a self-contained HTML page from an episode's "
                                          "trace, a comparison's data or a campaign's\nstore, with "
                                          "its numbers, tables and figures.");
-  command->footer("Example: qsmpc report out/dubins_obstacles-0");
+  command->footer(
+      "Example: qsmpc report out/dubins_obstacles-0 --figures\n"
+      "Of a campaign, with pages and videos: qsmpc report out/policies --worst 5");
   const auto arguments = std::make_shared<ReportArguments>();
   command
       ->add_option("folder", arguments->folder, "folder of an episode, a comparison or a campaign")
       ->required();
   command->add_flag("--figures", arguments->figures,
                     "write the charts as SVG and PDF files, too: FOLDER/figures");
+  command
+      ->add_option("--worst", arguments->worst,
+                   "N: of a campaign, page and video of its N worst episodes, driven again where "
+                   "their trace is not kept")
+      ->check(CLI::Range(std::size_t{1}, kMostWorst));
+  command->add_flag("--quiet", arguments->quiet, "no progress");
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 

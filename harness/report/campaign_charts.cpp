@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -15,7 +16,7 @@ namespace qsmpc {
 namespace {
 
 constexpr double kLeastCertified = 1e-13;  // left end of the axis: the bin [0, 1e-12) is there
-constexpr std::size_t kMostPanels = 8;     // of variants in reliability.svg
+constexpr std::size_t kMostPanels = 16;    // of variants in reliability.svg
 constexpr std::size_t kMostNumbers = 20;   // that have room below an axis
 constexpr std::size_t kMostPairs = 9;      // the same
 constexpr std::size_t kMostListed = 20;    // variants in a note
@@ -147,6 +148,19 @@ Chart period_chart(const CampaignStatistics& statistics) {
   return chart;
 }
 
+/// Their places, ascending: at most kMostPanels, first those of which a certificate is exceeded.
+std::vector<std::size_t> variants_with_a_chart(const CampaignStatistics& statistics) {
+  const auto is_exceeded = [&](std::size_t n) {
+    return std::ranges::any_of(statistics.variants[n].calibration, &CalibrationBin::exceeded);
+  };
+  std::vector<std::size_t> places(statistics.variants.size());
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  std::ranges::stable_partition(places, is_exceeded);
+  places.resize(std::min(places.size(), kMostPanels));
+  std::ranges::sort(places);
+  return places;
+}
+
 CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
   CampaignFigure figure{.file = "reliability.svg", .charts = {}};
   const double least = least_certified(statistics);
@@ -154,8 +168,14 @@ CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
                                             statistics.calibration, statistics.published));
   figure.charts.push_back(period_chart(statistics));
   if (statistics.variants.size() == 1) return figure;
-  const std::size_t panels = std::min(statistics.variants.size(), kMostPanels);
-  for (std::size_t n = 0; n < panels; ++n) {
+  const std::vector<std::size_t> panels = variants_with_a_chart(statistics);
+  if (panels.size() < statistics.variants.size()) {
+    figure.charts[0].note += fmt::format(
+        " Of {} variants, {} have a chart of their own: those with exceeded bins before others, "
+        "then the first ones.",
+        statistics.variants.size(), panels.size());
+  }
+  for (const std::size_t n : panels) {
     const VariantStatistics& variant = statistics.variants[n];
     figure.charts.push_back(
         reliability_chart(fmt::format("{}: {}", n + 1, printable(variant.name, kTitleLimit)), least,

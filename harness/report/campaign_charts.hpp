@@ -16,7 +16,7 @@ struct CampaignFigure {
 };
 
 /// reliability.svg (what was observed against what was certified, of all variants together and of
-/// each of the first ones), outcomes.svg (rates by variant) and, where variants are compared,
+/// each of up to 16 variants), outcomes.svg (rates by variant) and, where variants are compared,
 /// differences.svg (by pair of variants, one chart a quantity).
 [[nodiscard]] std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics);
 

@@ -1,17 +1,17 @@
 #include "harness/report/campaign_page.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/html.hpp"
-#include "harness/report/numbers.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/report/svg_figure.hpp"
+#include "harness/report/table_page.hpp"
 
 namespace qsmpc {
 namespace {
@@ -19,42 +19,20 @@ namespace {
 constexpr std::size_t kFifth = 1;   // of spread_shares
 constexpr std::size_t kMedian = 3;  // the same
 
-std::string number(double value) { return std::isfinite(value) ? format_short(value) : "–"; }
-
-std::string interval(const RateInterval& limits) {
-  return fmt::format("<span class=\"soft\">[{}, {}]</span>", number(limits.lower),
-                     number(limits.upper));
+std::string rate_html(const EpisodeRate& rate) {
+  return number_html(rate.rate) + " " + interval_html(rate.interval);
 }
 
-std::string rate(const EpisodeRate& rate) {
-  return number(rate.rate) + " " + interval(rate.interval);
-}
-
-std::string cells(const std::vector<std::string>& values) {
-  std::string html;
-  for (const std::string& value : values) html += "<td>" + value + "</td>";
-  return html;
-}
-
-std::string table(const std::vector<std::string>& heads, const std::string& rows) {
-  std::string html = "<div class=\"card scroll\"><table class=\"results\">\n<thead><tr>";
-  for (std::size_t n = 0; n < heads.size(); ++n) {
-    html += fmt::format("<th{}>{}</th>", n == 0 ? " class=\"text\"" : "", heads[n]);
-  }
-  return html + "</tr></thead>\n<tbody>\n" + rows + "</tbody></table></div>\n";
-}
-
-std::string name_cell(const CampaignStatistics& statistics, std::size_t variant) {
-  return fmt::format("<td class=\"text\">{}: {}</td>", variant + 1,
-                     escape_html(statistics.variants[variant].name));
+/// The head of a variant's row.
+std::string variant_head(const CampaignStatistics& statistics, std::size_t variant) {
+  return fmt::format("{}: {}", variant + 1, escape_html(statistics.variants[variant].name));
 }
 
 std::int64_t exceeded_bins(const std::vector<CalibrationBin>& bins) {
   return std::ranges::count_if(bins, &CalibrationBin::exceeded);
 }
 
-/// What is to be known before everything else.
-std::string verdict(const CampaignStatistics& statistics) {
+PageVerdict verdict(const CampaignStatistics& statistics) {
   std::int64_t periods = 0;
   std::int64_t unsafe = 0;
   double certified = 0.0;
@@ -65,12 +43,12 @@ std::string verdict(const CampaignStatistics& statistics) {
     certified += variant.certified_periods;
     exceeded += exceeded_bins(variant.calibration);
   }
-  return fmt::format(
-      "<div class=\"outcome {}\"><span class=\"badge\">{}</span><p>{} of {} periods ended unsafe; "
-      "their certificates add up to {}. p = {} against “no certificate is too low”.</p></div>\n",
-      exceeded > 0 ? "bad" : "good",
-      exceeded > 0 ? "Certificates are exceeded" : "No certificate is refuted", unsafe, periods,
-      number(certified), number(statistics.p_value));
+  return {.is_good = exceeded == 0,
+          .title = exceeded > 0 ? "Certificates are exceeded" : "No certificate is refuted",
+          .sentences = {fmt::format(
+              "{} of {} periods ended unsafe; their certificates add up to {}. p = {} against “no "
+              "certificate is too low”.",
+              unsafe, periods, number_html(certified), number_html(statistics.p_value))}};
 }
 
 std::string kicker(const CampaignStatistics& statistics) {
@@ -86,58 +64,111 @@ std::string kicker(const CampaignStatistics& statistics) {
 }
 
 std::string outcomes_table(const CampaignStatistics& statistics) {
-  std::string rows;
+  PageTable table{.label = "Episodes, by variant",
+                  .heads = {"variant", "done", "reached", "unsafe", "faults", "cost",
+                            "clearance, 5 % (m)", "time (s)"},
+                  .rows = {}};
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
-    rows += "<tr>" + name_cell(statistics, n) +
-            cells({fmt::format("{}", variant.done), rate(variant.reached), rate(variant.unsafe),
-                   fmt::format("{}", variant.fault.events), number(variant.cost.mean),
-                   number(variant.min_clearance.quantiles[kFifth]),
-                   number(variant.time_to_target.quantiles[kMedian])}) +
-            "</tr>\n";
+    table.rows.push_back({variant_head(statistics, n), fmt::format("{}", variant.done),
+                          rate_html(variant.reached), rate_html(variant.unsafe),
+                          fmt::format("{}", variant.fault.events), number_html(variant.cost.mean),
+                          number_html(variant.min_clearance.quantiles[kFifth]),
+                          number_html(variant.time_to_target.quantiles[kMedian])});
   }
-  return "<h2>Episodes</h2>\n<p class=\"note\">Shares with their 99 % intervals; the mean cost, "
-         "the "
-         "clearance that 5 % do not exceed, the median time of those that arrived.</p>\n" +
-         table({"variant", "done", "reached", "unsafe", "faults", "cost", "clearance, 5 % (m)",
-                "time (s)"},
-               rows);
+  return section_head("Episodes",
+                      "Shares with their 99 % intervals; the mean cost, the clearance that 5 % do "
+                      "not exceed, the median time of those that arrived.") +
+         table_html(table);
 }
 
 std::string certificates_table(const CampaignStatistics& statistics) {
-  std::string rows;
+  PageTable table{.label = "Certificates of the next step, by variant",
+                  .heads = {"variant", "periods", "unsafe", "observed", "certified", "p",
+                            "bins exceeded", "planning, median (ms)", "99 % (ms)"},
+                  .rows = {}};
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
-    rows += "<tr>" + name_cell(statistics, n) +
-            cells({fmt::format("{}", variant.periods), fmt::format("{}", variant.unsafe_periods),
-                   number(variant.unsafe_step_rate()), number(variant.certified_step_rate()),
-                   number(variant.p_value), fmt::format("{}", exceeded_bins(variant.calibration)),
-                   number(variant.ocp_ms.median), number(variant.ocp_ms.p99)}) +
-            "</tr>\n";
+    const std::int64_t exceeded = exceeded_bins(variant.calibration);
+    table.rows.push_back({variant_head(statistics, n), fmt::format("{}", variant.periods),
+                          fmt::format("{}", variant.unsafe_periods),
+                          number_html(variant.unsafe_step_rate()),
+                          number_html(variant.certified_step_rate()), number_html(variant.p_value),
+                          exceeded > 0 ? fmt::format("<strong>{}</strong>", exceeded) : "0",
+                          number_html(variant.ocp_ms.median), number_html(variant.ocp_ms.p99)});
   }
-  return "<h2>Certificates of the next step, and planning</h2>\n<p class=\"note\">p is small where "
-         "more periods end unsafe than certified for them.</p>\n" +
-         table({"variant", "periods", "unsafe", "observed", "certified", "p", "bins exceeded",
-                "planning, median (ms)", "99 % (ms)"},
-               rows);
+  return section_head("Certificates of the next step, and planning",
+                      "p is small where more periods end unsafe than certified for them.") +
+         table_html(table);
 }
 
 std::string differences_table(const CampaignStatistics& statistics) {
   if (statistics.differences.empty()) return {};
-  std::vector<std::string> heads{"variant less baseline"};
-  for (const std::string& quantity : paired_quantities()) heads.push_back(quantity);
-  std::string rows;
+  PageTable table{.label = "Differences between variants, seed by seed",
+                  .heads = {"variant less baseline"},
+                  .rows = {}};
+  for (const std::string& quantity : paired_quantities()) table.heads.push_back(quantity);
   for (const VariantDifference& difference : statistics.differences) {
-    std::vector<std::string> values;
+    std::vector<std::string> row = {
+        fmt::format("{} less {}", difference.pair.variant + 1, difference.pair.baseline + 1)};
     for (const MeanDifference& mean : difference.quantities) {
-      values.push_back(number(mean.mean) + "<br/>" + interval(mean.interval));
+      row.push_back(number_html(mean.mean) + "<br/>" + interval_html(mean.interval));
     }
-    rows += fmt::format("<tr><td class=\"text\">{} less {}</td>{}</tr>\n",
-                        difference.pair.variant + 1, difference.pair.baseline + 1, cells(values));
+    table.rows.push_back(std::move(row));
   }
-  return "<h2>Differences, seed by seed</h2>\n<p class=\"note\">Means with 99 % bootstrap "
-         "intervals.</p>\n" +
-         table(heads, rows);
+  return section_head("Differences, seed by seed", "Means with 99 % bootstrap intervals.") +
+         table_html(table);
+}
+
+/// A link to the file at `path`, relative to the page.
+std::string link_html(const std::string& path, const std::string& words) {
+  std::string url = ".";
+  for (std::size_t begin = 0; begin <= path.size();) {
+    const std::size_t end = std::min(path.find('/', begin), path.size());
+    url += url_beside(path.substr(begin, end - begin)).substr(1);
+    begin = end + 1;
+  }
+  return fmt::format("<a href=\"{}\">{}</a>", url, words);
+}
+
+/// What there is of an episode, and how to make the rest.
+std::string files_html(const ListedEpisode& episode) {
+  std::string html;
+  for (const auto& [path, words] :
+       {std::pair{&episode.page, "page"}, std::pair{&episode.video, "video"},
+        std::pair{&episode.trace, "trace"}}) {
+    if (!path->empty()) html += (html.empty() ? "" : " · ") + link_html(*path, words);
+  }
+  for (const std::string& command : episode.commands) {
+    html += (html.empty() ? "" : "<br/>") + ("<code>" + escape_html(command) + "</code>");
+  }
+  return html;
+}
+
+std::string worst_table(const CampaignStatistics& statistics,
+                        const std::vector<ListedEpisode>& worst) {
+  if (worst.empty()) return {};
+  PageTable table{
+      .label = "The worst episodes",
+      .heads = {"variant", "seed", "outcome", "unsafe", "least clearance (m)", "cost", "files"},
+      .rows = {},
+      .text_columns = {2, 6}};
+  for (const ListedEpisode& episode : worst) {
+    const EpisodeRow& row = episode.row;
+    const auto variant =
+        std::ranges::find(statistics.variants, row.variant, &VariantStatistics::id);
+    const auto position = static_cast<std::size_t>(variant - statistics.variants.begin());
+    table.rows.push_back(
+        {variant == statistics.variants.end() ? "" : variant_head(statistics, position),
+         fmt::format("{}", row.seed), escape_html(row.outcome),
+         row.unsafe ? "<strong>yes</strong>" : "no", number_html(row.min_clearance),
+         number_html(row.cost), files_html(episode)});
+  }
+  return section_head("The worst episodes",
+                      "First those that entered the unsafe set or whose simulator gave up, then by "
+                      "least clearance, then by cost. Commands are for the folder of this page; "
+                      "“qsmpc report . --worst N” makes page and video of the N worst at once.") +
+         table_html(table);
 }
 
 std::string figures(const CampaignStatistics& statistics) {
@@ -150,11 +181,13 @@ std::string figures(const CampaignStatistics& statistics) {
 
 }  // namespace
 
-std::string campaign_page(const CampaignStatistics& statistics) {
+std::string campaign_page(const CampaignStatistics& statistics,
+                          const std::vector<ListedEpisode>& worst) {
   const std::string name = escape_html(statistics.campaign.name);
-  return page_head(statistics.campaign.name) + "<h1>" + name + "</h1>\n" + kicker(statistics) +
-         verdict(statistics) + outcomes_table(statistics) + certificates_table(statistics) +
-         differences_table(statistics) + figures(statistics) +
+  return table_page_head(statistics.campaign.name) + "<h1>" + name + "</h1>\n" +
+         kicker(statistics) + verdict_html(verdict(statistics)) + outcomes_table(statistics) +
+         certificates_table(statistics) + differences_table(statistics) +
+         worst_table(statistics, worst) + figures(statistics) +
          page_foot(statistics.campaign.version);
 }
 

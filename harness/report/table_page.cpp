@@ -27,7 +27,7 @@ constexpr std::string_view kTableStyle = R"css(
 .grid + .grid { margin-top: -2px; }
 .results th.text, .results td.text { overflow-wrap: break-word; }
 .results td.text { min-width: 9em; }
-.results code { font: 0.84rem/1.4 ui-monospace, "Liberation Mono", Menlo, monospace; }
+.results code { font: 0.84rem/1.4 ui-monospace, "Liberation Mono", Menlo, monospace; white-space: nowrap; }
 .results td.text:last-child { min-width: 12em; }
 .scroll:focus-visible, summary:focus-visible, a:focus-visible {
   outline: 3px solid var(--c0); outline-offset: 2px;
@@ -44,7 +44,9 @@ h3.name { margin: 20px 0 6px; }
   body { padding: 0; font-size: 10pt; }
   .scroll { overflow: visible; }
   .results th, .results td, .results tbody th { position: static; font-size: 8pt; padding-right: 6px; }
-  h2, h3 { break-after: avoid; }
+  h2, h3, .note { break-after: avoid; }
+  .card.scroll { break-inside: auto; }
+  .results td.text:last-child, .results code { font-size: 8pt; }
   tr, figure { break-inside: avoid; }
 }
 )css";

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include <fmt/format.h>
+
 #include "controller/planning/safe_set.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/summary.hpp"
@@ -46,6 +48,10 @@ EpisodeRow episode_row(const Trace& trace, std::int64_t variant) {
           .version = summary.version,
           .timing = {.deadline_misses = summary.deadline_misses},
           .periods = period_rows(trace)};
+}
+
+std::string episode_folder(std::int64_t variant, std::uint64_t seed) {
+  return fmt::format("episodes/{}/{}", variant, seed);
 }
 
 bool is_failure(const EpisodeRow& row) {

@@ -57,6 +57,9 @@ struct EpisodeRow {
 /// deadline_misses and ocp_ms are set. Throws as summarise.
 [[nodiscard]] EpisodeRow episode_row(const Trace& trace, std::int64_t variant);
 
+/// Where the trace of an episode is kept, within the campaign's folder: "episodes/VARIANT/SEED".
+[[nodiscard]] std::string episode_folder(std::int64_t variant, std::uint64_t seed);
+
 /// Whether the trace of such an episode is kept among the failures.
 [[nodiscard]] bool is_failure(const EpisodeRow& row);
 

@@ -114,6 +114,18 @@ TEST(ReliabilityFigure, has_a_chart_for_each_of_several_variants) {
   EXPECT_LT(campaign_figures(statistics)[0].charts.size(), 20U);
 }
 
+TEST(ReliabilityFigure, says_which_of_many_variants_have_a_chart) {
+  CampaignStatistics statistics = example();
+  const VariantStatistics exceeded = statistics.variants[1];
+  statistics.variants.assign(40, statistics.variants[0]);
+  statistics.variants[33] = exceeded;
+  const std::vector<Chart> charts = campaign_figures(statistics)[0].charts;
+  ASSERT_EQ(charts.size(), 2U + 16U);
+  EXPECT_TRUE(contains(charts[0].note, "Of 40 variants, 16 have a chart of their own"));
+  EXPECT_TRUE(charts[2].title.starts_with("1: ")) << charts[2].title;
+  EXPECT_TRUE(charts[17].title.starts_with("34: ")) << charts[17].title;
+}
+
 TEST(OutcomeFigure, has_room_for_many_variants) {
   CampaignStatistics statistics = example();
   statistics.variants.assign(100, statistics.variants[0]);
@@ -139,6 +151,33 @@ TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
   EXPECT_FALSE(contains(page, "often <b>"));
   EXPECT_TRUE(contains(page, "2 less 1"));
   EXPECT_EQ(occurrences(page, "<figure"), 4 + 2 + 6);
+}
+
+TEST(CampaignPage, links_what_there_is_of_the_worst_episodes_and_says_how_to_make_the_rest) {
+  CampaignStatistics statistics = example();
+  statistics.variants[1].id = 1;
+  EXPECT_FALSE(contains(campaign_page(statistics), "The worst episodes"));
+  ListedEpisode made{.page = "episodes/1/7/report.html",
+                     .video = "episodes/1/7/episode.mp4",
+                     .trace = "episodes/1/7/a<b.h5"};
+  made.row.variant = 1;
+  made.row.seed = 7;
+  made.row.outcome = "fault";
+  made.row.unsafe = true;
+  made.row.min_clearance = -0.25;
+  ListedEpisode bare{.commands = {"qsmpc run variants/0.yaml --seed 12 --out <x>"}};
+  bare.row.seed = 12;
+  bare.row.min_clearance = std::numeric_limits<double>::quiet_NaN();
+  const std::string page = campaign_page(statistics, {made, bare});
+  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
+  EXPECT_TRUE(contains(page, "<a href=\"./episodes/1/7/report.html\">page</a> · "));
+  EXPECT_TRUE(contains(page, "<a href=\"./episodes/1/7/episode.mp4\">video</a>"));
+  EXPECT_TRUE(contains(page, "<a href=\"./episodes/1/7/a%3Cb.h5\">trace</a>"));
+  EXPECT_TRUE(contains(page, "<th scope=\"row\">2: often &lt;b&gt;</th><td>7</td>"));
+  EXPECT_TRUE(contains(page, "<td>−0.25</td>"));
+  EXPECT_TRUE(contains(page, "--seed 12 --out &lt;x&gt;</code>"));
+  EXPECT_FALSE(contains(page, "nan"));
+  EXPECT_EQ(occurrences(page, "role=\"region\" tabindex=\"0\""), occurrences(page, "<table"));
 }
 
 TEST(CampaignPage, says_first_whether_a_certificate_is_refuted) {
