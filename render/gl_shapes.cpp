@@ -11,6 +11,8 @@ namespace qsmpc {
 namespace {
 
 constexpr int kCircleSides = 64;
+// m. The rasteriser may draw anything for a smooth line that has no direction.
+constexpr double kLeastSegment = 1e-6;
 
 // Brightness of a box's faces; the sun shines as in the vehicles' files, towards +x and -y.
 constexpr float kTopLight = 1.0F;
@@ -42,6 +44,11 @@ void upright_face(const PlanarPoint& from, const PlanarPoint& to, double height,
   set_colour(colour);
   glVertex3d(to.x, to.y, height);
   glVertex3d(from.x, from.y, height);
+}
+
+double separation(const ColouredPoint& a, const ColouredPoint& b) {
+  return std::hypot(a.position[0] - b.position[0], a.position[1] - b.position[1],
+                    a.position[2] - b.position[2]);
 }
 
 void draw_vertices(GLenum primitive, const std::vector<ColouredPoint>& points) {
@@ -235,15 +242,26 @@ void draw_path(const std::vector<PlanarPoint>& points, double height, double wid
   glLineWidth(static_cast<float>(width));
   set_colour(colour);
   glBegin(GL_LINE_STRIP);
+  const PlanarPoint* last = nullptr;
   for (const PlanarPoint& point : points) {
+    if (last != nullptr && std::hypot(point.x - last->x, point.y - last->y) < kLeastSegment) {
+      continue;
+    }
     glVertex3d(point.x, point.y, height);
+    last = &point;
   }
   glEnd();
 }
 
 void draw_coloured_path(const std::vector<ColouredPoint>& points, double width) {
   glLineWidth(static_cast<float>(width));
-  draw_vertices(GL_LINE_STRIP, points);
+  std::vector<ColouredPoint> distinct;
+  for (const ColouredPoint& point : points) {
+    if (distinct.empty() || separation(distinct.back(), point) >= kLeastSegment) {
+      distinct.push_back(point);
+    }
+  }
+  draw_vertices(GL_LINE_STRIP, distinct);
 }
 
 void draw_band(const std::vector<ColouredPoint>& edges) { draw_vertices(GL_TRIANGLE_STRIP, edges); }

@@ -176,7 +176,7 @@ void Hud::draw_legend_band(const Frame& frame, const PixelRectangle& area, Image
   fill_rectangle(image, area, hud_colour::kBand);
   const auto lines = static_cast<std::size_t>(area.height / style_.row_height());
   const Legend legend(frame, style_, area.width - 2.0 * style_.padding(), lines);
-  legend.draw({area.x + style_.padding(), area.y}, image);
+  legend.draw({area.x + style_.padding(), area.y + 0.5 * (area.height - legend.height())}, image);
 }
 
 void Hud::draw_banner(const Frame& frame, const PixelRectangle& area, Image& image) const {

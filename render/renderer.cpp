@@ -7,6 +7,7 @@
 #include "render/hud.hpp"
 #include "render/offscreen_context.hpp"
 #include "render/palette.hpp"
+#include "render/picture_layout.hpp"
 #include "render/scene_painter.hpp"
 #include "render/smoothing.hpp"
 #include "render/vehicle.hpp"
@@ -19,75 +20,172 @@ constexpr int kLargestSide = 8192;           // pixels
 constexpr double kChaseLengths = 6.5;        // vehicle lengths from the chase camera
 constexpr double kFarthestChase = 4.0;       // times the nearest: the vehicle stays recognisable
 constexpr double kLeastChaseDistance = 0.5;  // m
+constexpr std::size_t kLegendLines = 2;      // in a band
 
-const RenderOptions& checked(const RenderOptions& options) {
+void check(const PictureOptions& options, std::size_t episodes) {
   if (options.width < kLeastSide || options.height < kLeastSide || options.width > kLargestSide ||
       options.height > kLargestSide) {
     throw std::invalid_argument("picture of " + std::to_string(options.width) + "x" +
                                 std::to_string(options.height) + " pixels: each side is from " +
                                 std::to_string(kLeastSide) + " to " + std::to_string(kLargestSide));
   }
-  return options;
+  if (episodes < 1 || episodes > 2) {
+    throw std::invalid_argument("picture of " + std::to_string(episodes) +
+                                " episodes: it shows one or two");
+  }
 }
 
-PlanarRectangle shown_region(const RenderOptions& options, const World& world) {
-  const PlanarRectangle& region = options.region;
+PlanarRectangle shown_region(const EpisodeScene& scene) {
+  const PlanarRectangle& region = scene.region;
   const bool given = region.x_upper > region.x_lower && region.y_upper > region.y_lower;
-  return given ? region : world_region(world);
+  return given ? region : world_region(scene.world);
 }
+
+PictureLayout checked_layout(const PictureOptions& options, const Hud& hud, std::size_t episodes) {
+  check(options, episodes);
+  return picture_layout(options.width, options.height, options.camera, episodes,
+                        {.charts = hud.band_height(), .legend = hud.legend_height(kLegendLines)});
+}
+
+PixelRectangle area_of(const PaneLayout& pane) {
+  return {static_cast<double>(pane.x), static_cast<double>(pane.y), static_cast<double>(pane.width),
+          static_cast<double>(pane.height)};
+}
+
+void copy_into(const Image& part, int x, int y, Image& whole) {
+  const auto row = 3 * static_cast<std::size_t>(part.width);
+  for (int line = 0; line < part.height; ++line) {
+    const auto to = 3 * (static_cast<std::size_t>(y + line) * whole.width + x);
+    std::copy_n(part.rgb.data() + static_cast<std::size_t>(line) * row, row, &whole.rgb[to]);
+  }
+}
+
+// What is drawn of one episode; all of its panes have the same size.
+struct Stage {
+  double chase_distance;
+  PlanarRectangle region;
+  std::string heading;
+  Vehicle vehicle;
+  ScenePainter painter;
+
+  Stage(const EpisodeScene& scene, const PaneLayout& pane)
+      : chase_distance(scene.chase_distance),
+        region(shown_region(scene)),
+        heading(scene.heading),
+        vehicle(scene.mjcf_path, pane.width, pane.height),
+        painter(scene.world, region) {}
+
+  [[nodiscard]] View view(const Frame& frame, const PaneLayout& pane, double covered) const {
+    const PictureSize size{pane.width, pane.height, covered};
+    if (pane.camera != CameraKind::kChase) {
+      return region_view(pane.camera, region, size);
+    }
+    const double by_length = kChaseLengths * vehicle.length();
+    const double nearest = std::max(by_length, kLeastChaseDistance);
+    const double distance = std::clamp(chase_distance, nearest, kFarthestChase * nearest);
+    return chase_view(frame.followed.value_or(frame.pose), distance, size);
+  }
+
+  void draw(const Frame& frame, const View& view, SmoothingWorkspace& smoothing, Image& out) {
+    vehicle.place(frame);
+    vehicle.draw(view);
+    std::vector<ColouredPoint> ghost;
+    if (frame.ghost) ghost = vehicle.ghost(*frame.ghost, palette::kGhost);
+    painter.paint(frame, view, vehicle.shadows(), ghost);
+    vehicle.read_picture(out);
+    smooth_edges(out, smoothing);
+  }
+};
 
 }  // namespace
 
 struct Renderer::Parts {
-  RenderOptions options;
-  CameraKind camera;
-  PlanarRectangle region;
-  OffscreenContext context;  // before what draws with it
-  Vehicle vehicle;
-  ScenePainter painter;
+  PictureOptions options;
   Hud hud;
+  PictureLayout layout;
+  OffscreenContext context;  // before what draws with it
+  std::vector<std::unique_ptr<Stage>> stages;
   SmoothingWorkspace smoothing;
+  Image pane_picture;
 
-  Parts(const RenderOptions& given, const World& world, const std::string& mjcf_path)
-      : options(checked(given)),
-        camera(camera_kind(given.camera)),
-        region(shown_region(given, world)),
-        vehicle(mjcf_path, given.width, given.height),
-        painter(world, region),
-        hud(given.width, given.height) {}
-
-  [[nodiscard]] View view(const Frame& frame) const {
-    const PictureSize size{options.width, options.height, hud.covered_share(frame)};
-    if (camera != CameraKind::kChase) {
-      return region_view(camera, region, size);
+  Parts(const PictureOptions& given, const std::vector<EpisodeScene>& scenes)
+      : options(given),
+        hud(given.width, given.height),
+        layout(checked_layout(given, hud, scenes.size())) {
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+      const auto pane = std::find_if(layout.panes.begin(), layout.panes.end(),
+                                     [i](const PaneLayout& p) { return p.episode == i; });
+      stages.push_back(std::make_unique<Stage>(scenes[i], *pane));
     }
-    const double by_length = kChaseLengths * vehicle.length();
-    const double nearest = std::max(by_length, kLeastChaseDistance);
-    const double distance = std::clamp(options.chase_distance, nearest, kFarthestChase * nearest);
-    return chase_view(frame.followed.value_or(frame.pose), distance, size);
+  }
+
+  [[nodiscard]] View view(const Frame& frame, const PaneLayout& pane) const {
+    const double covered = layout.bands.empty() ? hud.covered_share(frame) : 0.0;
+    return stages[pane.episode]->view(frame, pane, covered);
+  }
+
+  void draw_divided(const std::vector<const Frame*>& frames, Image& out) {
+    out.width = options.width;
+    out.height = options.height;
+    out.rgb.assign(3 * static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height),
+                   0);
+    for (const PaneLayout& pane : layout.panes) {
+      const Frame& frame = *frames[pane.episode];
+      stages[pane.episode]->draw(frame, view(frame, pane), smoothing, pane_picture);
+      copy_into(pane_picture, pane.x, pane.y, out);
+    }
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      const auto first = std::find_if(layout.panes.begin(), layout.panes.end(),
+                                      [i](const PaneLayout& p) { return p.episode == i; });
+      if (!stages[i]->heading.empty()) hud.draw_heading(stages[i]->heading, area_of(*first), out);
+      hud.draw_band(*frames[i], layout.bands[i], out);
+      hud.draw_banner(*frames[i], area_of(*first), out);
+    }
+    hud.draw_legend_band(*frames.front(), layout.legend, out);
+  }
+
+  void draw(const std::vector<const Frame*>& frames, Image& out) {
+    if (frames.size() != stages.size()) {
+      throw std::invalid_argument("picture of " + std::to_string(stages.size()) +
+                                  " episodes: given " + std::to_string(frames.size()) + " frames");
+    }
+    if (!layout.bands.empty()) {
+      draw_divided(frames, out);
+      return;
+    }
+    const Frame& frame = *frames.front();
+    stages.front()->draw(frame, view(frame, layout.panes.front()), smoothing, out);
+    hud.draw(frame, out);
   }
 };
 
 Renderer::Renderer(const RenderOptions& options, const World& world, const std::string& mjcf_path)
-    : parts_(std::make_unique<Parts>(options, world, mjcf_path)) {}
+    : Renderer({.width = options.width, .height = options.height, .camera = options.camera},
+               {{.world = world,
+                 .mjcf_path = mjcf_path,
+                 .chase_distance = options.chase_distance,
+                 .region = options.region}}) {}
+
+Renderer::Renderer(const PictureOptions& size, const std::vector<EpisodeScene>& scenes)
+    : parts_(std::make_unique<Parts>(size, scenes)) {}
 
 Renderer::~Renderer() = default;
 
-void Renderer::draw(const Frame& frame, Image& out) {
-  const View view = parts_->view(frame);
-  parts_->vehicle.place(frame);
-  parts_->vehicle.draw(view);
-  std::vector<ColouredPoint> ghost;
-  if (frame.ghost) ghost = parts_->vehicle.ghost(*frame.ghost, palette::kGhost);
-  parts_->painter.paint(frame, view, parts_->vehicle.shadows(), ghost);
-  parts_->vehicle.read_picture(out);
-  smooth_edges(out, parts_->smoothing);
-  parts_->hud.draw(frame, out);
+void Renderer::draw(const Frame& frame, Image& out) { parts_->draw({&frame}, out); }
+
+void Renderer::draw(const std::vector<Frame>& frames, Image& out) {
+  std::vector<const Frame*> pointers;
+  for (const Frame& frame : frames) pointers.push_back(&frame);
+  parts_->draw(pointers, out);
 }
 
 std::optional<PixelPoint> Renderer::locate(const Frame& frame, const PlanarPoint& point,
-                                           double height) const {
-  return project(parts_->view(frame), {point.x, point.y, height});
+                                           double height, std::size_t pane) const {
+  const PaneLayout& layout = parts_->layout.panes.at(pane);
+  std::optional<PixelPoint> place =
+      project(parts_->view(frame, layout), {point.x, point.y, height});
+  if (place) *place = {place->x + layout.x, place->y + layout.y};
+  return place;
 }
 
 }  // namespace qsmpc

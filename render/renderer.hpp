@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "render/canvas.hpp"
 #include "render/frame.hpp"
@@ -24,18 +25,28 @@ class Renderer {
   /// `mjcf_path`: the vehicle's XML. Throws std::invalid_argument on a size or camera that is none,
   /// std::runtime_error when there is no off-screen OpenGL or the vehicle cannot be loaded.
   Renderer(const RenderOptions& options, const World& world, const std::string& mjcf_path);
+
+  /// Of one episode, or of two side by side, in pictures of `size`. Throws as above, and
+  /// std::invalid_argument on another number of episodes.
+  Renderer(const PictureOptions& size, const std::vector<EpisodeScene>& scenes);
+
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
   /// Draws `frame` into `out`, of which it sets the size and which it may be given again and again.
-  /// Throws std::invalid_argument when `frame.qpos` does not fit the vehicle or is not finite.
+  /// Throws std::invalid_argument when `frame.qpos` does not fit the vehicle or is not finite, or
+  /// two episodes are to be shown.
   void draw(const Frame& frame, Image& out);
 
-  /// Where the point at `point` and `height` (m) is drawn in the picture of `frame`; nothing when
-  /// it is behind the camera.
+  /// Draws one frame an episode. Throws as above, and when their numbers differ.
+  void draw(const std::vector<Frame>& frames, Image& out);
+
+  /// Where the point at `point` and `height` (m) is drawn in the picture of `frame`, which is that
+  /// of the episode in pane `pane`; nothing when it is behind the camera. Panes are counted by
+  /// episode, and chase before top where both are shown. It may lie outside of its pane.
   [[nodiscard]] std::optional<PixelPoint> locate(const Frame& frame, const PlanarPoint& point,
-                                                 double height = 0.0) const;
+                                                 double height = 0.0, std::size_t pane = 0) const;
 
  private:
   struct Parts;

@@ -94,10 +94,12 @@ void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const
   fill_rectangle(image, ground, hud_colour::kChartGround, kInset);
   fill_rectangle(image, {ground.x, ground.y + 0.5 * ground.height, plot.curve_width, 1.0},
                  hud_colour::kChartLine);
-  const double label_left = ground.x + plot.curve_width + kInset;
-  draw_text(image, style.small, plot.upper, {label_left, ground.y + style.small.size()},
+  const double right = ground.x + ground.width - kInset;
+  draw_text(image, style.small, plot.upper,
+            {right - style.small.width(plot.upper), ground.y + style.small.size()},
             hud_colour::kFaintText);
-  draw_text(image, style.small, plot.lower, {label_left, ground.y + ground.height - kInset},
+  draw_text(image, style.small, plot.lower,
+            {right - style.small.width(plot.lower), ground.y + ground.height - kInset},
             hud_colour::kFaintText);
   if (chart.limit) {
     draw_limit(chart, plot, style, image);

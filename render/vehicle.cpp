@@ -267,6 +267,7 @@ void Vehicle::place(const Frame& frame) {
 
 void Vehicle::draw(const View& view) {
   Simulator& s = *simulator_;
+  mjr_setBuffer(mjFB_OFFSCREEN, &s.context);  // another vehicle may have drawn to its own
   mjv_updateScene(s.model.get(), s.data.get(), &s.option, nullptr, &s.camera, mjCAT_ALL, &s.scene);
   // Our own lens instead of MuJoCo's, whose picture cannot be shifted aside of the head-up display.
   for (mjvGLCamera& eye : s.scene.camera) {

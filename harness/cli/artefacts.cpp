@@ -63,6 +63,7 @@ EpisodeVideoOptions video_options(const Scenario& scenario) {
   options.height = scenario.video.height;
   options.fps = scenario.video.fps;
   options.camera = scenario.video.camera;
+  options.overlays = overlays_of(scenario.video.overlays);
   return options;
 }
 
@@ -100,8 +101,20 @@ void write_summary(const Trace& trace, const std::string& folder, bool with_vide
 }
 
 void write_page(const Trace& trace, const std::string& folder, bool with_video) {
-  write_file(in_folder(folder, kPageFile),
-             episode_page(trace, {.video_file = with_video ? kVideoFile : ""}));
+  EpisodePageOptions options{.video_file = with_video ? kVideoFile : ""};
+  const std::string numbers = in_folder(folder, kVideoNumbersFile);
+  std::error_code ignored;
+  if (with_video && std::filesystem::exists(numbers, ignored)) {
+    const VideoTimings video = read_video_timings(numbers);
+    options.video_from = video.from;
+    options.video_speed = video.speed;
+    options.video_note = fmt::format(
+        "{} frames were made at {:.0f} a second: drawing took {:.1f} ms and encoding {:.1f} ms a "
+        "frame; simulating the plant, {:.2f} ms a period.",
+        video.frames, video.frames_per_second(), video.drawing_ms, video.encoding_ms,
+        video.simulation_ms);
+  }
+  write_file(in_folder(folder, kPageFile), episode_page(trace, options));
 }
 
 std::string summary_table(const Trace& trace, const std::string& folder, bool with_video) {

@@ -154,7 +154,9 @@ void make_artefacts(const Trace& trace, const std::string& target, bool quiet) {
   if (!no_video.empty()) {
     std::cerr << "qsmpc: no video: " << no_video << '\n';
   } else if (!with_video && !trace.steps.empty()) {
-    make_video(trace, target, video_options(trace.scenario), quiet);
+    make_video(trace,
+               {.video = target + "/" + kVideoFile, .numbers = target + "/" + kVideoNumbersFile},
+               video_options(trace.scenario), {.quiet = quiet});
     with_video = true;
   }
   write_summary(trace, target, with_video);

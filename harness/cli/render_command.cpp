@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <memory>
@@ -30,6 +31,8 @@ struct RenderArguments {
   std::string out;
   std::optional<std::string> format;
   std::optional<std::string> camera;
+  std::optional<std::string> overlays;
+  std::optional<std::string> beside;
   std::optional<std::string> size;
   std::optional<int> fps;
   std::optional<double> still;
@@ -81,6 +84,8 @@ EpisodeVideoOptions chosen_options(const RenderArguments& arguments, const Scena
   EpisodeVideoOptions options = arguments.video;
   const EpisodeVideoOptions usual = video_options(scenario);
   options.camera = arguments.camera.value_or(usual.camera);
+  options.overlays =
+      arguments.overlays ? parse_overlays(*arguments.overlays, "--overlays") : usual.overlays;
   options.width = usual.width;
   options.height = usual.height;
   options.fps = usual.fps;
@@ -90,9 +95,10 @@ EpisodeVideoOptions chosen_options(const RenderArguments& arguments, const Scena
   return options;
 }
 
-/// Throws InputError where --from, --to or --still lie outside of the episode.
-void check_times(const RenderArguments& arguments, const Trace& trace) {
-  const double end = episode_duration(trace);
+/// Throws InputError where --from, --to or --still lie outside of the longer episode.
+void check_times(const RenderArguments& arguments, const Trace& trace, const Trace* beside) {
+  const double end =
+      std::max(episode_duration(trace), beside == nullptr ? 0.0 : episode_duration(*beside));
   const auto check = [end](const char* key, double time, double first) {
     if (time >= first && time <= end) return;
     throw InputError({.key = key,
@@ -107,7 +113,9 @@ void check_times(const RenderArguments& arguments, const Trace& trace) {
 std::string output_path(const RenderArguments& arguments, const EpisodeVideoOptions& options) {
   if (!arguments.out.empty()) return arguments.out;
   if (arguments.still) return fmt::format("{}/still-{:g}.png", arguments.folder, *arguments.still);
-  return arguments.folder + "/episode." + video_format_name(*options.format);
+  // Two episodes in one video are not the video of either.
+  return fmt::format("{}/{}.{}", arguments.folder, arguments.beside ? "beside" : "episode",
+                     video_format_name(*options.format));
 }
 
 /// Throws InputError where a still picture would not be a PNG.
@@ -120,16 +128,20 @@ void check_still(const RenderArguments& arguments) {
 int render(const RenderArguments& arguments) {
   check_still(arguments);
   const Trace trace = read_folder(arguments.folder);
-  check_times(arguments, trace);
-  const EpisodeVideoOptions options = chosen_options(arguments, trace.scenario);
+  std::optional<Trace> beside;
+  if (arguments.beside) beside = read_folder(*arguments.beside);
+  check_times(arguments, trace, beside ? &*beside : nullptr);
+  EpisodeVideoOptions options = chosen_options(arguments, trace.scenario);
+  if (beside) options.beside = &*beside;
   choose_gl(arguments.gl);
   const std::string path = output_path(arguments, options);
   const VideoTalk talk{.quiet = arguments.quiet, .verbose = arguments.verbose};
   if (arguments.still) {
     make_still(trace, path, options, *arguments.still, talk);
   } else {
+    const bool is_the_episodes = path == arguments.folder + "/" + kVideoFile;
     const std::string numbers =
-        arguments.out.empty() ? arguments.folder + "/" + kVideoNumbersFile : path + ".json";
+        is_the_episodes ? arguments.folder + "/" + kVideoNumbersFile : path + ".json";
     make_video(trace, {.video = path, .numbers = numbers}, options, talk);
   }
   print_result(path + "\n");
@@ -138,8 +150,16 @@ int render(const RenderArguments& arguments) {
 
 void add_video_options(CLI::App& command, RenderArguments& arguments) {
   EpisodeVideoOptions& video = arguments.video;
-  command.add_option("--camera", arguments.camera, "chase, top or fixed")
+  command
+      .add_option("--camera", arguments.camera,
+                  "chase, top, fixed, or split: chase and top side by side")
       ->check(CLI::IsMember(camera_names()));
+  command.add_option("--beside", arguments.beside,
+                     "folder of another episode, which is shown on the right");
+  command.add_option(
+      "--overlays", arguments.overlays,
+      "what is drawn over the scene, e.g. particles,tube; also all or none; default: "
+      "the scenario's");
   command.add_option("--size", arguments.size,
                      "WIDTHxHEIGHT in pixels, both even; default: the scenario's, 640x360 for gif "
                      "and webp");

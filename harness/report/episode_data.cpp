@@ -293,7 +293,7 @@ std::string for_script(const Json& json) {
 }  // namespace
 
 std::string episode_data(const Trace& trace, const SystemDescription& system,
-                         const EpisodeScene& scene) {
+                         const PageScene& scene) {
   const EpisodeData data(trace, system);
   Json json = data.periods();
   json["charts"] = Json::array();

@@ -12,7 +12,7 @@
 namespace qsmpc {
 
 /// The page's parts that the scripts take up.
-struct EpisodeScene {
+struct PageScene {
   const std::vector<Chart>& charts;  ///< in the order of the page
   const PlaneMap* map = nullptr;     ///< null for a system without a place in the plane
   double video_from = 0.0;           ///< s of the drive, where the video begins
@@ -24,6 +24,6 @@ struct EpisodeScene {
 /// more particles than a page should hold, every n-th of a stage is left, and "particles.stride"
 /// is n.
 [[nodiscard]] std::string episode_data(const Trace& trace, const SystemDescription& system,
-                                       const EpisodeScene& scene);
+                                       const PageScene& scene);
 
 }  // namespace qsmpc

@@ -13,51 +13,13 @@
 namespace qsmpc {
 namespace {
 
-// The heads of rows stay in sight while a telephone scrolls the rest. On paper nothing scrolls.
-constexpr std::string_view kTableStyle = R"css(
-.results tbody th {
-  position: sticky; left: 0; background: var(--card); font-weight: 400; text-align: left;
-  white-space: normal; overflow-wrap: break-word; min-width: 7.5em; max-width: 22em;
-}
-.results thead th { white-space: normal; overflow-wrap: normal; vertical-align: bottom; }
-.results thead th.text { min-width: 7.5em; }
-.card.scroll { margin-bottom: 14px; }
-.grid > figure { max-width: 640px; }
-.grid { margin-bottom: 14px; }
-.grid + .grid { margin-top: -2px; }
-.results th.text, .results td.text { overflow-wrap: break-word; }
-.results td.text { min-width: 9em; }
-.results code { font: 0.84rem/1.4 ui-monospace, "Liberation Mono", Menlo, monospace; white-space: nowrap; }
-.results td.text:last-child { min-width: 12em; }
-.scroll:focus-visible, summary:focus-visible, a:focus-visible {
-  outline: 3px solid var(--c0); outline-offset: 2px;
-}
-h3.name { margin: 20px 0 6px; }
-@media (max-width: 600px) { .results tbody th { max-width: 9em; } }
-@media print {
-  @page { size: A4 landscape; margin: 12mm; }
-  :root {
-    --ground: #ffffff; --card: #ffffff; --ink: #000000; --soft: #444444; --edge: #b8b8b8;
-    --grid: #dddddd; --free: #ffffff; --good: #00694c; --bad: #b03a00;
-    --c0: #0072b2; --c1: #d98200; --c2: #009e73; --c3: #b8568f; --c4: #d55e00; --c5: #3a9bd1;
-  }
-  body { padding: 0; font-size: 10pt; }
-  .scroll { overflow: visible; }
-  .results th, .results td, .results tbody th { position: static; font-size: 8pt; padding-right: 6px; }
-  h2, h3, .note { break-after: avoid; }
-  .card.scroll { break-inside: auto; }
-  .results td.text:last-child, .results code { font-size: 8pt; }
-  tr, figure { break-inside: avoid; }
-}
-)css";
-
-constexpr std::string_view kHeadEnd = "</head>";
+constexpr std::string_view kBody = "<body>";
 
 }  // namespace
 
 std::string table_page_head(const std::string& title) {
   std::string head = page_head(title);
-  return head.insert(head.find(kHeadEnd), fmt::format("<style>{}</style>\n", kTableStyle));
+  return head.replace(head.rfind(kBody), kBody.size(), "<body class=\"tables\">");
 }
 
 std::string verdict_html(const PageVerdict& verdict) {

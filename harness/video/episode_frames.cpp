@@ -72,8 +72,9 @@ EpisodeFrames::EpisodeFrames(const Trace& trace, const Overlays& overlays)
                               trace.scenario.time_step)),
       track_(trace, dynamics_->description()),
       planar_safe_set_(planar_safe_set(world())),
-      raw_(trace.scenario, *dynamics_),
-      ranges_(chart_ranges(trace)) {}
+      ranges_(chart_ranges(trace)) {
+  if (overlays_.raw) raw_.emplace(trace_.scenario, *dynamics_);
+}
 
 std::string EpisodeFrames::heading() const {
   const Scenario& scenario = trace_.scenario;
@@ -195,7 +196,7 @@ void EpisodeFrames::add_belief(const StepRecord& step, Frame& frame) const {
     frame.particles = std::move(stages);
     if (every > 1) frame.hud.push_back({"particles drawn", every_nth(every)});
   }
-  if (overlays_.raw) add_raw_points(step, frame);
+  if (raw_) add_raw_points(step, frame);
 }
 
 // As many as the particles leave room for, but at least a quarter of all: they would be none where
@@ -205,8 +206,8 @@ void EpisodeFrames::add_raw_points(const StepRecord& step, Frame& frame) const {
   for (const ParticleStage& stage : frame.particles) drawn += stage.points.size();
   const std::size_t room =
       std::max(kMostOverlayPoints - std::min(drawn, kMostOverlayPoints), kMostOverlayPoints / 4);
-  const std::size_t every = thinning(raw_.count(step), room);
-  for (const DiscreteMeasure& stage : raw_.stages(step)) {
+  const std::size_t every = thinning(raw_->count(step), room);
+  for (const DiscreteMeasure& stage : raw_->stages(step)) {
     const ParticleStage kept = thinned(planar(stage), every);
     frame.raw_points.insert(frame.raw_points.end(), kept.points.begin(), kept.points.end());
   }

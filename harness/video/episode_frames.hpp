@@ -64,7 +64,7 @@ class EpisodeFrames {
   std::unique_ptr<const Dynamics> dynamics_;
   EpisodeTrack track_;
   SafeSet planar_safe_set_;
-  RawPoints raw_;
+  std::optional<RawPoints> raw_;  // where they are drawn
   ChartRanges ranges_;
 };
 

@@ -11,10 +11,8 @@
 
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/ordered_drawing.hpp"
-#include "models/dynamics/dynamics.hpp"
 #include "render/gl_library.hpp"
 #include "render/png_file.hpp"
-#include "render/renderer.hpp"
 #include "render/video_writer.hpp"
 
 namespace qsmpc {
@@ -23,7 +21,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kHoldTime = 1.0;         // s, how long the outcome is shown
-constexpr double kPlansInView = 2.8;      // chase camera's distance in lengths of the longest plan
 constexpr double kSlowest = 0.1;          // s of the episode in a second
 constexpr double kFastest = 100.0;        // the same
 constexpr double kFrameTolerance = 1e-6;  // of a frame: less of the episode needs none of its own
@@ -32,12 +29,11 @@ double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-RenderOptions render_options(const EpisodeVideoOptions& options, const EpisodeFrames& frames) {
+VideoLayout layout_of(const EpisodeVideoOptions& options) {
   return {.width = options.width,
           .height = options.height,
           .camera = options.camera,
-          .chase_distance = kPlansInView * frames.longest_plan(),
-          .region = frames.region()};
+          .overlays = options.overlays};
 }
 
 // Which moment of the episode each frame of the video shows.
@@ -71,13 +67,9 @@ class Timetable {
 };
 
 // What each drawing thread draws with; OpenGL contexts belong to a thread, so each has its own.
-OrderedDrawing::Drawer make_drawer(const EpisodeFrames& frames, const EpisodeVideoOptions& options,
-                                   const std::string& mjcf_path, const Timetable& timetable) {
-  const auto renderer =
-      std::make_shared<Renderer>(render_options(options, frames), frames.world(), mjcf_path);
-  return [renderer, &frames, timetable](int index, Image& out) {
-    renderer->draw(frames.at(timetable.time(index)), out);
-  };
+OrderedDrawing::Drawer make_drawer(const EpisodePictures& pictures, const Timetable& timetable) {
+  const auto painter = std::make_shared<EpisodePainter>(pictures);
+  return [painter, timetable](int index, Image& out) { painter->draw(timetable.time(index), out); };
 }
 
 double mean_simulation_ms(const Trace& trace) {
@@ -88,22 +80,7 @@ double mean_simulation_ms(const Trace& trace) {
   return trace.steps.empty() ? 0.0 : sum / static_cast<double>(trace.steps.size());
 }
 
-void check_drawable(const Scenario& scenario) {
-  const std::string reason = why_not_drawn(scenario);
-  if (!reason.empty()) throw std::runtime_error("no video: " + reason);
-}
-
 }  // namespace
-
-std::string why_not_drawn(const Scenario& scenario) {
-  const auto model =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const SystemDescription& system = model->description();
-  if (system.position_x < 0 || system.position_y < 0) {
-    return system.name + " has no position in the plane";
-  }
-  return scenario.plant.mjcf.empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
-}
 
 double episode_duration(const Trace& trace) {
   return trace.steps.empty() ? 0.0 : trace.steps.back().time + trace.scenario.time_step;
@@ -115,16 +92,16 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
   if (options.threads < 1) {
     throw std::invalid_argument("video: at least one thread must draw");
   }
-  check_drawable(trace.scenario);
   const Clock::time_point begin = Clock::now();
-  const EpisodeFrames frames(trace);
-  const Timetable timetable(options, frames.duration());
+  const EpisodePictures pictures(trace, layout_of(options), options.beside);
+  const Timetable timetable(options, pictures.duration());
   VideoWriter video(path, options.width, options.height, options.fps,
                     {.format = options.format, .quality = options.quality});
-  OrderedDrawing drawing({.total = timetable.total(), .threads = options.threads}, [&] {
-    return make_drawer(frames, options, trace.scenario.plant.mjcf, timetable);
-  });
+  OrderedDrawing drawing({.total = timetable.total(), .threads = options.threads},
+                         [&] { return make_drawer(pictures, timetable); });
   VideoTimings timings{.fps = options.fps,
+                       .from = options.from,
+                       .speed = options.speed,
                        .width = options.width,
                        .height = options.height,
                        .codec = video_codec(video.format()),
@@ -155,11 +132,10 @@ Frame episode_frame(const Trace& trace, double time) { return EpisodeFrames(trac
 
 void write_episode_still(const Trace& trace, const EpisodeVideoOptions& options, double time,
                          const std::string& path) {
-  check_drawable(trace.scenario);
-  const EpisodeFrames frames(trace);
-  Renderer renderer(render_options(options, frames), frames.world(), trace.scenario.plant.mjcf);
+  const EpisodePictures pictures(trace, layout_of(options), options.beside);
+  EpisodePainter painter(pictures);
   Image image;
-  renderer.draw(frames.at(time), image);
+  painter.draw(time, image);
   write_png(path, image);
 }
 

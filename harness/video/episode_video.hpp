@@ -7,6 +7,8 @@
 #include <string>
 
 #include "harness/trace/trace.hpp"
+#include "harness/video/episode_painter.hpp"
+#include "harness/video/overlays.hpp"
 #include "harness/video/video_timings.hpp"
 #include "render/frame.hpp"
 #include "render/video_format.hpp"
@@ -17,18 +19,16 @@ struct EpisodeVideoOptions {
   int width = 1280;              ///< pixels, even
   int height = 720;              ///< pixels, even
   int fps = 30;                  ///< frames a second
-  std::string camera = "chase";  ///< "chase", "top" or "fixed"
-  int threads = 2;               ///< that draw, at least 1; the result does not depend on it
-  double speed = 1.0;            ///< s of the episode shown in a second, 0.1 … 100
-  double from = 0.0;             ///< s of the episode, where the video begins
+  std::string camera = "chase";  ///< "chase", "top", "fixed" or "split"
+  Overlays overlays{};
+  const Trace* beside = nullptr;  ///< an episode that is shown on the right; null: none
+  int threads = 2;                ///< that draw, at least 1; the result does not depend on it
+  double speed = 1.0;             ///< s of the episode shown in a second, 0.1 … 100
+  double from = 0.0;              ///< s of the episode, where the video begins
   double to = std::numeric_limits<double>::infinity();  ///< s, where it ends; at most the whole
   std::optional<VideoFormat> format = std::nullopt;     ///< without: by the path's ending
   int quality = kUsualQuality;                          ///< see VideoOptions
 };
-
-/// Why an episode of this scenario cannot be drawn, e.g. "double_integrator has no position in the
-/// plane"; empty if it has a position and a vehicle.
-[[nodiscard]] std::string why_not_drawn(const Scenario& scenario);
 
 /// s, from the start to the end of the last control period.
 [[nodiscard]] double episode_duration(const Trace& trace);

@@ -1,7 +1,11 @@
 #include "harness/video/video_timings.hpp"
 
+#include <fstream>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "harness/errors.hpp"
 
 namespace qsmpc {
 
@@ -23,6 +27,8 @@ std::string video_json(const VideoTimings& timings) {
                                     {"width", timings.width},
                                     {"height", timings.height},
                                     {"codec", timings.codec},
+                                    {"from", timings.from},
+                                    {"speed", timings.speed},
                                     {"seconds", timings.seconds()},
                                     {"wall_s", timings.wall_s},
                                     {"frames_per_second", timings.frames_per_second()},
@@ -31,6 +37,31 @@ std::string video_json(const VideoTimings& timings) {
                                     {"simulation_ms", timings.simulation_ms},
                                     {"gl", timings.gl}};
   return json.dump(2) + "\n";
+}
+
+VideoTimings read_video_timings(const std::string& path) {
+  std::ifstream file(path);
+  std::string found = "a file that cannot be read";
+  if (file) {
+    try {
+      const nlohmann::json json = nlohmann::json::parse(file);
+      return {.frames = json.at("frames"),
+              .fps = json.at("fps"),
+              .from = json.at("from"),
+              .speed = json.at("speed"),
+              .width = json.at("width"),
+              .height = json.at("height"),
+              .codec = json.at("codec"),
+              .wall_s = json.at("wall_s"),
+              .drawing_ms = json.at("drawing_ms"),
+              .encoding_ms = json.at("encoding_ms"),
+              .simulation_ms = json.at("simulation_ms"),
+              .gl = json.at("gl")};
+    } catch (const nlohmann::json::exception& error) {
+      found = error.what();
+    }
+  }
+  throw InputError({.file = path, .found = found, .expected = "what qsmpc render wrote"});
 }
 
 }  // namespace qsmpc

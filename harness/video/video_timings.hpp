@@ -9,6 +9,8 @@ namespace qsmpc {
 struct VideoTimings {
   int frames = 0;
   int fps = 0;                 ///< frames a second when played
+  double from = 0.0;           ///< s of the episode, where the video begins
+  double speed = 1.0;          ///< s of the episode in a second of the video
   int width = 0;               ///< pixels
   int height = 0;              ///< pixels
   std::string codec;           ///< as ffprobe names it, e.g. "h264"
@@ -31,5 +33,8 @@ struct VideoTimings {
 
 /// The keys documented in docs/video.md, ending with a line break.
 [[nodiscard]] std::string video_json(const VideoTimings& timings);
+
+/// What `video_json` wrote into the file at `path`. Throws InputError.
+[[nodiscard]] VideoTimings read_video_timings(const std::string& path);
 
 }  // namespace qsmpc

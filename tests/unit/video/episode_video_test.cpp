@@ -1,168 +1,22 @@
 #include "harness/video/episode_video.hpp"
 
-#include <cmath>
+#include <algorithm>
+#include <cstdlib>
 #include <filesystem>
-#include <numbers>
 #include <stdexcept>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/video/episode_frames.hpp"
-#include "models/dynamics/dubins.hpp"
 #include "tests/unit/render/decoded_video.hpp"
-#include "tests/unit/render/render_fixture.hpp"
+#include "tests/unit/video/straight_episode.hpp"
 
 namespace qsmpc {
 namespace {
 
 using testing::HasSubstr;
 
-constexpr int kSteps = 6;
-constexpr double kPeriod = 0.1;   // s
-constexpr double kStride = 0.15;  // m driven in a period, along x
-constexpr double kKick = 0.05;    // m, the disturbance along y after each period
-
-Eigen::VectorXd state_at(int step) { return Eigen::Vector3d(kStride * step, kKick * step, 0.0); }
-
-Scenario straight_scenario() {
-  Scenario scenario;
-  scenario.name = "straight";
-  scenario.model = {"dubins", {{"speed", 1.5}}};
-  scenario.plant = {"analytic", kRedBox};
-  scenario.time_step = kPeriod;
-  scenario.safe_set = unbounded_safe_set(3);
-  scenario.safe_set.bounds.lower << -1.0, -1.0, -HUGE_VAL;
-  scenario.safe_set.bounds.upper << 3.0, 2.0, HUGE_VAL;
-  scenario.target = {Eigen::Vector3d(2.0, 1.0, 0.0), 0.3};
-  scenario.controller.input_lower = Eigen::VectorXd::Constant(1, -2.0);
-  scenario.controller.input_upper = Eigen::VectorXd::Constant(1, 2.0);
-  return scenario;
-}
-
-// Straight ahead, moved sideways after each period.
-Trace straight_trace() {
-  Trace trace;
-  trace.scenario = straight_scenario();
-  for (int k = 0; k < kSteps; ++k) {
-    StepRecord step;
-    step.time = kPeriod * k;
-    step.state = state_at(k);
-    step.input = Eigen::VectorXd::Constant(1, 0.1 * k);
-    step.disturbance = Eigen::Vector3d(0.0, kKick, 0.0);
-    step.plan_states = Eigen::MatrixXd::Zero(3, 3);
-    for (int stage = 0; stage < 3; ++stage) {
-      step.plan_states.col(stage) = state_at(k) + Eigen::Vector3d(kStride * stage, 0.0, 0.0);
-      step.particles.push_back({StateBatch(step.plan_states.col(stage)), Eigen::VectorXd::Ones(1)});
-    }
-    step.certificates.resize(2);
-    step.certificates[0].value = 1e-3 * (k + 1);
-    step.certificates[1].value = 0.25;
-    trace.steps.push_back(step);
-  }
-  trace.final_state = state_at(kSteps);
-  trace.outcome = Outcome::kReached;
-  return trace;
-}
-
-std::string row_of(const Frame& frame, const std::string& name) {
-  for (const HudRow& row : frame.hud) {
-    if (row.name == name) {
-      return row.value;
-    }
-  }
-  return "no row " + name;
-}
-
 constexpr EpisodeVideoOptions kSmallVideo{.width = 320, .height = 180, .fps = 10};
-
-TEST(episode_frames, vehicle_drives_from_state_to_state_and_eases_the_disturbance) {
-  const Trace trace = straight_trace();
-  const EpisodeFrames frames(trace);
-  // In the middle of the first period: half a stride, not yet kicked.
-  EXPECT_NEAR(frames.at(0.05).pose.x, 0.5 * kStride, 1e-12);
-  EXPECT_NEAR(frames.at(0.05).pose.y, 0.0, 1e-12);
-  // At the control instant the kick has not been drawn; half of it is after half of the ease time.
-  EXPECT_NEAR(frames.at(0.1).pose.y, 0.0, 1e-12);
-  EXPECT_NEAR(frames.at(0.1 + 0.5 * EpisodeTrack::kEaseTime).pose.y, 0.5 * kKick, 1e-12);
-  EXPECT_NEAR(frames.at(0.1 + EpisodeTrack::kEaseTime).pose.y, kKick, 1e-12);
-  EXPECT_NEAR(frames.at(0.1 + EpisodeTrack::kEaseTime).pose.x,
-              kStride * (1.0 + EpisodeTrack::kEaseTime / kPeriod), 1e-12);
-}
-
-TEST(episode_frames, camera_follows_smoothly_without_lag) {
-  const Trace trace = straight_trace();
-  const EpisodeFrames frames(trace);
-  // The states lie on a line, which the smoothing must reproduce, at its ends too.
-  for (const double time : {0.0, 0.13, 0.37, 0.6}) {
-    const Frame frame = frames.at(time);
-    ASSERT_TRUE(frame.followed);
-    EXPECT_NEAR(frame.followed->x, kStride * time / kPeriod, 1e-9) << time;
-    EXPECT_NEAR(frame.followed->y, kKick * time / kPeriod, 1e-9) << time;
-  }
-}
-
-TEST(episode_frames, a_killed_episode_is_drawn_as_far_as_it_came) {
-  Trace trace = straight_trace();
-  trace.final_state.resize(0);
-  const EpisodeFrames frames(trace);
-  const Eigen::VectorXd& last = trace.steps.back().state;
-  EXPECT_DOUBLE_EQ(frames.at(frames.duration()).pose.x, last[0]);
-}
-
-TEST(episode_frames, qpos_comes_from_the_recorded_motion) {
-  Trace trace = straight_trace();
-  trace.motion = {{0.0, {0.0, 0.0}},   {0.05, {1.0, 10.0}},
-                  {0.1, {2.0, 20.0}},  {0.1, {2.5, 20.0}},  // the same instant after the kick
-                  {0.12, {2.7, 22.0}}, {0.15, {3.0, 25.0}}};
-  const EpisodeFrames frames(trace);
-  EXPECT_THAT(frames.at(0.025).qpos, testing::ElementsAre(0.5, 5.0));
-  EXPECT_THAT(frames.at(0.1).qpos, testing::ElementsAre(2.0, 20.0));
-  EXPECT_THAT(frames.at(0.125).qpos, testing::ElementsAre(testing::DoubleNear(2.5, 1e-9),
-                                                          testing::DoubleNear(22.5, 1e-9)));
-  EXPECT_THAT(frames.at(9.0).qpos, testing::ElementsAre(3.0, 25.0));
-}
-
-TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
-  const Trace trace = straight_trace();
-  const EpisodeFrames frames(trace);
-  const Frame frame = frames.at(0.2);  // the third period begins
-  ASSERT_EQ(frame.planned_path.size(), 3U);
-  EXPECT_DOUBLE_EQ(frame.planned_path[0].x, 2.0 * kStride);
-  ASSERT_EQ(frame.particles.size(), 3U);
-  EXPECT_DOUBLE_EQ(frame.particles[1].points[0].x, 3.0 * kStride);
-  EXPECT_THAT(row_of(frame, "P(unsafe) next step"), HasSubstr("3.00e-03"));
-  EXPECT_THAT(row_of(frame, "P(unsafe) whole plan"), HasSubstr("2.53e-01"));
-  EXPECT_THAT(row_of(frame, "speed"), HasSubstr("1.50"));
-  ASSERT_EQ(frame.charts.size(), 2U);
-  EXPECT_THAT(frame.charts[0].values, testing::ElementsAre(0.0, 0.1, 0.2));
-  EXPECT_EQ(frame.charts[1].values.size(), 3U);
-  EXPECT_TRUE(frame.banner.empty());
-  EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));
-}
-
-TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
-  Trace trace = straight_trace();
-  Box obstacle = unbounded_safe_set(3).bounds;
-  obstacle.lower.head(2) << 1.0, 0.5;
-  obstacle.upper.head(2) << 1.5, 0.8;
-  trace.scenario.safe_set.obstacles.push_back(obstacle);
-  const World world = EpisodeFrames(trace).world();
-  EXPECT_EQ(world.bounds.x_upper, 3.0);
-  EXPECT_EQ(world.bounds.y_lower, -1.0);
-  ASSERT_EQ(world.obstacles.size(), 1U);
-  EXPECT_EQ(world.obstacles[0].y_upper, 0.8);
-  EXPECT_EQ(world.target.x, 2.0);
-}
-
-TEST(episode_frames, trace_without_steps_still_has_a_frame) {
-  Trace trace;
-  trace.scenario = straight_scenario();
-  trace.outcome = Outcome::kInterrupted;
-  const EpisodeFrames frames(trace);
-  EXPECT_EQ(frames.duration(), 0.0);
-  EXPECT_EQ(frames.at(0.0).banner, "interrupted");
-}
 
 TEST(episode_video, lasts_as_long_as_the_episode_and_a_second_more) {
   const std::string path = fresh_folder() / "episode.mp4";
@@ -188,7 +42,13 @@ TEST(episode_video, does_not_depend_on_the_number_of_threads) {
   const DecodedVideo one = decode_video(folder / "1.mp4");
   const DecodedVideo three = decode_video(folder / "3.mp4");
   EXPECT_EQ(one.frames, three.frames);
-  EXPECT_EQ(one.first.rgb, three.first.rgb);
+  // The pictures are the same to the last bit (episode_painter_test.cpp); the encoder is not.
+  ASSERT_EQ(one.first.rgb.size(), three.first.rgb.size());
+  int difference = 0;
+  for (std::size_t i = 0; i < one.first.rgb.size(); ++i) {
+    difference = std::max(difference, std::abs(one.first.rgb[i] - three.first.rgb[i]));
+  }
+  EXPECT_LE(difference, 40);
 }
 
 TEST(episode_video, speed_shortens_the_episode_and_not_the_second_of_its_outcome) {

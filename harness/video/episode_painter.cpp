@@ -1,0 +1,72 @@
+#include "harness/video/episode_painter.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kPlansInView = 2.8;  // chase camera's distance in lengths of the longest plan
+
+const Trace& drawable(const Trace& trace) {
+  const std::string reason = why_not_drawn(trace.scenario);
+  if (!reason.empty()) throw std::runtime_error("no video: " + reason);
+  return trace;
+}
+
+}  // namespace
+
+std::string why_not_drawn(const Scenario& scenario) {
+  const auto model =
+      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const SystemDescription& system = model->description();
+  if (system.position_x < 0 || system.position_y < 0) {
+    return system.name + " has no position in the plane";
+  }
+  return scenario.plant.mjcf.empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
+}
+
+EpisodePictures::EpisodePictures(const Trace& trace, const VideoLayout& layout, const Trace* beside)
+    : layout_(layout), frames_(drawable(trace), layout.overlays) {
+  if (beside == nullptr) return;
+  beside_.emplace(drawable(*beside), layout.overlays);
+  const ChartRanges ranges = united(frames_.ranges(), beside_->ranges());
+  frames_.set_ranges(ranges);
+  beside_->set_ranges(ranges);
+}
+
+double EpisodePictures::duration() const {
+  return std::max(frames_.duration(), beside_ ? beside_->duration() : 0.0);
+}
+
+std::vector<Frame> EpisodePictures::at(double time) const {
+  std::vector<Frame> frames{frames_.at(time)};
+  if (beside_) frames.push_back(beside_->at(time));
+  return frames;
+}
+
+PictureOptions EpisodePictures::options() const {
+  return {.width = layout_.width, .height = layout_.height, .camera = layout_.camera};
+}
+
+std::vector<EpisodeScene> EpisodePictures::scenes() const {
+  const auto scene = [this](const EpisodeFrames& frames) {
+    return EpisodeScene{.world = frames.world(),
+                        .mjcf_path = frames.vehicle(),
+                        .chase_distance = kPlansInView * frames.longest_plan(),
+                        .region = frames.region(),
+                        .heading = beside_ ? frames.heading() : ""};
+  };
+  std::vector<EpisodeScene> scenes{scene(frames_)};
+  if (beside_) scenes.push_back(scene(*beside_));
+  return scenes;
+}
+
+EpisodePainter::EpisodePainter(const EpisodePictures& pictures)
+    : pictures_(pictures), renderer_(pictures.options(), pictures.scenes()) {}
+
+void EpisodePainter::draw(double time, Image& out) { renderer_.draw(pictures_.at(time), out); }
+
+}  // namespace qsmpc

@@ -1,0 +1,70 @@
+// Pictures of one episode, or of two side by side, at any time.
+//
+//   const EpisodePictures pictures(trace, {.camera = "split"});   // shared by all drawing threads
+//   EpisodePainter painter(pictures);                             // on each drawing thread
+//   painter.draw(/*time=*/1.5, image);
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "harness/trace/trace.hpp"
+#include "harness/video/episode_frames.hpp"
+#include "harness/video/overlays.hpp"
+#include "render/frame.hpp"
+#include "render/renderer.hpp"
+
+namespace qsmpc {
+
+/// How pictures of episodes look.
+struct VideoLayout {
+  int width = 1280;              ///< pixels
+  int height = 720;              ///< pixels
+  std::string camera = "chase";  ///< "chase", "top", "fixed" or "split"
+  Overlays overlays{};
+};
+
+/// What is known of the pictures before any is drawn; const functions may be called from several
+/// threads at once.
+class EpisodePictures {
+ public:
+  /// `trace` (and `beside`, shown on its right, if not null) must outlive it. Throws
+  /// std::invalid_argument when a trace's system is unknown, std::runtime_error when an episode
+  /// cannot be drawn, see `why_not_drawn`.
+  EpisodePictures(const Trace& trace, const VideoLayout& layout, const Trace* beside = nullptr);
+
+  /// s, of the longer episode.
+  [[nodiscard]] double duration() const;
+
+  /// One frame an episode. The shorter one stands on its last frame, with its banner.
+  [[nodiscard]] std::vector<Frame> at(double time) const;
+
+  [[nodiscard]] PictureOptions options() const;
+  [[nodiscard]] std::vector<EpisodeScene> scenes() const;
+
+ private:
+  VideoLayout layout_;
+  EpisodeFrames frames_;
+  std::optional<EpisodeFrames> beside_;
+};
+
+/// Draws on the thread that made it; see Renderer.
+class EpisodePainter {
+ public:
+  /// `pictures` must outlive it. Throws as Renderer.
+  explicit EpisodePainter(const EpisodePictures& pictures);
+
+  /// The picture at `time` (s). Throws as Renderer::draw.
+  void draw(double time, Image& out);
+
+ private:
+  const EpisodePictures& pictures_;
+  Renderer renderer_;
+};
+
+/// Why an episode of this scenario cannot be drawn, e.g. "double_integrator has no position in the
+/// plane"; empty if it has a position and a vehicle.
+[[nodiscard]] std::string why_not_drawn(const Scenario& scenario);
+
+}  // namespace qsmpc

@@ -1,0 +1,251 @@
+#include "harness/video/episode_frames.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/errors.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "render/belief_painter.hpp"
+#include "tests/unit/video/straight_episode.hpp"
+
+namespace qsmpc {
+namespace {
+
+using testing::HasSubstr;
+
+std::string row_of(const Frame& frame, const std::string& name) {
+  for (const HudRow& row : frame.hud) {
+    if (row.name == name) {
+      return row.value;
+    }
+  }
+  return "no row " + name;
+}
+
+TEST(episode_frames, vehicle_drives_from_state_to_state_and_eases_the_disturbance) {
+  const Trace trace = straight_trace();
+  const EpisodeFrames frames(trace);
+  // In the middle of the first period: half a stride, not yet kicked.
+  EXPECT_NEAR(frames.at(0.05).pose.x, 0.5 * kStride, 1e-12);
+  EXPECT_NEAR(frames.at(0.05).pose.y, 0.0, 1e-12);
+  // At the control instant the kick has not been drawn; half of it is after half of the ease time.
+  EXPECT_NEAR(frames.at(0.1).pose.y, 0.0, 1e-12);
+  EXPECT_NEAR(frames.at(0.1 + 0.5 * EpisodeTrack::kEaseTime).pose.y, 0.5 * kKick, 1e-12);
+  EXPECT_NEAR(frames.at(0.1 + EpisodeTrack::kEaseTime).pose.y, kKick, 1e-12);
+  EXPECT_NEAR(frames.at(0.1 + EpisodeTrack::kEaseTime).pose.x,
+              kStride * (1.0 + EpisodeTrack::kEaseTime / kPeriod), 1e-12);
+}
+
+TEST(episode_frames, camera_follows_smoothly_without_lag) {
+  const Trace trace = straight_trace();
+  const EpisodeFrames frames(trace);
+  // The states lie on a line, which the smoothing must reproduce, at its ends too.
+  for (const double time : {0.0, 0.13, 0.37, 0.6}) {
+    const Frame frame = frames.at(time);
+    ASSERT_TRUE(frame.followed);
+    EXPECT_NEAR(frame.followed->x, kStride * time / kPeriod, 1e-9) << time;
+    EXPECT_NEAR(frame.followed->y, kKick * time / kPeriod, 1e-9) << time;
+  }
+}
+
+TEST(episode_frames, a_killed_episode_is_drawn_as_far_as_it_came) {
+  Trace trace = straight_trace();
+  trace.final_state.resize(0);
+  const EpisodeFrames frames(trace);
+  const Eigen::VectorXd& last = trace.steps.back().state;
+  EXPECT_DOUBLE_EQ(frames.at(frames.duration()).pose.x, last[0]);
+}
+
+TEST(episode_frames, qpos_comes_from_the_recorded_motion) {
+  Trace trace = straight_trace();
+  trace.motion = {{0.0, {0.0, 0.0}},   {0.05, {1.0, 10.0}},
+                  {0.1, {2.0, 20.0}},  {0.1, {2.5, 20.0}},  // the same instant after the kick
+                  {0.12, {2.7, 22.0}}, {0.15, {3.0, 25.0}}};
+  const EpisodeFrames frames(trace);
+  EXPECT_THAT(frames.at(0.025).qpos, testing::ElementsAre(0.5, 5.0));
+  EXPECT_THAT(frames.at(0.1).qpos, testing::ElementsAre(2.0, 20.0));
+  EXPECT_THAT(frames.at(0.125).qpos, testing::ElementsAre(testing::DoubleNear(2.5, 1e-9),
+                                                          testing::DoubleNear(22.5, 1e-9)));
+  EXPECT_THAT(frames.at(9.0).qpos, testing::ElementsAre(3.0, 25.0));
+}
+
+TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
+  const Trace trace = straight_trace();
+  const EpisodeFrames frames(trace);
+  const Frame frame = frames.at(0.2);  // the third period begins
+  ASSERT_EQ(frame.charts.size(), 4U);
+  ASSERT_EQ(frame.planned_path.size(), 3U);
+  EXPECT_DOUBLE_EQ(frame.planned_path[0].x, 2.0 * kStride);
+  ASSERT_EQ(frame.particles.size(), 3U);
+  EXPECT_DOUBLE_EQ(frame.particles[1].points[0].x, 3.0 * kStride);
+  EXPECT_EQ(frame.charts[0].value, "3.0e-03");
+  EXPECT_THAT(row_of(frame, "P(unsafe) whole plan"), HasSubstr("2.5e-01"));
+  EXPECT_THAT(row_of(frame, "speed"), HasSubstr("1.50"));
+  EXPECT_THAT(frame.charts[1].values, testing::ElementsAre(0.0, 0.1, 0.2));
+  EXPECT_EQ(frame.charts[0].values.size(), 3U);
+  EXPECT_TRUE(frame.banner.empty());
+  EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));
+}
+
+TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
+  Trace trace = straight_trace();
+  Box obstacle = unbounded_safe_set(3).bounds;
+  obstacle.lower.head(2) << 1.0, 0.5;
+  obstacle.upper.head(2) << 1.5, 0.8;
+  trace.scenario.safe_set.obstacles.push_back(obstacle);
+  const World world = EpisodeFrames(trace).world();
+  EXPECT_EQ(world.bounds.x_upper, 3.0);
+  EXPECT_EQ(world.bounds.y_lower, -1.0);
+  ASSERT_EQ(world.obstacles.size(), 1U);
+  EXPECT_EQ(world.obstacles[0].y_upper, 0.8);
+  EXPECT_EQ(world.target.x, 2.0);
+}
+
+TEST(episode_frames, trace_without_steps_still_has_a_frame) {
+  Trace trace;
+  trace.scenario = straight_scenario();
+  trace.outcome = Outcome::kInterrupted;
+  const EpisodeFrames frames(trace);
+  EXPECT_EQ(frames.duration(), 0.0);
+  EXPECT_EQ(frames.at(0.0).banner, "interrupted");
+}
+
+// A cloud about each stage's mean with the variances 0.01 along x and 0.04 along y.
+Trace cloudy_trace() {
+  Trace trace = straight_trace();
+  trace.scenario.disturbance.covariance = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
+  trace.scenario.controller.policy = "open_loop";
+  trace.scenario.controller.quantisation.noise = 9;
+  trace.scenario.controller.cost = {Eigen::Matrix3d::Identity(), Eigen::MatrixXd::Identity(1, 1),
+                                    Eigen::Matrix3d::Identity()};
+  for (StepRecord& step : trace.steps) {
+    step.plan_inputs = Eigen::MatrixXd::Zero(1, 2);
+    for (StageParticles& stage : step.particles) {
+      const Eigen::Vector3d mean = stage.locations.col(0);
+      stage.locations.resize(3, 4);
+      stage.locations << mean[0] - 0.1, mean[0] + 0.1, mean[0] - 0.1, mean[0] + 0.1, mean[1] - 0.2,
+          mean[1] - 0.2, mean[1] + 0.2, mean[1] + 0.2, 0.0, 0.0, 0.0, 0.0;
+      stage.weights = Eigen::VectorXd::Constant(4, 0.25);
+    }
+  }
+  return trace;
+}
+
+TEST(episode_frames, ellipses_and_tube_are_those_of_the_particles_moments) {
+  const Trace trace = cloudy_trace();
+  const Frame frame = EpisodeFrames(trace).at(0.2);
+  ASSERT_EQ(frame.ellipses.size(), 3U);
+  const double radius = std::sqrt(-2.0 * std::log(0.05));  // of 95 % of the standard Gaussian
+  const PlanarEllipse& most = frame.ellipses[1].most;
+  EXPECT_NEAR(most.centre.x, 3.0 * kStride, 1e-12);
+  EXPECT_NEAR(std::abs(on_ellipse(most, 0.0).y - most.centre.y), 0.2 * radius, 1e-12);
+  EXPECT_NEAR(std::abs(on_ellipse(most, 0.5 * std::numbers::pi).x - most.centre.x), 0.1 * radius,
+              1e-12);
+  EXPECT_NEAR(std::hypot(frame.ellipses[1].half.first_axis.x, frame.ellipses[1].half.first_axis.y),
+              0.2 * std::sqrt(-2.0 * std::log(0.5)), 1e-12);
+  // The plan runs along x: the tube is as wide as the ellipse is along y.
+  ASSERT_EQ(frame.tube.size(), 3U);
+  EXPECT_NEAR(frame.tube[1].left.y - frame.tube[1].right.y, 0.4 * radius, 1e-12);
+  EXPECT_EQ(frame.tube[1].bound, 3e-3);
+  EXPECT_EQ(frame.tube[2].bound, 0.25);
+}
+
+TEST(episode_frames, ghost_drives_along_the_plan_of_the_period_before) {
+  const Trace trace = straight_trace();
+  const EpisodeFrames frames(trace);
+  const auto ghost = frames.at(0.25).ghost;
+  ASSERT_TRUE(ghost);
+  EXPECT_NEAR(ghost->x, 2.5 * kStride, 1e-12);
+  EXPECT_NEAR(ghost->y, 1.0 * kKick, 1e-12);  // that plan knew nothing of the second kick
+}
+
+TEST(episode_frames, clearance_of_the_driven_path_is_the_distance_to_the_unsafe_set) {
+  const Trace trace = straight_trace();
+  const Frame frame = EpisodeFrames(trace).at(0.05);
+  ASSERT_EQ(frame.clearances.size(), frame.driven_path.size());
+  EXPECT_NEAR(frame.clearances.front(), 1.0, 1e-12);  // from the origin to the walls at -1
+}
+
+TEST(episode_frames, raw_points_are_the_stepped_ones_with_the_noise) {
+  const Trace trace = cloudy_trace();
+  Overlays overlays;
+  overlays.raw = true;
+  const Frame frame = EpisodeFrames(trace, overlays).at(0.2);
+  ASSERT_GT(frame.raw_points.size(), 2U * 4U);
+  EXPECT_EQ(row_of(frame, "raw points drawn"), "all");
+  PlanarPoint mean;
+  for (std::size_t i = 0; i < frame.raw_points.size(); ++i) mean.x += frame.raw_points[i].x;
+  // Both stages step 0.15 m ahead; noise and clouds are symmetric and as heavy on either side.
+  EXPECT_NEAR(mean.x / static_cast<double>(frame.raw_points.size()), (3.0 + 4.0) / 2.0 * kStride,
+              1e-9);
+  EXPECT_TRUE(EpisodeFrames(trace).at(0.2).raw_points.empty());
+}
+
+TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
+  Trace trace = straight_trace();
+  constexpr Eigen::Index kMany = 7000;  // a stage, three stages
+  for (StageParticles& stage : trace.steps[0].particles) {
+    stage.locations = Points::Random(3, kMany);
+    stage.weights = Eigen::VectorXd::Constant(kMany, 1.0 / kMany);
+  }
+  const EpisodeFrames frames(trace);
+  const Frame frame = frames.at(0.0);
+  EXPECT_EQ(frame.particles[0].points.size(), 3500U);
+  EXPECT_EQ(row_of(frame, "particles drawn"), "1 of 2");
+  EXPECT_EQ(row_of(frames.at(0.2), "particles drawn"), "no row particles drawn");
+}
+
+TEST(episode_frames, overlays_can_be_switched_off) {
+  const Trace trace = cloudy_trace();
+  const Frame frame = EpisodeFrames(trace, parse_overlays("none", "--overlays")).at(0.2);
+  EXPECT_TRUE(frame.particles.empty() && frame.ellipses.empty() && frame.tube.empty());
+  EXPECT_TRUE(frame.raw_points.empty() && frame.clearances.empty() && !frame.ghost);
+  EXPECT_FALSE(frame.planned_path.empty());
+}
+
+TEST(episode_frames, planning_time_has_the_deadline_as_its_limit) {
+  Trace trace = straight_trace();
+  const auto limit_of = [](const Frame& frame) { return frame.charts.at(3).limit.value(); };
+  EXPECT_EQ(limit_of(EpisodeFrames(trace).at(0.2)).value, 1000.0 * kPeriod);
+  EXPECT_THAT(limit_of(EpisodeFrames(trace).at(0.2)).label, HasSubstr("period"));
+  trace.scenario.controller.deadline = 0.05;
+  EXPECT_EQ(limit_of(EpisodeFrames(trace).at(0.2)).value, 50.0);
+  EXPECT_THAT(limit_of(EpisodeFrames(trace).at(0.2)).label, HasSubstr("deadline"));
+  EXPECT_FALSE(EpisodeFrames(trace).at(0.2).charts.at(0).limit);  // a scenario has none
+}
+
+TEST(episode_frames, a_long_history_scrolls) {
+  Trace trace = straight_trace();
+  const StepRecord step = trace.steps.back();
+  for (int k = kSteps; k < 300; ++k) {
+    trace.steps.push_back(step);
+    trace.steps.back().time = kPeriod * k;
+  }
+  const Frame frame = EpisodeFrames(trace).at(29.95);
+  EXPECT_EQ(frame.charts[0].slots, 200U);  // 20 s
+  EXPECT_EQ(frame.charts[0].values.size(), 200U);
+}
+
+TEST(overlays, lists_name_what_is_shown) {
+  const Overlays some = parse_overlays("tube,raw", "--overlays");
+  EXPECT_TRUE(some.tube && some.raw);
+  EXPECT_FALSE(some.particles || some.ellipses || some.ghost || some.path);
+  EXPECT_TRUE(parse_overlays("all", "--overlays").raw);
+  for (const char* wrong : {"", "tube,", "tubes", "all,tube"}) {
+    EXPECT_THROW((void)parse_overlays(wrong, "--overlays"), InputError) << wrong;
+  }
+  EXPECT_THROW((void)overlays_of({"x"}), std::invalid_argument);
+  // A scenario's default is that of the values.
+  const Overlays shipped = overlays_of(Scenario::Video{}.overlays);
+  const Overlays plain;
+  EXPECT_EQ(shipped.raw, plain.raw);
+  EXPECT_TRUE(shipped.particles && shipped.ellipses && shipped.tube && shipped.ghost &&
+              shipped.path);
+}
+
+}  // namespace
+}  // namespace qsmpc
