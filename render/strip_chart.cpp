@@ -30,7 +30,8 @@ Plot plot_of(const StripChart& chart, const PixelRectangle& area, const HudStyle
             .curve_width = 0.0,
             .upper = fmt::format("{:.3g}", chart.upper),
             .lower = fmt::format("{:.3g}", chart.lower)};
-  const double labels = std::max(style.small.width(plot.upper), style.small.width(plot.lower));
+  // The same for all charts, so that their time axes are in line.
+  const double labels = style.small.width("-0.785");
   plot.curve_width = area.width - labels - 3.0 * kInset;
   return plot;
 }
@@ -63,10 +64,15 @@ void draw_limit(const StripChart& chart, const Plot& plot, const HudStyle& style
   for (double x = plot.ground.x; x < end; x += 2.0 * kDash) {
     fill_rectangle(image, {x, y - 0.5, std::min(kDash, end - x), 1.0}, hud_colour::kLimit);
   }
+  // At the end of the time axis, where the curve is last, and on a ground of its own.
   const double letters = style.small.size();
-  const bool above = y - letters > plot.ground.y;
-  draw_text(image, style.small, chart.limit->label,
-            {plot.ground.x + kInset, above ? y - 3.0 : y + letters}, hud_colour::kText);
+  const double width = style.small.width(chart.limit->label) + 2.0 * kInset;
+  const bool above = y - 1.2 * letters > plot.ground.y;
+  const double top = above ? y - 1.2 * letters - 1.0 : y + 2.0;
+  fill_rectangle(image, {end - width, top, width, 1.2 * letters},
+                 hud_colour::kBand.with_alpha(0.7F));
+  draw_text(image, style.small, chart.limit->label, {end - width + kInset, top + letters},
+            hud_colour::kLimit);
 }
 
 }  // namespace
@@ -101,9 +107,6 @@ void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const
   draw_text(image, style.small, plot.lower,
             {right - style.small.width(plot.lower), ground.y + ground.height - kInset},
             hud_colour::kFaintText);
-  if (chart.limit) {
-    draw_limit(chart, plot, style, image);
-  }
   std::vector<PixelPoint> points;
   for (std::size_t i = 0; i < chart.values.size(); ++i) {
     points.push_back(point_in(plot, chart, i, chart.values[i]));
@@ -111,6 +114,9 @@ void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const
   draw_graph(image, points, std::max(1.8 * style.scale, 1.2), colour);
   if (!points.empty() && std::isfinite(points.back().y)) {
     fill_circle(image, points.back(), std::max(3.0 * style.scale, 2.0), colour);
+  }
+  if (chart.limit) {
+    draw_limit(chart, plot, style, image);
   }
 }
 
