@@ -125,9 +125,8 @@ std::string to_yaml(const Scenario& scenario) {
   out += controller_text(scenario.controller, system.inputs);
   out += fmt::format("limit: {{steps: {}, stop_when_unsafe: {}}}\n", scenario.step_limit,
                      scenario.stop_when_unsafe);
-  out +=
-      fmt::format("video: {{camera: {}, size: {}x{}, fps: {}, overlays: [{}]}}\n", video.camera,
-                  video.width, video.height, video.fps, fmt::join(video.overlays, ", "));
+  out += fmt::format("video: {{camera: {}, size: {}x{}, fps: {}, overlays: [{}]}}\n", video.camera,
+                     video.width, video.height, video.fps, fmt::join(video.overlays, ", "));
   return out;
 }
 
