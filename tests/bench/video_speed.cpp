@@ -21,6 +21,7 @@
 #include "render/gl_functions.hpp"
 #include "render/hud.hpp"
 #include "render/offscreen_context.hpp"
+#include "render/palette.hpp"
 #include "render/scene_painter.hpp"
 #include "render/smoothing.hpp"
 #include "render/vehicle.hpp"
@@ -188,7 +189,9 @@ class PartByPart {
     glFinish();
   }
   void paint(const Frame& frame, const View& view) {
-    painter_.paint(frame, view, vehicle_.shadows());
+    std::vector<ColouredPoint> ghost;
+    if (frame.ghost) ghost = vehicle_.ghost(*frame.ghost, palette::kGhost);
+    painter_.paint(frame, view, vehicle_.shadows(), ghost);
     glFinish();
   }
 
