@@ -11,7 +11,7 @@ namespace {
 unsigned char blended(unsigned char below, float above, float share) {
   const float value =
       static_cast<float>(below) + share * (255.0F * above - static_cast<float>(below));
-  return static_cast<unsigned char>(std::lround(value));
+  return static_cast<unsigned char>(value + 0.5F);  // to the nearest: it is not negative
 }
 
 // `x` and `y` lie in the image.

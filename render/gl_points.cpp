@@ -23,7 +23,7 @@ struct Vertex {
 };
 
 unsigned char byte_of(float value) {
-  return static_cast<unsigned char>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+  return static_cast<unsigned char>(255.0F * std::clamp(value, 0.0F, 1.0F) + 0.5F);
 }
 
 std::array<unsigned char, 4> bytes_of(const Colour& colour) {

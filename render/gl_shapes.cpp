@@ -115,19 +115,6 @@ FlatDrawing::~FlatDrawing() {
 
 void write_depth(bool on) { glDepthMask(on ? GL_TRUE : GL_FALSE); }
 
-void set_fog(double begin, double end, const Colour& colour) {
-  const std::array<float, 4> value{colour.red, colour.green, colour.blue, 1.0F};
-  // Signed distance, not its absolute value: lines that begin behind the camera would drown in fog.
-  glFogi(GL_FOG_DISTANCE_MODE_NV, GL_EYE_PLANE);
-  glFogi(GL_FOG_MODE, GL_LINEAR);
-  glFogf(GL_FOG_START, static_cast<float>(begin));
-  glFogf(GL_FOG_END, static_cast<float>(end));
-  glFogfv(GL_FOG_COLOR, value.data());
-  glEnable(GL_FOG);
-}
-
-void clear_fog() { glDisable(GL_FOG); }
-
 void begin_single_coverage() {
   glClearStencil(0);
   glClear(GL_STENCIL_BUFFER_BIT);
@@ -137,27 +124,6 @@ void begin_single_coverage() {
 }
 
 void end_single_coverage() { glDisable(GL_STENCIL_TEST); }
-
-void draw_background(const Colour& top, const Colour& bottom) {
-  glMatrixMode(GL_PROJECTION);
-  glPushMatrix();
-  glLoadIdentity();
-  glMatrixMode(GL_MODELVIEW);
-  glPushMatrix();
-  glLoadIdentity();
-  glBegin(GL_QUADS);
-  set_colour(bottom);
-  glVertex3d(-1.0, -1.0, 1.0);
-  glVertex3d(1.0, -1.0, 1.0);
-  set_colour(top);
-  glVertex3d(1.0, 1.0, 1.0);
-  glVertex3d(-1.0, 1.0, 1.0);
-  glEnd();
-  glPopMatrix();
-  glMatrixMode(GL_PROJECTION);
-  glPopMatrix();
-  glMatrixMode(GL_MODELVIEW);
-}
 
 void draw_rectangle(const PlanarRectangle& area, double height, const Colour& colour) {
   set_colour(colour);

@@ -22,16 +22,9 @@ class FlatDrawing {
 /// Whether what is drawn next hides what is drawn later behind it.
 void write_depth(bool on);
 
-/// From `begin` to `end` metres along the line of sight, colours go over into `colour`.
-void set_fog(double begin, double end, const Colour& colour);
-void clear_fog();
-
 /// Between these two calls a pixel is drawn once only, whatever covers it how often.
 void begin_single_coverage();
 void end_single_coverage();
-
-/// Fills what nothing has been drawn to with a gradient between the upper and the lower edge.
-void draw_background(const Colour& top, const Colour& bottom);
 
 /// A rectangle lying at `height` metres.
 void draw_rectangle(const PlanarRectangle& area, double height, const Colour& colour);

@@ -8,6 +8,7 @@
 
 #include "render/belief_painter.hpp"
 #include "render/gl_shapes.hpp"
+#include "render/ground_shapes.hpp"
 #include "render/palette.hpp"
 #include "render/shadow.hpp"
 
@@ -190,15 +191,17 @@ void ScenePainter::paint_stripes(double scale) const {
 }
 
 void ScenePainter::paint_ground(const View& view) const {
-  draw_background(palette::kSky, palette::kHorizon);
-  set_fog(kFogBegin * view.distance, kFogEnd * view.distance, palette::kHorizon);
+  // A camera may stand somewhat outside of the region; there is ground about it all the same.
+  draw_sky(view, 0.5 * kGroundReach, palette::kSky, palette::kHorizon);
+  const Fog fog{kFogBegin * view.distance, kFogEnd * view.distance, palette::kHorizon};
   const PlanarRectangle all = grown(region_, kGroundReach);
-  draw_rectangle(all, 0.0, palette::kOuterGround);
+  const PlanarRectangle safe = clipped_to(world_.bounds, all);
+  draw_ground_around(view, safe, all, palette::kOuterGround, fog);
   std::vector<SpacePoint> stripes;
   append_stripes(grown(region_, kStripedReach), 0.0, stripe_spacing(region_), stripes);
-  draw_segments(stripes, 1.0, palette::kOuterStripe);
-  draw_rectangle(clipped_to(world_.bounds, all), 0.0, palette::kSafeGround);
-  draw_segments(grid_lines(region_), 1.0, palette::kGridLine);
+  draw_fading_segments(view, stripes, 1.0, palette::kOuterStripe, fog);
+  draw_ground(view, safe, palette::kSafeGround, fog);
+  draw_fading_segments(view, grid_lines(region_), 1.0, palette::kGridLine, fog);
 }
 
 void ScenePainter::paint_shadows(
@@ -245,7 +248,6 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   paint_solids();
   write_depth(false);
   paint_ground(view);
-  clear_fog();
   paint_target_mark();
   paint_shadows(vehicle_shadows);
   paint_driven_path(frame, scale);
