@@ -85,7 +85,8 @@ TEST_F(WorstEpisodes, get_their_pages_and_videos_driven_again_where_no_trace_is_
   for (const std::string& video : videos) {
     const std::string own = video.substr(0, video.rfind('/'));
     EXPECT_EQ(files_in(out_ + "/" + own),
-              (std::set<std::string>{"episode.h5", "episode.mp4", "report.html", "summary.json"}));
+              (std::set<std::string>{"episode.h5", "episode.mp4", "report.html", "summary.json",
+                                     "video.json"}));
     EXPECT_THAT(page(), HasSubstr("href=\"./" + own + "/report.html\">page<"));
     EXPECT_THAT(page(), HasSubstr("href=\"./" + video + "\">video<"));
   }
