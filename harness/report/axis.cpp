@@ -21,7 +21,7 @@ std::string linear_label(double value, double step) {
   constexpr double kLargestPlain = 1e6;
   constexpr double kSmallestPlainStep = 1e-4;
   if (std::abs(value) < step * kRounding) return "0";
-  if (std::abs(value) >= kLargestPlain || step < kSmallestPlainStep) return format_number(value, 3);
+  if (std::abs(value) >= kLargestPlain || step < kSmallestPlainStep) return format_short(value, 3);
   const double decimals = -std::floor(std::log10(step) + kRounding);
   return format_fixed(value, static_cast<int>(std::max(0.0, decimals)));
 }
