@@ -98,6 +98,7 @@
 
 namespace qsmpc {
 
+// A declared name cannot stand in parentheses. NOLINTNEXTLINE(bugprone-macro-parentheses)
 #define QSMPC_DECLARE_GL(name) extern decltype(&::name) name;
 QSMPC_GL_FUNCTIONS(QSMPC_DECLARE_GL)
 #undef QSMPC_DECLARE_GL

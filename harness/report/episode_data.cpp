@@ -253,7 +253,8 @@ class EpisodeData {
           const double root = std::sqrt(std::max(measure.weights[i] / heaviest, 0.0));
           sizes.push_back(root <= 1.0 ? static_cast<std::uint8_t>(std::lround(255.0 * root)) : 0);
         }
-        counts.push_back(static_cast<double>((measure.size() + every - 1) / every));
+        const Eigen::Index kept = (measure.size() + every - 1) / every;
+        counts.push_back(static_cast<double>(kept));
       }
     }
     return {{"xLower", area.x_lower},
