@@ -60,6 +60,17 @@ void draw_vertices(GLenum primitive, const std::vector<ColouredPoint>& points) {
   glEnd();
 }
 
+// A rectangle lying at `height` metres.
+void draw_rectangle(const PlanarRectangle& area, double height, const Colour& colour) {
+  set_colour(colour);
+  glBegin(GL_QUADS);
+  glVertex3d(area.x_lower, area.y_lower, height);
+  glVertex3d(area.x_upper, area.y_lower, height);
+  glVertex3d(area.x_upper, area.y_upper, height);
+  glVertex3d(area.x_lower, area.y_upper, height);
+  glEnd();
+}
+
 void load_view(const View& view) {
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();
@@ -124,16 +135,6 @@ void begin_single_coverage() {
 }
 
 void end_single_coverage() { glDisable(GL_STENCIL_TEST); }
-
-void draw_rectangle(const PlanarRectangle& area, double height, const Colour& colour) {
-  set_colour(colour);
-  glBegin(GL_QUADS);
-  glVertex3d(area.x_lower, area.y_lower, height);
-  glVertex3d(area.x_upper, area.y_lower, height);
-  glVertex3d(area.x_upper, area.y_upper, height);
-  glVertex3d(area.x_lower, area.y_upper, height);
-  glEnd();
-}
 
 void draw_box(const PlanarRectangle& area, double height, const Colour& colour) {
   const PlanarPoint south_west{area.x_lower, area.y_lower};

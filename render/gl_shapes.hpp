@@ -26,9 +26,6 @@ void write_depth(bool on);
 void begin_single_coverage();
 void end_single_coverage();
 
-/// A rectangle lying at `height` metres.
-void draw_rectangle(const PlanarRectangle& area, double height, const Colour& colour);
-
 /// An upright box from the ground, its sides shaded as if the sun stood in the south-west.
 void draw_box(const PlanarRectangle& area, double height, const Colour& colour);
 

@@ -40,26 +40,28 @@ std::string video_json(const VideoTimings& timings) {
 }
 
 VideoTimings read_video_timings(const std::string& path) {
-  std::ifstream file(path);
-  std::string found = "a file that cannot be read";
-  if (file) {
-    try {
-      const nlohmann::json json = nlohmann::json::parse(file);
-      return {.frames = json.at("frames"),
-              .fps = json.at("fps"),
-              .from = json.at("from"),
-              .speed = json.at("speed"),
-              .width = json.at("width"),
-              .height = json.at("height"),
-              .codec = json.at("codec"),
-              .wall_s = json.at("wall_s"),
-              .drawing_ms = json.at("drawing_ms"),
-              .encoding_ms = json.at("encoding_ms"),
-              .simulation_ms = json.at("simulation_ms"),
-              .gl = json.at("gl")};
-    } catch (const nlohmann::json::exception& error) {
-      found = error.what();
-    }
+  std::string found;
+  try {
+    std::ifstream file(path);
+    const nlohmann::json json = nlohmann::json::parse(file);
+    VideoTimings timings{.frames = json.at("frames"),
+                         .fps = json.at("fps"),
+                         .from = json.at("from"),
+                         .speed = json.at("speed"),
+                         .width = json.at("width"),
+                         .height = json.at("height"),
+                         .codec = json.at("codec"),
+                         .wall_s = json.at("wall_s"),
+                         .drawing_ms = json.at("drawing_ms"),
+                         .encoding_ms = json.at("encoding_ms"),
+                         .simulation_ms = json.at("simulation_ms"),
+                         .gl = json.at("gl")};
+    if (timings.speed > 0.0 && timings.from >= 0.0) return timings;
+    found = fmt::format("speed {} from {} s", timings.speed, timings.from);
+  } catch (const nlohmann::json::exception& error) {
+    found = error.what();
+  } catch (const std::ios_base::failure& error) {
+    found = error.what();
   }
   throw InputError({.file = path, .found = found, .expected = "what qsmpc render wrote"});
 }

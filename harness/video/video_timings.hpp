@@ -13,7 +13,7 @@ struct VideoTimings {
   double speed = 1.0;          ///< s of the episode in a second of the video
   int width = 0;               ///< pixels
   int height = 0;              ///< pixels
-  std::string codec;           ///< as ffprobe names it, e.g. "h264"
+  std::string codec{};         ///< as ffprobe names it, e.g. "h264"
   double wall_s = 0.0;         ///< s, from the first frame's beginning to the finished file
   double drawing_ms = 0.0;     ///< ms a frame in a thread that draws; threads draw side by side
   double encoding_ms = 0.0;    ///< ms a frame that conversion and encoder keep their thread
