@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
+#include <new>
 #include <vector>
 
 namespace qsmpc {
@@ -18,8 +19,10 @@ void make_room(std::vector<T>& entries, std::size_t count) {
 /// Memory for doubles that is given out piece by piece and taken back all at once.
 class Arena {
  public:
-  /// `count` doubles, which are whatever they were.
+  /// `count` doubles, which are whatever they were, from the beginning of a cache line on: vectors
+  /// as wide as a line then never reach over two.
   double* take(std::size_t count) {
+    count = (count + kLine - 1) / kLine * kLine;
     while (at_ < slabs_.size() && used_ + count > slabs_[at_].size) {
       ++at_;
       used_ = 0;
@@ -45,14 +48,20 @@ class Arena {
   }
 
  private:
+  static constexpr std::size_t kLine = 8;                     // doubles
   static constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
+  static constexpr std::align_val_t kAlignment{kLine * sizeof(double)};
+  struct Release {
+    void operator()(double* data) const { ::operator delete[](data, kAlignment); }
+  };
   struct Slab {
     std::size_t size;
-    std::unique_ptr<double[]> data;
+    std::unique_ptr<double[], Release> data;
   };
   void add_slab(std::size_t count) {
     const std::size_t size = std::max(kSlab, count);
-    slabs_.push_back({.size = size, .data = std::make_unique<double[]>(size)});
+    slabs_.push_back(
+        {.size = size, .data = std::unique_ptr<double[], Release>(new (kAlignment) double[size])});
   }
 
   std::vector<Slab> slabs_;

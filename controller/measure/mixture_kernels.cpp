@@ -117,10 +117,7 @@ MixtureCutResult cut_in(const MixtureCut& cut, std::size_t begin, std::size_t en
 }
 
 template <int Dim>
-MixtureParts list_in(const MixtureCell& cell, std::size_t size, double* mass,
-                     std::int64_t* source) {
-  const VectorTag d;
-  const hn::RebindToSigned<VectorTag> names;
+MixtureParts list_in(const MixtureCell& cell, std::size_t size, double* mass, double* source) {
   Sum total;
   Sum first[Dim];
   Sum noise[Dim];
@@ -146,10 +143,8 @@ MixtureParts list_in(const MixtureCell& cell, std::size_t size, double* mass,
         noise[a].add(part, factor * moved);
       }
       const Mask some = hn::Gt(value, zeros());
-      hn::StoreU(hn::Compress(value, some), d, mass + parts.count);
-      hn::StoreU(hn::Compress(hn::LoadU(names, cell.source + i), hn::RebindMask(names, some)),
-                 names, source + parts.count);
-      parts.count += hn::CountTrue(d, some);
+      store_chosen(value, some, mass + parts.count);
+      parts.count += store_chosen(load(cell.source + i), some, source + parts.count);
     }
   }
   parts.mass = total.total();
@@ -160,8 +155,47 @@ MixtureParts list_in(const MixtureCell& cell, std::size_t size, double* mass,
   return parts;
 }
 
+void copy_parts(const MixtureCopy& copy) {
+  const VectorTag d;
+  const std::size_t from_stride = copy.stride;
+  const std::size_t to_stride = copy.to_stride;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < copy.size && count < copy.parts; i += kWidth) {
+    Mask some = hn::Gt(load(copy.intervals[0].upper + i), load(copy.intervals[0].lower + i));
+    for (int a = 1; a < copy.dim; ++a) {
+      some = hn::And(some,
+                     hn::Gt(load(copy.intervals[a].upper + i), load(copy.intervals[a].lower + i)));
+    }
+    const std::size_t found = hn::CountTrue(d, some);
+    if (found == 0) continue;
+    store_chosen(load(copy.source + i), some, copy.to_source + count);
+    store_chosen(load(copy.weight + i), some, copy.to_weight + count);
+    for (int a = 0; a < copy.dim; ++a) {
+      store_chosen(load(copy.position + a * from_stride + i), some,
+                   copy.to_position + a * to_stride + count);
+      for (int c = 0; c < 3; ++c) {
+        const std::size_t to = c * to_stride + count;
+        const std::size_t from = c * from_stride + i;
+        store_chosen(load(copy.intervals[a].lower + from), some, copy.to_edges[a][0] + to);
+        store_chosen(load(copy.intervals[a].upper + from), some, copy.to_edges[a][1] + to);
+      }
+    }
+    count += found;
+  }
+  for (std::size_t i = count; i < count + kMixturePadding; i += kWidth) {
+    store(zeros(), copy.to_source + i);
+    store(zeros(), copy.to_weight + i);
+    for (int a = 0; a < copy.dim; ++a) {
+      store(zeros(), copy.to_position + a * to_stride + i);
+      for (int c = 0; c < 3; ++c) {
+        for (double* const edge : copy.to_edges[a]) store(zeros(), edge + c * to_stride + i);
+      }
+    }
+  }
+}
+
 using CutFunction = MixtureCutResult (*)(const MixtureCut&, std::size_t, std::size_t);
-using ListFunction = MixtureParts (*)(const MixtureCell&, std::size_t, double*, std::int64_t*);
+using ListFunction = MixtureParts (*)(const MixtureCell&, std::size_t, double*, double*);
 
 MixtureCutResult cut_any(const MixtureCut& cut, std::size_t begin, std::size_t end) {
   static constexpr CutFunction kByDim[kMixtureDimLimit] = {
@@ -169,8 +203,7 @@ MixtureCutResult cut_any(const MixtureCut& cut, std::size_t begin, std::size_t e
   return kByDim[cut.dim - 1](cut, begin, end);
 }
 
-MixtureParts list_any(const MixtureCell& cell, std::size_t size, double* mass,
-                      std::int64_t* source) {
+MixtureParts list_any(const MixtureCell& cell, std::size_t size, double* mass, double* source) {
   static constexpr ListFunction kByDim[kMixtureDimLimit] = {list_in<1>, list_in<2>, list_in<3>,
                                                             list_in<4>, list_in<5>, list_in<6>,
                                                             list_in<7>, list_in<8>};
@@ -186,15 +219,18 @@ namespace qsmpc {
 
 HWY_EXPORT(cut_any);
 HWY_EXPORT(list_any);
+HWY_EXPORT(copy_parts);
 
 MixtureCutResult cut_mixture(const MixtureCut& cut, std::size_t begin, std::size_t end) {
   return HWY_DYNAMIC_DISPATCH(cut_any)(cut, begin, end);
 }
 
 MixtureParts list_mixture_parts(const MixtureCell& cell, std::size_t size, double* mass,
-                                std::int64_t* source) {
+                                double* source) {
   return HWY_DYNAMIC_DISPATCH(list_any)(cell, size, mass, source);
 }
+
+void copy_mixture_parts(const MixtureCopy& copy) { HWY_DYNAMIC_DISPATCH(copy_parts)(copy); }
 
 }  // namespace qsmpc
 #endif

@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 
 namespace qsmpc {
 
@@ -56,13 +55,35 @@ struct MixtureCutResult {
 /// part takes both.
 MixtureCutResult cut_mixture(const MixtureCut& cut, std::size_t begin, std::size_t end);
 
+/// Some of the sources of a cell, which go on in arrays of their own.
+struct MixtureCopy {
+  int dim = 0;
+  std::array<MixtureInterval, kMixtureDimLimit> intervals{};  ///< of the cell, by axis
+  const double* source = nullptr;                             ///< names of the sources
+  const double* weight = nullptr;
+  const double* position = nullptr;  ///< dim x stride
+  std::size_t size = 0;              ///< of the arrays above
+  std::size_t stride = 0;
+  std::size_t parts = 0;  ///< sources with a part in the cell
+  /// Where they go to: as above, with their own stride, at least `parts` rounded up to
+  /// kMixturePadding, plus kMixturePadding.
+  double* to_source = nullptr;
+  double* to_weight = nullptr;
+  double* to_position = nullptr;
+  std::array<std::array<double*, 2>, kMixtureDimLimit> to_edges{};  ///< lower and upper, by axis
+  std::size_t to_stride = 0;
+};
+
+/// Copies the sources that have a part in the cell, in their order, and zeros after them.
+void copy_mixture_parts(const MixtureCopy& copy);
+
 /// A finished cell.
 struct MixtureCell {
   int dim = 0;
   std::array<MixtureInterval, kMixtureDimLimit> intervals{};  ///< by axis
   std::array<const double*, kMixtureDimLimit> position{};     ///< y, by axis
   const double* weight = nullptr;
-  const std::int64_t* source = nullptr;  ///< names of the sources
+  const double* source = nullptr;  ///< names of the sources
   std::size_t stride = 0;
 };
 
@@ -76,6 +97,6 @@ struct MixtureParts {
 /// Writes mass and name of every part of the cell among `size` sources to `mass` and `source`,
 /// which have room for `size` rounded up to kMixturePadding, plus kMixturePadding.
 MixtureParts list_mixture_parts(const MixtureCell& cell, std::size_t size, double* mass,
-                                std::int64_t* source);
+                                double* source);
 
 }  // namespace qsmpc

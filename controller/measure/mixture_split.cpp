@@ -50,7 +50,7 @@ std::uint32_t rounded(double spread) {
 struct Table {
   std::size_t size = 0;
   std::size_t stride = 0;
-  std::int64_t* name = nullptr;
+  double* name = nullptr;  // whole numbers, as doubles: they move together with the rest
   double* weight = nullptr;
   double* position = nullptr;
 };
@@ -72,14 +72,6 @@ struct Split {
   MixtureCut cut{};
   std::size_t first_task = 0;
   std::size_t tasks = 0;
-};
-
-/// A table that takes those sources of another that have a part in a cell.
-struct TableCopy {
-  Table from;
-  Table to;
-  std::array<MixtureInterval, kMixtureDimLimit> intervals{};     // of the cell, in `from`
-  std::array<std::array<double*, 2>, kMixtureDimLimit> edges{};  // lower, upper, in `to`
 };
 
 }  // namespace
@@ -107,7 +99,6 @@ struct MixtureSplitter::Work {
   void prepare(int index);
   void finish(const Split& split);
   void give_own_table(Cell& cell, std::size_t parts);
-  void fill(const TableCopy& copy) const;
   void list(const Executor& run, MixtureCells& out);
   [[nodiscard]] MixtureParts list_cell(std::size_t n);
   void describe(MixtureCells& out);
@@ -131,10 +122,10 @@ struct MixtureSplitter::Work {
   std::vector<Split> splits;
   std::vector<std::pair<int, std::size_t>> tasks;  // split and first source
   std::vector<MixtureCutResult> results;
-  std::vector<TableCopy> copies;    // of this round
+  std::vector<MixtureCopy> copies;  // to the tables made in this round
   std::vector<std::size_t> places;  // of a cell's parts in the following two
   std::vector<double> part_mass;
-  std::vector<std::int64_t> part_source;
+  std::vector<double> part_source;
   std::vector<MixtureParts> listed;  // by cell
 };
 
@@ -146,10 +137,10 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
   const std::size_t size = weights.size();
   const std::size_t stride = padded(size);
   Table table{.size = size, .stride = stride};
-  table.name = reinterpret_cast<std::int64_t*>(arena.take(stride));
+  table.name = arena.take(stride);
   table.weight = arena.take(stride);
   table.position = arena.take(dim * stride);
-  std::iota(table.name, table.name + stride, std::int64_t{0});
+  std::iota(table.name, table.name + stride, 0.0);
   std::copy(weights.begin(), weights.end(), table.weight);
   std::fill(table.weight + size, table.weight + stride, 0.0);
   for (int a = 0; a < dim; ++a) {
@@ -172,8 +163,9 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
       for (std::size_t i = 0; i < size; ++i) position[i] += entry * (row[i] - centre[b]);
     }
     double* const all = arena.take(3 * stride);
+    std::fill(all, all + 3 * stride, 0.0);
     const double variance = deviations[a] * deviations[a];
-    for (std::size_t i = 0; i < stride; ++i) {
+    for (std::size_t i = 0; i < size; ++i) {
       const double y = position[i];
       all[i] = 1.0;
       all[stride + i] = y;
@@ -315,50 +307,30 @@ void MixtureSplitter::Work::give_own_table(Cell& cell, std::size_t parts) {
       static_cast<double>(parts) > kSparse * static_cast<double>(old.size)) {
     return;
   }
-  const std::size_t stride = padded(parts);
-  TableCopy copy{.from = old, .to = {.size = parts, .stride = stride}};
-  copy.to.name = reinterpret_cast<std::int64_t*>(arena.take(stride));
-  copy.to.weight = arena.take(stride);
-  copy.to.position = arena.take(dim * stride);
+  const std::size_t stride = padded(parts) + kMixturePadding;
+  Table own{.size = parts, .stride = stride};
+  own.name = arena.take(stride);
+  own.weight = arena.take(stride);
+  own.position = arena.take(dim * stride);
+  MixtureCopy copy{.dim = dim,
+                   .intervals = cell.intervals,
+                   .source = old.name,
+                   .weight = old.weight,
+                   .position = old.position,
+                   .size = old.size,
+                   .stride = old.stride,
+                   .parts = parts,
+                   .to_source = own.name,
+                   .to_weight = own.weight,
+                   .to_position = own.position,
+                   .to_stride = stride};
   for (int a = 0; a < dim; ++a) {
-    copy.intervals[a] = cell.intervals[a];
-    for (double*& edge : copy.edges[a]) edge = arena.take(3 * stride);
-    cell.intervals[a] = {.lower = copy.edges[a][0], .upper = copy.edges[a][1]};
+    for (double*& edge : copy.to_edges[a]) edge = arena.take(3 * stride);
+    cell.intervals[a] = {.lower = copy.to_edges[a][0], .upper = copy.to_edges[a][1]};
   }
   cell.table = tables.size();
-  tables.push_back(copy.to);
+  tables.push_back(own);
   copies.push_back(copy);
-}
-
-void MixtureSplitter::Work::fill(const TableCopy& copy) const {
-  const Table& from = copy.from;
-  const Table& to = copy.to;
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < from.size && count < to.size; ++i) {
-    bool some = true;
-    for (int a = 0; a < dim; ++a) some &= copy.intervals[a].upper[i] > copy.intervals[a].lower[i];
-    if (!some) continue;
-    to.name[count] = from.name[i];
-    to.weight[count] = from.weight[i];
-    for (int a = 0; a < dim; ++a) {
-      to.position[a * to.stride + count] = from.position[a * from.stride + i];
-      for (int c = 0; c < 3; ++c) {
-        copy.edges[a][0][c * to.stride + count] = copy.intervals[a].lower[c * from.stride + i];
-        copy.edges[a][1][c * to.stride + count] = copy.intervals[a].upper[c * from.stride + i];
-      }
-    }
-    ++count;
-  }
-  for (; count < to.stride; ++count) {
-    to.weight[count] = 0.0;
-    to.name[count] = 0;
-    for (int a = 0; a < dim; ++a) {
-      to.position[a * to.stride + count] = 0.0;
-      for (int c = 0; c < 3; ++c) {
-        for (double* const edge : copy.edges[a]) edge[c * to.stride + count] = 0.0;
-      }
-    }
-  }
 }
 
 /// From the noise's axes, of which the lower triangle is given, to the state's.
@@ -492,7 +464,7 @@ void MixtureSplitter::split(const Points& sources, const Eigen::VectorXd& weight
     run(static_cast<int>(work.tasks.size()), task);
     work.copies.clear();
     for (const Split& split : work.splits) work.finish(split);
-    const auto fill = [&work](int k) { work.fill(work.copies[k]); };
+    const auto fill = [&work](int k) { copy_mixture_parts(work.copies[k]); };
     run(static_cast<int>(work.copies.size()), fill);
   }
   work.list(run, out);

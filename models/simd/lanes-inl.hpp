@@ -21,6 +21,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include <hwy/highway.h>
 
@@ -66,6 +67,27 @@ HWY_INLINE void store_first(std::size_t count, Vector value, double* to) {
   double lane[kWidth];
   store(value, lane);
   for (std::size_t i = 0; i < count; ++i) to[i] = lane[i];
+#endif
+}
+
+/// Stores those lanes of `value` that are chosen side by side, and returns how many they are; what
+/// follows them, up to kWidth doubles from `to` on, may be overwritten. (Highway's own Compress
+/// copies its table of permutations to the stack each time, where compilers do not see through it.)
+HWY_INLINE std::size_t store_chosen(Vector value, Mask chosen, double* to) {
+#if HWY_ARCH_X86 && HWY_TARGET <= HWY_AVX3
+  _mm512_storeu_pd(to, _mm512_maskz_compress_pd(chosen.raw, value.raw));
+  return hn::CountTrue(VectorTag(), chosen);
+#else
+  double lane[kWidth];
+  std::uint8_t bits[8] = {};
+  store(value, lane);
+  hn::StoreMaskBits(VectorTag(), chosen, bits);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < kWidth; ++i) {
+    to[count] = lane[i];
+    count += (bits[0] >> i) & 1U;
+  }
+  return count;
 #endif
 }
 
