@@ -3,27 +3,46 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
 #include <new>
 #include <vector>
 
 namespace qsmpc {
 
+/// Gives out memory from the beginning of a cache line on, so that vectors as wide as a line never
+/// reach over two.
+template <class T>
+struct LineAllocator {
+  using value_type = T;
+  static constexpr std::align_val_t kLine{64};
+
+  LineAllocator() = default;
+  template <class Other>
+  // NOLINTNEXTLINE(google-explicit-constructor): containers convert their allocators.
+  LineAllocator(const LineAllocator<Other>&) {}
+  [[nodiscard]] T* allocate(std::size_t count) {
+    return static_cast<T*>(::operator new(count * sizeof(T), kLine));
+  }
+  void deallocate(T* data, std::size_t) { ::operator delete(data, kLine); }
+  bool operator==(const LineAllocator&) const { return true; }
+};
+
+/// Doubles in whole cache lines.
+using LineVector = std::vector<double, LineAllocator<double>>;
+
 /// Makes room for `count` entries. Where there is too little, for twice as many, so that
 /// counts which vary from use to use soon cause no more allocations.
-template <class T>
-void make_room(std::vector<T>& entries, std::size_t count) {
+template <class T, class Allocator>
+void make_room(std::vector<T, Allocator>& entries, std::size_t count) {
   if (entries.capacity() < count) entries.reserve(2 * count);
 }
 
 /// Memory for doubles that is given out piece by piece and taken back all at once.
 class Arena {
  public:
-  /// `count` doubles, which are whatever they were, from the beginning of a cache line on: vectors
-  /// as wide as a line then never reach over two.
+  /// `count` doubles, which are whatever they were, from the beginning of a cache line on.
   double* take(std::size_t count) {
     count = (count + kLine - 1) / kLine * kLine;
-    while (at_ < slabs_.size() && used_ + count > slabs_[at_].size) {
+    while (at_ < slabs_.size() && used_ + count > slabs_[at_].size()) {
       ++at_;
       used_ = 0;
     }
@@ -31,7 +50,7 @@ class Arena {
       add_slab(count);
       used_ = 0;
     }
-    double* const begin = slabs_[at_].data.get() + used_;
+    double* const begin = slabs_[at_].data() + used_;
     used_ += count;
     given_ += count;
     return begin;
@@ -40,7 +59,7 @@ class Arena {
   void reset() {
     most_ = std::max(most_, given_);
     std::size_t room = 0;
-    for (const Slab& slab : slabs_) room += slab.size;
+    for (const LineVector& slab : slabs_) room += slab.size();
     if (room < most_ + most_ / 2) add_slab(3 * most_ - room);
     at_ = 0;
     used_ = 0;
@@ -48,23 +67,11 @@ class Arena {
   }
 
  private:
-  static constexpr std::size_t kLine = 8;                     // doubles
+  static constexpr std::size_t kLine = 64 / sizeof(double);
   static constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
-  static constexpr std::align_val_t kAlignment{kLine * sizeof(double)};
-  struct Release {
-    void operator()(double* data) const { ::operator delete[](data, kAlignment); }
-  };
-  struct Slab {
-    std::size_t size;
-    std::unique_ptr<double[], Release> data;
-  };
-  void add_slab(std::size_t count) {
-    const std::size_t size = std::max(kSlab, count);
-    slabs_.push_back(
-        {.size = size, .data = std::unique_ptr<double[], Release>(new (kAlignment) double[size])});
-  }
+  void add_slab(std::size_t count) { slabs_.emplace_back(std::max(kSlab, count)); }
 
-  std::vector<Slab> slabs_;
+  std::vector<LineVector> slabs_;
   std::size_t at_ = 0;
   std::size_t used_ = 0;   // of the slab at hand
   std::size_t given_ = 0;  // in all

@@ -60,10 +60,9 @@ struct Cell {
   std::array<MixtureInterval, kMixtureDimLimit> intervals{};
   MixtureMoments moments;
   int axis = 0;
-  double at = 0.0;        // the mean along the axis
-  double spread = 0.0;    // Σ mass (x − mean)² along the axis, as a share of the mixture's
-                          // second moment; 0: not to be split
-  std::uint32_t key = 0;  // rounded(spread)
+  double at = 0.0;  // the mean along the axis
+  // Σ mass (x − mean)² along the axis, as a share of the mixture's second moment.
+  double spread = 0.0;
 };
 
 /// A split that is under way.
@@ -86,6 +85,7 @@ struct MixtureSplitter::Work {
     for (Eigen::MatrixXd* matrix : {&mixture_covariance, &cells_covariance, &product})
       matrix->setZero(dim, dim);
     cell_list.reserve(limit);
+    keys.reserve(limit);
     tables.reserve(2 * limit + 1);
     round.reserve(limit);
     splits.reserve(limit);
@@ -94,7 +94,7 @@ struct MixtureSplitter::Work {
   }
 
   void start(const Points& sources, const Eigen::VectorXd& weights);
-  void choose_axis(Cell& cell) const;
+  void choose_axis(std::size_t n);
   bool begin_round();
   void prepare(int index);
   void finish(const Split& split);
@@ -118,6 +118,7 @@ struct MixtureSplitter::Work {
   Arena arena;
   std::vector<Table> tables;
   std::vector<Cell> cell_list;
+  std::vector<std::uint32_t> keys;  // of the cells: rounded(spread), or 0: not to be split
   std::vector<int> round;
   std::vector<Split> splits;
   std::vector<std::pair<int, std::size_t>> tasks;  // split and first source
@@ -134,6 +135,7 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
   arena.reset();
   tables.clear();
   cell_list.clear();
+  keys.clear();
   const std::size_t size = weights.size();
   const std::size_t stride = padded(size);
   Table table{.size = size, .stride = stride};
@@ -186,20 +188,21 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
     }
   }
   tables.push_back(table);
-  choose_axis(cell);
   cell_list.push_back(cell);
+  keys.push_back(0);
+  choose_axis(0);
 }
 
-void MixtureSplitter::Work::choose_axis(Cell& cell) const {
-  cell.spread = 0.0;
-  cell.key = 0;
+void MixtureSplitter::Work::choose_axis(std::size_t n) {
+  Cell& cell = cell_list[n];
+  keys[n] = 0;
   for (int a = 0; a < dim; ++a) {
     const double mean = cell.moments.first[a] / cell.moments.mass;
     const double spread = (cell.moments.second[a] - mean * cell.moments.first[a]) / second_moment;
     if (!(spread > kNoSpread)) continue;
     const std::uint32_t key = rounded(spread);
-    if (key > cell.key) {
-      cell.key = key;
+    if (key > keys[n]) {
+      keys[n] = key;
       cell.axis = a;
       cell.at = mean;
       cell.spread = spread;
@@ -213,20 +216,15 @@ bool MixtureSplitter::Work::begin_round() {
   tasks.clear();
   round.clear();
   const int left = limit - static_cast<int>(cell_list.size());
-  std::uint32_t most = 0;
-  for (const Cell& cell : cell_list) most = std::max(most, cell.key);
-  if (left <= 0 || most == 0) return false;
-  const std::uint32_t least = rounded(
-      kRoundShare *
-      std::max_element(cell_list.begin(), cell_list.end(), [](const Cell& a, const Cell& b) {
-        return a.key < b.key;
-      })->spread);
-  for (int n = 0; n < static_cast<int>(cell_list.size()); ++n) {
-    if (cell_list[n].key > 0 && cell_list[n].key >= least) round.push_back(n);
+  const auto most = std::max_element(keys.begin(), keys.end());
+  if (left <= 0 || *most == 0) return false;
+  const std::uint32_t least =
+      std::max(rounded(kRoundShare * cell_list[most - keys.begin()].spread), std::uint32_t{1});
+  for (int n = 0; n < static_cast<int>(keys.size()); ++n) {
+    if (keys[n] >= least) round.push_back(n);
   }
-  std::sort(round.begin(), round.end(), [this](int a, int b) {
-    return cell_list[a].key != cell_list[b].key ? cell_list[a].key > cell_list[b].key : a < b;
-  });
+  std::sort(round.begin(), round.end(),
+            [this](int a, int b) { return keys[a] != keys[b] ? keys[a] > keys[b] : a < b; });
   if (static_cast<int>(round.size()) > left) round.resize(left);
   std::size_t chunks = 0;
   for (const int index : round) chunks += tables[cell_list[index].table].size / kSourceChunk + 1;
@@ -240,29 +238,31 @@ bool MixtureSplitter::Work::begin_round() {
 void MixtureSplitter::Work::prepare(int index) {
   const Cell& cell = cell_list[index];
   const Table& table = tables[cell.table];
-  Split split{.cell = index, .first_task = tasks.size()};
-  split.cut = {.dim = dim,
-               .weight = table.weight,
-               .position = table.position + cell.axis * table.stride,
-               .stride = table.stride,
-               .at = cell.at,
-               .deviation = deviations[cell.axis],
-               .least_share = least_share,
-               .edge = arena.take(3 * table.stride)};
-  split.cut.intervals[0] = cell.intervals[cell.axis];
+  Split& split = splits.emplace_back();
+  split.cell = index;
+  split.first_task = tasks.size();
+  MixtureCut& cut = split.cut;
+  cut.dim = dim;
+  cut.weight = table.weight;
+  cut.position = table.position + cell.axis * table.stride;
+  cut.stride = table.stride;
+  cut.at = cell.at;
+  cut.deviation = deviations[cell.axis];
+  cut.least_share = least_share;
+  cut.edge = arena.take(3 * table.stride);
+  cut.intervals[0] = cell.intervals[cell.axis];
   for (int a = 0, b = 1; a < dim; ++a) {
-    if (a != cell.axis) split.cut.intervals[b++] = cell.intervals[a];
+    if (a != cell.axis) cut.intervals[b++] = cell.intervals[a];
   }
   for (std::size_t begin = 0; begin < table.size; begin += kSourceChunk) {
-    tasks.emplace_back(static_cast<int>(splits.size()), begin);
+    tasks.emplace_back(static_cast<int>(splits.size()) - 1, begin);
   }
   split.tasks = tasks.size() - split.first_task;
-  splits.push_back(split);
 }
 
 /// Puts the two halves in the place of the cell that was split, and at the end.
 void MixtureSplitter::Work::finish(const Split& split) {
-  MixtureCutResult sum = results[split.first_task];
+  MixtureCutResult& sum = results[split.first_task];
   for (std::size_t k = 1; k < split.tasks; ++k) {
     const MixtureCutResult& result = results[split.first_task + k];
     sum.lower.mass += result.lower.mass;
@@ -276,11 +276,13 @@ void MixtureSplitter::Work::finish(const Split& split) {
   Cell& cell = cell_list[split.cell];
   const double whole = cell.moments.mass;
   if (!(sum.lower.mass > kNoMass * whole && whole - sum.lower.mass > kNoMass * whole)) {
-    cell.spread = 0.0;
-    cell.key = 0;
+    keys[split.cell] = 0;
     return;
   }
-  Cell upper = cell;
+  const std::size_t last = cell_list.size();
+  cell_list.push_back(cell);
+  keys.push_back(0);
+  Cell& upper = cell_list[last];
   cell.moments.mass = sum.lower.mass;
   upper.moments.mass = whole - sum.lower.mass;
   for (int a = 0, b = 1; a < dim; ++a) {
@@ -294,9 +296,8 @@ void MixtureSplitter::Work::finish(const Split& split) {
   upper.intervals[upper.axis].lower = split.cut.edge;
   give_own_table(cell, sum.lower_parts);
   give_own_table(upper, sum.upper_parts);
-  choose_axis(cell);
-  choose_axis(upper);
-  cell_list.push_back(upper);
+  choose_axis(split.cell);
+  choose_axis(last);
 }
 
 /// Where few of the table's sources have a part in the cell, the cell goes on with these alone, in
@@ -312,25 +313,25 @@ void MixtureSplitter::Work::give_own_table(Cell& cell, std::size_t parts) {
   own.name = arena.take(stride);
   own.weight = arena.take(stride);
   own.position = arena.take(dim * stride);
-  MixtureCopy copy{.dim = dim,
-                   .intervals = cell.intervals,
-                   .source = old.name,
-                   .weight = old.weight,
-                   .position = old.position,
-                   .size = old.size,
-                   .stride = old.stride,
-                   .parts = parts,
-                   .to_source = own.name,
-                   .to_weight = own.weight,
-                   .to_position = own.position,
-                   .to_stride = stride};
+  MixtureCopy& copy = copies.emplace_back();
+  copy.dim = dim;
+  copy.intervals = cell.intervals;
+  copy.source = old.name;
+  copy.weight = old.weight;
+  copy.position = old.position;
+  copy.size = old.size;
+  copy.stride = old.stride;
+  copy.parts = parts;
+  copy.to_source = own.name;
+  copy.to_weight = own.weight;
+  copy.to_position = own.position;
+  copy.to_stride = stride;
   for (int a = 0; a < dim; ++a) {
     for (double*& edge : copy.to_edges[a]) edge = arena.take(3 * stride);
     cell.intervals[a] = {.lower = copy.to_edges[a][0], .upper = copy.to_edges[a][1]};
   }
   cell.table = tables.size();
   tables.push_back(own);
-  copies.push_back(copy);
 }
 
 /// From the noise's axes, of which the lower triangle is given, to the state's.

@@ -21,6 +21,46 @@ namespace HWY_NAMESPACE {
 constexpr int kGroup = 4;
 constexpr int kChains = 4;
 
+void pack_points(const Points& points, Eigen::Index begin, Eigen::Index end, PackedPoints& packed) {
+  const Eigen::Index dim = points.rows();
+  const Eigen::Index stride = packed.stride;
+  const double* const from = points.data();
+  double* const to = packed.data.data();
+  for (Eigen::Index first = 0; first < dim; first += kGroup) {
+    const Eigen::Index coordinates = std::min<Eigen::Index>(kGroup, dim - first);
+    Eigen::Index i = begin;
+#if HWY_MAX_BYTES >= 32
+    // Four points at once: the transpose of a block of four by four.
+    using Tag = hn::FixedTag<double, kGroup>;
+    const Tag d;
+    const auto row = [&](Eigen::Index axis) HWY_ATTR {
+      return axis < coordinates ? hn::LoadU(d, from + (first + axis) * points.cols() + i)
+                                : hn::Zero(d);
+    };
+    for (; i + kGroup <= end; i += kGroup) {
+      const auto x = row(0);
+      const auto y = row(1);
+      const auto z = row(2);
+      const auto w = row(3);
+      const auto even = hn::InterleaveLower(d, x, y);  // x₀ y₀ x₂ y₂
+      const auto odd = hn::InterleaveUpper(d, x, y);   // x₁ y₁ x₃ y₃
+      const auto even_rest = hn::InterleaveLower(d, z, w);
+      const auto odd_rest = hn::InterleaveUpper(d, z, w);
+      double* const point = to + i * stride + first;
+      hn::StoreU(hn::ConcatLowerLower(d, even_rest, even), d, point);
+      hn::StoreU(hn::ConcatLowerLower(d, odd_rest, odd), d, point + stride);
+      hn::StoreU(hn::ConcatUpperUpper(d, even_rest, even), d, point + 2 * stride);
+      hn::StoreU(hn::ConcatUpperUpper(d, odd_rest, odd), d, point + 3 * stride);
+    }
+#endif
+    for (; i < end; ++i) {
+      for (Eigen::Index axis = 0; axis < coordinates; ++axis) {
+        to[i * stride + first + axis] = from[(first + axis) * points.cols() + i];
+      }
+    }
+  }
+}
+
 void multiply_packed(const SparseMatrix& a, const PackedPoints& points, int begin, int end,
                      Points& out) {
   using Tag = hn::CappedTag<double, kGroup>;
@@ -53,11 +93,15 @@ void multiply_packed(const SparseMatrix& a, const PackedPoints& points, int begi
           }
         }
       }
-      for (; k < stop; ++k) {
-        const double* const point = data + static_cast<std::ptrdiff_t>(column[k]) * stride;
-        const Group factor = hn::Set(d, value[k]);
+      // What is left, without a branch that depends on how much it is: rows differ in length.
+      for (int chain = 0; a.begin[n] < stop && chain < kChains - 1; ++chain) {
+        const bool exists = k + chain < stop;
+        const int entry = exists ? k + chain : stop - 1;
+        const double* const point = data + static_cast<std::ptrdiff_t>(column[entry]) * stride;
+        const Group factor = hn::Set(d, exists ? value[entry] : 0.0);
         for (int piece = 0; piece < kPieces; ++piece) {
-          sum[0][piece] = sum[0][piece] + factor * hn::LoadU(d, point + piece * kGroupWidth);
+          sum[chain][piece] =
+              sum[chain][piece] + factor * hn::LoadU(d, point + piece * kGroupWidth);
         }
       }
       double result[kGroup];
@@ -78,6 +122,7 @@ HWY_AFTER_NAMESPACE();
 namespace qsmpc {
 
 HWY_EXPORT(multiply_packed);
+HWY_EXPORT(pack_points);
 
 namespace {
 // Entries that are worth a block of their own in a transposition, and blocks at most.
@@ -151,11 +196,7 @@ void resize_packed(int dim, Eigen::Index count, PackedPoints& packed) {
 }
 
 void pack(const Points& points, Eigen::Index begin, Eigen::Index end, PackedPoints& packed) {
-  for (Eigen::Index axis = 0; axis < points.rows(); ++axis) {
-    const double* const row = points.data() + axis * points.cols();
-    double* to = packed.data.data() + begin * packed.stride + axis;
-    for (Eigen::Index i = begin; i < end; ++i, to += packed.stride) *to = row[i];
-  }
+  HWY_DYNAMIC_DISPATCH(pack_points)(points, begin, end, packed);
 }
 
 }  // namespace qsmpc

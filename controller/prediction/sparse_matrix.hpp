@@ -5,6 +5,7 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/parallel.hpp"
+#include "controller/storage.hpp"
 
 namespace qsmpc {
 
@@ -24,7 +25,7 @@ void transpose(const SparseMatrix& a, int columns, const Executor& run, SparseMa
 /// Points one after the other, each with its coordinates side by side and zeros up to `stride`.
 struct PackedPoints {
   int stride = 0;  ///< a multiple of 4, at least the dimension
-  std::vector<double> data;
+  LineVector data;
 
   [[nodiscard]] const double* point(int i) const { return data.data() + i * stride; }
 };
