@@ -15,6 +15,7 @@
 #include "harness/atomic_file.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
+#include "harness/episode/driver_pool.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
@@ -24,6 +25,9 @@ namespace qsmpc {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+// Drivers at rest are kept for this many variants, as each takes some megabytes.
+constexpr std::size_t kDriversPerJob = 4;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -68,6 +72,7 @@ class CampaignRun {
         folder_(std::move(folder)),
         options_(options),
         store_(store),
+        drivers_(kDriversPerJob * static_cast<std::size_t>(options.jobs)),
         seed_index_(options.shard.index - 1) {
     progress_.total = static_cast<std::int64_t>(campaign.variants.size()) *
                       options.shard.share(campaign.seeds.size());
@@ -128,7 +133,7 @@ class CampaignRun {
     options.should_stop = [this] {
       return failed_ || (options_.should_hurry && options_.should_hurry());
     };
-    const Trace trace = run_episode(campaign_.variants[task.variant].resolved, options);
+    const Trace trace = drivers_.run(campaign_.variants[task.variant].resolved, options);
     // What was cut short says nothing, and will be driven again.
     if (trace.outcome == Outcome::kInterrupted) return;
     EpisodeRow row = episode_row(trace, store_.variant_ids()[task.variant]);
@@ -183,6 +188,7 @@ class CampaignRun {
   const CampaignOptions& options_;
   Store& store_;
   const Clock::time_point start_ = Clock::now();
+  DriverPool drivers_;
   std::atomic<bool> failed_ = false;
   std::mutex next_mutex_;  // of what is next
   std::size_t variant_ = 0;

@@ -43,22 +43,25 @@ bool at_target(const Scenario& scenario, const SystemDescription& description,
   return distance <= scenario.target.radius;
 }
 
+}  // namespace
+
 /// The closed loop's parts and its state between the steps.
-class Episode {
+class EpisodeDriver::Loop {
  public:
-  Episode(const Scenario& scenario, const EpisodeOptions& options)
+  explicit Loop(const Scenario& scenario)
       : scenario_(scenario),
-        options_(options),
         model_(model_of(scenario)),
         planner_(*model_, planner_settings(scenario)),
         disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.covariance),
         sensor_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.sensor),
-        belief_{.mean = scenario.initial_state.mean,
-                .covariance = scenario.initial_state.covariance} {
+        belief_(first_belief()) {
     rehearse();
   }
 
-  Trace run() {
+  Trace run(const EpisodeOptions& options) {
+    options_ = options;
+    planner_.reset();
+    belief_ = first_belief();
     Trace trace = trace_header(scenario_, options_.seed);
     const GaussianSampler initial(belief_.mean, belief_.covariance);
     state_ = initial.sample({.seed = options_.seed, .stream = RandomStream::kInitialState});
@@ -71,11 +74,16 @@ class Episode {
       trace.fault = error.what();
     }
     trace.final_state = state_;
+    plant_.reset();
     if (options_.writer != nullptr) options_.writer->finish(trace);
     return trace;
   }
 
  private:
+  [[nodiscard]] Gaussian first_belief() const {
+    return {.mean = scenario_.initial_state.mean, .covariance = scenario_.initial_state.covariance};
+  }
+
   [[nodiscard]] Outcome drive(Trace& trace) {
     trace.motion.push_back(plant_->reset(state_));
     std::optional<Outcome> outcome = outcome_now();
@@ -129,7 +137,6 @@ class Episode {
         if (record.timing.total > kMilliseconds * scenario_.time_step) break;
       }
     }
-    planner_.reset();
   }
 
   /// The certificates of `plan`, made for `belief` in `period`, and how long both took.
@@ -210,17 +217,16 @@ class Episode {
   }
 
   const Scenario& scenario_;
-  const EpisodeOptions& options_;
   std::unique_ptr<const Dynamics> model_;
   Planner planner_;
-  std::unique_ptr<Plant> plant_;
   GaussianSampler disturbance_;
   GaussianSampler sensor_;
+  // Of the episode at hand.
+  EpisodeOptions options_;
+  std::unique_ptr<Plant> plant_;
   Gaussian belief_;
   Eigen::VectorXd state_;
 };
-
-}  // namespace
 
 Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
   Trace trace;
@@ -232,8 +238,15 @@ Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
   return trace;
 }
 
+EpisodeDriver::EpisodeDriver(const Scenario& scenario) : loop_(std::make_unique<Loop>(scenario)) {}
+EpisodeDriver::EpisodeDriver(EpisodeDriver&&) noexcept = default;
+EpisodeDriver& EpisodeDriver::operator=(EpisodeDriver&&) noexcept = default;
+EpisodeDriver::~EpisodeDriver() = default;
+
+Trace EpisodeDriver::run(const EpisodeOptions& options) { return loop_->run(options); }
+
 Trace run_episode(const Scenario& scenario, const EpisodeOptions& options) {
-  return Episode(scenario, options).run();
+  return EpisodeDriver(scenario).run(options);
 }
 
 }  // namespace qsmpc

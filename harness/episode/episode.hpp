@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 
 #include "harness/scenario/scenario.hpp"
@@ -38,9 +39,29 @@ struct EpisodeOptions {
 /// The header of the trace of `scenario`: scenario, its text, seed, version.
 [[nodiscard]] Trace trace_header(const Scenario& scenario, std::uint64_t seed);
 
-/// Runs one episode. A plant that breaks ends it with the outcome `fault`; numerical trouble of the
-/// planner is in the steps' solver status. Throws InputError for what is wrong with the plant's
-/// file and IoError from the writer.
+/// Drives episodes of one scenario, one after the other. Each is what a driver of its own would
+/// make of it; tables and memory, and the two plans made beforehand so that the first period of an
+/// episode takes no longer than the others, are those of the first.
+class EpisodeDriver {
+ public:
+  /// `scenario` must outlive the driver. Throws std::invalid_argument on settings of the planner
+  /// that make no sense.
+  explicit EpisodeDriver(const Scenario& scenario);
+  EpisodeDriver(EpisodeDriver&&) noexcept;
+  EpisodeDriver& operator=(EpisodeDriver&&) noexcept;
+  ~EpisodeDriver();
+
+  /// Runs one episode. A plant that breaks ends it with the outcome `fault`; numerical trouble of
+  /// the planner is in the steps' solver status. Throws InputError for what is wrong with the
+  /// plant's file and IoError from the writer.
+  [[nodiscard]] Trace run(const EpisodeOptions& options);
+
+ private:
+  class Loop;
+  std::unique_ptr<Loop> loop_;
+};
+
+/// Runs one episode, with a driver of its own. Throws as EpisodeDriver and its `run`.
 [[nodiscard]] Trace run_episode(const Scenario& scenario, const EpisodeOptions& options);
 
 }  // namespace qsmpc

@@ -5,6 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "harness/episode/driver_pool.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/exceedance.hpp"
 #include "harness/mismatch/horizon_comparison.hpp"
@@ -68,12 +69,13 @@ std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count, con
   const auto model =
       make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   std::vector<EpisodeResult> results(static_cast<std::size_t>(count));
+  DriverPool drivers(static_cast<std::size_t>(count));
   run(count, [&](int n) {
     if (work.stopped()) return;
     EpisodeOptions options;
     options.seed = scenario.seed + static_cast<std::uint64_t>(n);
     options.should_stop = [&work] { return work.stopped(); };
-    results[static_cast<std::size_t>(n)] = episode_result(run_episode(scenario, options), *model);
+    results[static_cast<std::size_t>(n)] = episode_result(drivers.run(scenario, options), *model);
     work.advance();
   });
   return results;

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "controller/certification/certificate.hpp"
+#include "harness/episode/driver_pool.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -85,12 +86,13 @@ const Sample& Laboratory::sample(const Variant& variant, int count) {
   at_work(label);
   std::mutex mutex;
   int done = 0;
+  DriverPool drivers(static_cast<std::size_t>(threads_));
   run_(count, [&](int n) {
     if (stopped()) return;
     EpisodeOptions options;
     options.seed = sample.scenario.seed + static_cast<std::uint64_t>(n);
     options.should_stop = [this] { return stopped(); };
-    Trace trace = run_episode(sample.scenario, options);
+    Trace trace = drivers.run(sample.scenario, options);
     sample.episodes[static_cast<std::size_t>(n)] = digest_of(trace);
     if (n == 0) sample.first = std::move(trace);
     const std::lock_guard lock(mutex);
