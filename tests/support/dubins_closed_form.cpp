@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include <nlopt.hpp>
+#include "tests/support/slsqp_search.hpp"
 
 namespace qsmpc::testing {
 namespace {
@@ -84,12 +84,11 @@ double quadratic(const DubinsMoments& moments, const Eigen::MatrixXd& weight,
   return weight.cwiseProduct(about_target).sum();
 }
 
-/// NLopt's callback: the cost and its gradient by central differences. The cost is analytic, so
-/// that they are good to 1e-9 of it.
-double cost_and_gradient(const std::vector<double>& inputs, std::vector<double>& gradient,
-                         void* data) {
+/// The cost and its gradient by central differences. The cost is analytic, so that they are good to
+/// 1e-9 of it.
+double cost_and_gradient(const DubinsProblem& problem, const std::vector<double>& inputs,
+                         std::vector<double>& gradient) {
   constexpr double kStep = 1e-4;  // rad/s; error of third order, rounding 1e-16 / 1e-4
-  const DubinsProblem& problem = *static_cast<const DubinsProblem*>(data);
   Eigen::MatrixXd moved =
       Eigen::Map<const Eigen::RowVectorXd>(inputs.data(), static_cast<Eigen::Index>(inputs.size()));
   for (std::size_t i = 0; i < gradient.size(); ++i) {
@@ -162,26 +161,24 @@ DubinsOptimum dubins_optimum(const DubinsProblem& problem, int horizon, int star
   std::uniform_real_distribution<double> share;
   const double lower = problem.bounds.lower[0];
   const double upper = problem.bounds.upper[0];
-  DubinsProblem data = problem;
-  nlopt::opt solver(nlopt::LD_SLSQP, horizon);
-  solver.set_min_objective(cost_and_gradient, &data);
-  solver.set_lower_bounds(lower);
-  solver.set_upper_bounds(upper);
-  solver.set_ftol_rel(kTolerance);
-  solver.set_maxeval(kEvaluations);
+  const auto entries = static_cast<std::size_t>(horizon);
+  const SlsqpSearch settings{
+      .cost =
+          [&problem](const std::vector<double>& inputs, std::vector<double>& gradient) {
+            return cost_and_gradient(problem, inputs, gradient);
+          },
+      .lower = std::vector<double>(entries, lower),
+      .upper = std::vector<double>(entries, upper),
+      .relative_tolerance = kTolerance,
+      .evaluations = kEvaluations};
   DubinsOptimum best{.inputs = {}, .cost = std::numeric_limits<double>::infinity()};
   const std::array<double, 3> constants = {0.0, lower, upper};
   for (int start = 0; start < starts; ++start) {
-    std::vector<double> inputs(horizon);
+    std::vector<double> inputs(entries);
     for (double& input : inputs) {
       input = start < 3 ? constants[start] : lower + (upper - lower) * share(generator);
     }
-    double value = 0.0;
-    try {
-      solver.optimize(inputs, value);
-    } catch (const nlopt::roundoff_limited&) {
-      // As far as the digits go; `inputs` is the best point.
-    }
+    inputs = run_slsqp(settings, inputs);
     const Eigen::MatrixXd found = Eigen::Map<const Eigen::RowVectorXd>(inputs.data(), horizon);
     const double cost = dubins_cost(problem, found).total();
     if (cost < best.cost) best = {.inputs = found, .cost = cost};

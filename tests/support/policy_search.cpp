@@ -9,7 +9,8 @@
 #include <utility>
 
 #include <Eigen/Cholesky>
-#include <nlopt.hpp>
+
+#include "tests/support/slsqp_search.hpp"
 
 namespace qsmpc::testing {
 namespace {
@@ -57,27 +58,25 @@ double squares(const StateBatch& points, const Eigen::MatrixXd& weight,
   return offset.cwiseProduct(weight * offset).sum();
 }
 
-/// What NLopt's callback works on; keeps the best point, which NLopt's last one need not be.
+/// Prices points, and keeps the best, which a search's last one need not be.
 struct Descent {
   SampledProblem& problem;
   Eigen::MatrixXd best;
   double least = std::numeric_limits<double>::infinity();
-};
 
-double price_and_keep(const std::vector<double>& inputs, std::vector<double>& gradient,
-                      void* data) {
-  Descent& descent = *static_cast<Descent*>(data);
-  const Eigen::MatrixXd point =
-      Eigen::Map<const Eigen::MatrixXd>(inputs.data(), descent.best.rows(), descent.best.cols());
-  Eigen::MatrixXd slope(point.rows(), point.cols());
-  const double value = descent.problem.price(point, slope);
-  if (!gradient.empty()) std::copy(slope.data(), slope.data() + slope.size(), gradient.begin());
-  if (value < descent.least) {
-    descent.least = value;
-    descent.best = point;
+  double price(const std::vector<double>& inputs, std::vector<double>& gradient) {
+    const Eigen::MatrixXd point =
+        Eigen::Map<const Eigen::MatrixXd>(inputs.data(), best.rows(), best.cols());
+    Eigen::MatrixXd slope(point.rows(), point.cols());
+    const double value = problem.price(point, slope);
+    if (!gradient.empty()) std::copy(slope.data(), slope.data() + slope.size(), gradient.begin());
+    if (value < least) {
+      least = value;
+      best = point;
+    }
+    return value;
   }
-  return value;
-}
+};
 
 /// Each input in turn, constant in each half of the horizon, the others at their middle; and random
 /// ones.
@@ -281,21 +280,17 @@ Eigen::MatrixXd SampledProblem::descend(const Eigen::MatrixXd& start) {
     return std::vector<double>(matrix.data(), matrix.data() + matrix.size());
   };
   Descent descent{.problem = *this, .best = start};
-  nlopt::opt solver(nlopt::LD_SLSQP, static_cast<unsigned>(start.size()));
-  solver.set_min_objective(price_and_keep, &descent);
-  solver.set_lower_bounds(as_vector(lower));
-  solver.set_upper_bounds(as_vector(upper));
-  solver.set_ftol_rel(kTolerance);
-  solver.set_maxeval(kEvaluations);
+  const SlsqpSearch settings{
+      .cost = [&descent](const std::vector<double>& inputs,
+                         std::vector<double>& gradient) { return descent.price(inputs, gradient); },
+      .lower = as_vector(lower),
+      .upper = as_vector(upper),
+      .relative_tolerance = kTolerance,
+      .evaluations = kEvaluations};
   for (int run = 0; run < kRuns; ++run) {
     const double before = descent.least;
-    std::vector<double> inputs = as_vector(descent.best);
-    double value = 0.0;
-    try {
-      solver.optimize(inputs, value);
-    } catch (const nlopt::roundoff_limited&) {
-      // A kink of the clamp or of a penalty; the next run starts afresh.
-    }
+    // It may end at a kink of the clamp or of a penalty; the next run starts afresh.
+    (void)run_slsqp(settings, as_vector(descent.best));
     if (before - descent.least <= kTolerance * descent.least) break;
   }
   return descent.best;
