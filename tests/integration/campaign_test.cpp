@@ -20,6 +20,7 @@
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "tests/integration/campaign_fixture.hpp"
+#include "tests/support/effort.hpp"
 
 namespace qsmpc {
 namespace {
@@ -113,16 +114,16 @@ TEST(Campaign, killed_at_any_moment_and_started_again_it_ends_as_if_it_never_was
   const auto whole = std::chrono::duration_cast<std::chrono::microseconds>(
       std::chrono::steady_clock::now() - start);
   std::mt19937 random(17);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the clock adds the rest
-  // Twenty of them are about as long as the whole, so that most kill it at work.
-  std::uniform_int_distribution<std::int64_t> microseconds(0, whole.count() / 8);
-  constexpr int kKills = 20;
+  const int kills = testing::by_effort(6, 20, 20);
+  // All of them are about as long as the whole, so that most kill it at work.
+  std::uniform_int_distribution<std::int64_t> microseconds(0, 5 * whole.count() / (2 * kills));
   int killed = 0;
-  for (int attempt = 0; attempt < kKills; ++attempt) {
+  for (int attempt = 0; attempt < kills; ++attempt) {
     const int code =
         run_and_kill(file, folder / "killed", std::chrono::microseconds(microseconds(random)));
     killed += code == 128 + SIGKILL ? 1 : 0;
   }
-  EXPECT_GT(killed, kKills / 2) << "it is over too soon to be killed";
+  EXPECT_GT(killed, kills / 2) << "it is over too soon to be killed";
   const ProcessResult last = campaign(file, folder / "killed", {"--quiet"});
   ASSERT_EQ(last.exit_code, 0) << last.errors;
   EXPECT_EQ(rows_of(folder / "killed"), rows_of(folder / "whole"));

@@ -2,7 +2,6 @@
 // of the reference thesis's experiments end well.
 #include <algorithm>
 #include <cstdint>
-#include <cstdlib>
 #include <map>
 #include <ostream>
 #include <string>
@@ -15,12 +14,10 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/trace/summary.hpp"
+#include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
 namespace {
-
-/// Where scripts/test is called with --slow, all seeds are driven.
-bool slow() { return std::getenv("QSMPC_SLOW_TESTS") != nullptr; }
 
 /// What a vehicle of `system` can be: the model, and each shipped MuJoCo one.
 std::vector<std::string> plants_of(const std::string& system) {
@@ -115,8 +112,8 @@ TEST_P(ThesisExperiments, reach_the_target_without_entering_the_unsafe_set) {
   const Scenario scenario =
 
       with_plant(load_scenario(experiment.scenario, experiment.overrides), experiment.plant);
-  const int seeds = slow() ? 50 : experiment.expensive ? 1 : 3;
-  const int promised = slow() ? 45 : experiment.expensive ? 1 : 2;
+  const int seeds = experiment.expensive ? by_effort(1, 1, 50) : by_effort(2, 3, 50);
+  const int promised = seeds == 50 ? 45 : std::max(1, seeds - 1);
   int reached = 0;
   std::string others;
   for (int seed = 0; seed < seeds; ++seed) {

@@ -2,7 +2,6 @@
 // bound, against simulated paths of the model under the same policy.
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <string>
 #include <vector>
@@ -14,17 +13,17 @@
 #include "controller/certification/error_budget.hpp"
 #include "tests/property/marginal_w2.hpp"
 #include "tests/property/random_problem.hpp"
+#include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
 namespace {
 
-constexpr int kPaths = 100000;
+const int kPaths = by_effort(20000, 100000, 100000);
 constexpr int kShards = 8;  // so that the test runner can use several cores
 // Paths whose states are compared with the particles: each coordinate's are sorted.
 constexpr int kSorted = 10000;
 
-/// 500 problems by default, 10,000 where scripts/test is called with --slow.
-int problem_count() { return std::getenv("QSMPC_SLOW_TESTS") == nullptr ? 504 : 10000; }
+int problem_count() { return by_effort(504, 504, 10000); }
 
 /// Clopper–Pearson: the truth is below this with a probability of at most 1e-3 in any of all
 /// comparisons together; 6 kinds and 8 stages a problem are the most there can be.

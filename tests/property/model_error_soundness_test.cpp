@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <map>
 #include <string>
@@ -18,18 +17,18 @@
 #include "controller/prediction/model_error.hpp"
 #include "tests/property/marginal_w2.hpp"
 #include "tests/property/random_problem.hpp"
+#include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kPaths = 50000;
+const int kPaths = by_effort(10000, 50000, 50000);
 // Paths whose states are compared with the particles: each coordinate's are sorted.
 constexpr int kSorted = 10000;
 constexpr int kShards = 8;  // so that the test runner can use several cores
 
-/// 320 problems by default, 4000 where scripts/test is called with --slow.
-int problem_count() { return std::getenv("QSMPC_SLOW_TESTS") == nullptr ? 320 : 4000; }
+int problem_count() { return by_effort(320, 320, 4000); }
 
 /// Clopper–Pearson: the truth is below this with a probability of at most 1e-3 in any of all
 /// comparisons together; 6 kinds and 8 stages a problem are the most there can be.

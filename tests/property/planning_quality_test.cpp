@@ -3,17 +3,15 @@
 #include "tests/support/planning_quality.hpp"
 
 #include <cctype>
-#include <cstdlib>
 #include <string>
 #include <tuple>
 
 #include <gtest/gtest.h>
 
+#include "tests/support/effort.hpp"
+
 namespace qsmpc::testing {
 namespace {
-
-/// Where scripts/test is called with --slow, the best policy is sought longer.
-bool slow() { return std::getenv("QSMPC_SLOW_TESTS") != nullptr; }
 
 class OpenLoopPlan : public ::testing::TestWithParam<std::tuple<int, double>> {};
 
@@ -38,8 +36,8 @@ TEST_P(ClosedLoopPlan, costs_hardly_more_than_the_best_policy_that_was_found) {
   const auto [horizon, index] = GetParam();
   const Place place = places_among_blocks()[index];
   SamplingSettings sampling;
-  sampling.search.draws.paths = slow() ? 4000 : 1000;
-  sampling.search.random_starts = slow() ? 20 : 0;
+  sampling.search.draws.paths = by_effort(1000, 1000, 4000);
+  sampling.search.random_starts = by_effort(0, 0, 20);
   const std::unique_ptr<const Dynamics> car = default_car();
   const Shortfall shortfall =
       sampled_shortfall(*car, blocks_settings(horizon), place.belief, sampling);

@@ -9,12 +9,13 @@
 #include <gtest/gtest.h>
 
 #include "harness/plant/disturbance.hpp"
+#include "tests/support/effort.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc {
 namespace {
 
-constexpr int kPeriods = 2000;
+const int kPeriods = testing::by_effort(500, 2000, 2000);
 
 struct Disturbed {
   std::string name;

@@ -3,7 +3,6 @@
 #include "harness/reproduction/experiment.hpp"
 
 #include <cmath>
-#include <cstdlib>
 #include <set>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/reproduction/published_way.hpp"
+#include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
 namespace {
@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(Thesis, EveryExperiment, ::testing::ValuesIn(all_names(
                          });
 
 /// With --slow as `qsmpc reproduce` does them, else few and short.
-bool slow() { return std::getenv("QSMPC_SLOW_TESTS") != nullptr; }
+bool slow() { return by_effort(false, false, true); }
 
 LaboratoryOptions options_of_claims() {
   if (slow()) return {.seeds = 50};
