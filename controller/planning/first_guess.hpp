@@ -1,48 +1,49 @@
 // Where the optimisation of a plan starts.
 //
 // The cost has a valley for each way round each obstacle. The shifted previous plan is the first
-// choice; constant inputs, priced on the belief's points without noise, show whether another valley
-// is clearly deeper.
+// choice; constant inputs, priced without noise, show whether another valley may be clearly deeper.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
 
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/noise_free_cost.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
-#include "controller/prediction/prediction.hpp"
 
 namespace qsmpc {
 
+/// What the candidates for a start look like.
+enum class GuessVerdict {
+  kPrevious,  ///< the shifted previous plan is the best of them
+  kDoubtful,  ///< without noise, a constant is clearly cheaper than the shifted previous plan
+  kConstant,  ///< there is no previous plan of a finite cost
+};
+
 class FirstGuess {
  public:
-  /// `terms` and all they refer to must stay alive. Its noise covariance should be zero.
-  FirstGuess(const PlannerSettings& settings, const HorizonCostTerms& terms);
+  explicit FirstGuess(const PlannerSettings& settings);
 
-  /// Chooses for a belief that is represented by `points`. previous: the inputs of the previous
-  /// plan, or null. Returns whether the shifted previous inputs were chosen. Allocates only for
-  /// the first belief of a kind.
-  bool choose(const Eigen::VectorXd& mean, const DiscreteMeasure& points,
-              const Eigen::MatrixXd* previous, const Eigen::MatrixXd& gain_change,
-              PolicyMaker& policies);
+  /// Compares them by `cost`, which has been placed at the belief. previous: the inputs of the
+  /// previous plan, or null. Allocates only in the first call.
+  GuessVerdict compare(const Eigen::MatrixXd* previous, const Eigen::MatrixXd& gain_change,
+                       NoiseFreeCost& cost, PolicyMaker& policies);
 
-  /// input_dim x horizon.
-  [[nodiscard]] const Eigen::MatrixXd& inputs() const { return best_; }
+  /// The previous inputs one stage later, and the cheapest of the constants; input_dim x horizon.
+  [[nodiscard]] const Eigen::MatrixXd& shifted() const { return shifted_; }
+  [[nodiscard]] const Eigen::MatrixXd& constant() const { return constants_[constant_]; }
 
  private:
-  [[nodiscard]] double price(const Eigen::VectorXd& mean, const Eigen::MatrixXd& inputs,
-                             const Eigen::MatrixXd& gain_change, PolicyMaker& policies);
-
-  HorizonCost cost_;
   std::vector<Eigen::MatrixXd> constants_;
+  std::size_t constant_ = 0;
   Eigen::MatrixXd shifted_;
-  Eigen::MatrixXd best_;
-  Eigen::VectorXd flat_;
-  Policy policy_;
-  Prediction noise_free_;  // of which only the sizes, the weights and the belief matter
 };
+
+/// Whether `cost` is so much less than that of the shifted previous plan that it is worth to leave
+/// that: switching sides of an obstacle for less makes the vehicle waver.
+[[nodiscard]] bool clearly_cheaper(double cost, double than);
 
 /// The inputs of a plan, one stage later; the last is held.
 void shift_inputs(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& out);

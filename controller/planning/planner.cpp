@@ -75,22 +75,16 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
              .noise_covariance = predicted_noise_,
              .within_covariance = within_},
             settings_.run),
-      guess_(settings_, {.dynamics = dynamics_,
-                         .safe_set = settings_.safe_set,
-                         .cost = weights_,
-                         .penalty = settings_.penalty,
-                         .noise_covariance = no_noise_,
-                         .within_covariance = within_}),
+      noise_free_(settings_.horizon, {.dynamics = dynamics_,
+                                      .safe_set = settings_.safe_set,
+                                      .cost = weights_,
+                                      .penalty = settings_.penalty,
+                                      .noise_covariance = no_noise_,
+                                      .within_covariance = no_noise_}),
+      guess_(settings_),
       constraints_(cost_, settings_.safe_set),
       gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
-  if (!settings_.safe_set.obstacles.empty()) {
-    valleys_.emplace(settings_, HorizonCostTerms{.dynamics = dynamics_,
-                                                 .safe_set = settings_.safe_set,
-                                                 .cost = weights_,
-                                                 .penalty = settings_.penalty,
-                                                 .noise_covariance = no_noise_,
-                                                 .within_covariance = no_noise_});
-  }
+  if (!settings_.safe_set.obstacles.empty()) valleys_.emplace(settings_, noise_free_);
   make_search(0, inputs_);
   if (settings_.closed_loop && settings_.optimise_gain) {
     make_search(gain_change_.size(), gain_search_.emplace());
@@ -157,48 +151,65 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
   } else {
     gain_change_.setZero();
   }
-  const bool warm = guess_.choose(belief.mean, belief_.measure,
-                                  previous != nullptr ? &previous->policy.inputs : nullptr,
-                                  gain_change_, policies_);
+  noise_free_.place(belief);
+  const GuessVerdict verdict =
+      guess_.compare(previous != nullptr ? &previous->policy.inputs : nullptr, gain_change_,
+                     noise_free_, policies_);
+  if (verdict == GuessVerdict::kDoubtful) round.priced = true;
+  const bool warm = verdict == GuessVerdict::kPrevious ||
+                    (verdict == GuessVerdict::kDoubtful && !constant_is_clearly_cheaper(belief));
   start_solver(*inputs_.solver, warm);
   if (gain_search_) start_solver(*gain_search_->solver, warm);
   if (!warm && valleys_) {
-    start_in_deepest_valley(belief, round.deadline);
-    round.priced = true;
-    stopwatch.add_to(round.timing.propagate);
-    return false;
-  }
-  policies_.make(belief.mean, guess_.inputs(), gain_change_, current_->policy);
-  current_->gain_change = gain_change_;
-  if (warm && maps_fit(*last_)) {
-    last_->prediction.stages[0] = belief_.measure;
-    hold(last_->prediction, current_->policy);
-  } else {
-    predict_and_price(*current_);
-    round.priced = true;
+    start_in_deepest_valley(belief, round);
+  } else if (!round.priced) {
+    set_policy(belief, warm ? guess_.shifted() : guess_.constant(), *current_);
+    if (warm && maps_fit(*last_)) {
+      last_->prediction.stages[0] = belief_.measure;
+      hold(last_->prediction, current_->policy);
+    } else {
+      predict_and_price(*current_);
+      round.priced = true;
+    }
+  } else if (!warm) {
+    std::swap(current_, candidate_);
+    hold(current_->prediction, current_->policy);
   }
   stopwatch.add_to(round.timing.propagate);
   return warm;
 }
 
-/// Makes `current_` the best of the plans at the bottoms of the valleys, as the prediction prices
-/// them, and holds its assignments.
-void Planner::start_in_deepest_valley(const Gaussian& belief, Clock::time_point deadline) {
-  bool first = true;
-  bool held = false;
-  for (const Eigen::MatrixXd* const inputs : valleys_->search(belief, policies_, deadline)) {
-    if (!first && Clock::now() >= deadline) break;
-    Plan& plan = first ? *current_ : *candidate_;
-    plan.gain_change = gain_change_;
-    policies_.make(belief.mean, *inputs, gain_change_, plan.policy);
+/// Whether the best constant inputs are clearly cheaper than the shifted previous plan with the
+/// noise, too. Both are predicted, the latter as `current_`, whose assignments are then held.
+bool Planner::constant_is_clearly_cheaper(const Gaussian& belief) {
+  set_policy(belief, guess_.constant(), *candidate_);
+  predict_and_price(*candidate_);
+  set_policy(belief, guess_.shifted(), *current_);
+  predict_and_price(*current_);
+  return clearly_cheaper(candidate_->cost.total(), current_->cost.total());
+}
+
+/// Makes `plan` about `inputs`, with the gains that belong to them.
+void Planner::set_policy(const Gaussian& belief, const Eigen::MatrixXd& inputs, Plan& plan) {
+  plan.gain_change = gain_change_;
+  policies_.make(belief.mean, inputs, gain_change_, plan.policy);
+}
+
+/// Makes `current_` the best of the plans at the bottoms of the valleys, and of itself if it has
+/// been priced, as the prediction prices them, and holds its assignments.
+void Planner::start_in_deepest_valley(const Gaussian& belief, Round& round) {
+  bool held = round.priced;
+  for (const Eigen::MatrixXd* const inputs : valleys_->search(policies_, round.deadline)) {
+    if (round.priced && Clock::now() >= round.deadline) break;
+    Plan& plan = round.priced ? *candidate_ : *current_;
+    set_policy(belief, *inputs, plan);
     predict_and_price(plan);
-    held = first || better(plan, *current_);
-    if (held && !first) std::swap(current_, candidate_);
-    first = false;
+    held = !round.priced || better(plan, *current_);
+    if (held && round.priced) std::swap(current_, candidate_);
+    round.priced = true;
   }
   if (!held) hold(current_->prediction, current_->policy);
 }
-
 void Planner::start_solver(OcpSolver& solver, bool warm) const {
   if (warm) {
     solver.shift({.inputs_per_stage = dynamics_.input_dim(), .horizon = settings_.horizon});

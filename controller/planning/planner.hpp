@@ -22,6 +22,7 @@
 #include "controller/measure/gaussian_quantiser.hpp"
 #include "controller/planning/first_guess.hpp"
 #include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/noise_free_cost.hpp"
 #include "controller/planning/ocp_solver.hpp"
 #include "controller/planning/particle_constraints.hpp"
 #include "controller/planning/planner_settings.hpp"
@@ -119,7 +120,9 @@ class Planner {
   [[nodiscard]] bool begin(const Gaussian& belief, Round& round);
   void make_search(Eigen::Index entries, Search& out);
   void start_solver(OcpSolver& solver, bool warm) const;
-  void start_in_deepest_valley(const Gaussian& belief, Clock::time_point deadline);
+  [[nodiscard]] bool constant_is_clearly_cheaper(const Gaussian& belief);
+  void set_policy(const Gaussian& belief, const Eigen::MatrixXd& inputs, Plan& plan);
+  void start_in_deepest_valley(const Gaussian& belief, Round& round);
   void optimise(const Gaussian& belief, Round& round);
   [[nodiscard]] bool optimise(const Gaussian& belief, Search& search, int rounds, Round& round);
   [[nodiscard]] bool run_solver(Search& search, Round& round);
@@ -142,6 +145,7 @@ class Planner {
   std::unique_ptr<Propagator> propagator_;
   PolicyMaker policies_;
   HorizonCost cost_;
+  NoiseFreeCost noise_free_;
   FirstGuess guess_;
   std::optional<ValleySearch> valleys_;  // where there are obstacles
   ParticleConstraints constraints_;

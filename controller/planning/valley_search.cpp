@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
 namespace qsmpc {
 namespace {
 
@@ -20,16 +18,14 @@ constexpr double kDescentTolerance = 1e-5;
 constexpr std::size_t kValleys = 3;
 constexpr double kSameValley = 1e-3;
 
-double or_infinity(double cost) { return std::isnan(cost) ? kInfinity : cost; }
-
 }  // namespace
 
-ValleySearch::ValleySearch(const PlannerSettings& settings, const HorizonCostTerms& terms)
-    : cost_(terms), solver_(make_solver("lbfgs", {.bounding = "bounded"})) {
+ValleySearch::ValleySearch(const PlannerSettings& settings, NoiseFreeCost& cost)
+    : cost_(cost), solver_(make_solver("lbfgs", {.bounding = "bounded"})) {
   const InputBounds& bounds = settings.bounds;
   const Eigen::VectorXd middle = 0.5 * (bounds.lower + bounds.upper);
   const Eigen::VectorXd reach = 0.5 * (bounds.upper - bounds.lower);
-  const Eigen::Index dim = terms.cost.state.rows();
+  const Eigen::Index dim = settings.cost.state.rows();
   const int horizon = settings.horizon;
   const int first = (horizon + 1) / 2;
   int group = 0;
@@ -56,31 +52,18 @@ ValleySearch::ValleySearch(const PlannerSettings& settings, const HorizonCostTer
   problem_.lower = bounds.lower.replicate(horizon, 1);
   problem_.upper = bounds.upper.replicate(horizon, 1);
   problem_.cost = [this](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
-    return cost_.evaluate(z, gradient);
+    return cost_.cost().evaluate(z, gradient);
   };
   z_.resize(problem_.lower.size());
-  const Eigen::Index points = 2 * dim;
-  noise_free_.stages.resize(horizon + 1);
-  for (DiscreteMeasure& stage : noise_free_.stages) {
-    stage.locations.resize(dim, points);
-    stage.weights.setConstant(points, 1.0 / static_cast<double>(points));
-  }
-  noise_free_.maps.resize(horizon);
-  for (StageMap& map : noise_free_.maps) {
-    map.identity = true;
-    map.weights = noise_free_.stages[0].weights;
-  }
 }
 
 const std::vector<const Eigen::MatrixXd*>& ValleySearch::search(
-    const Gaussian& belief, PolicyMaker& policies, std::chrono::steady_clock::time_point deadline) {
+    PolicyMaker& policies, std::chrono::steady_clock::time_point deadline) {
   const auto late = [&] { return std::chrono::steady_clock::now() >= deadline; };
-  place_points(belief);
   for (Start& start : starts_) start.cost = kInfinity;
   for (std::size_t n = 0; n < candidates_.size(); ++n) {
     Start& start = starts_[candidate_groups_[n]];
-    hold(belief.mean, candidates_[n], policies);
-    const double cost = or_infinity(cost_.price(z_));
+    const double cost = cost_.price(candidates_[n], no_gain_change_, policies);
     if (cost < start.cost || n == 0) {
       start.cost = cost;
       start.inputs = candidates_[n];
@@ -100,7 +83,7 @@ const std::vector<const Eigen::MatrixXd*>& ValleySearch::search(
   if (order_.size() > kDescents) order_.resize(kDescents);
   for (Start* const start : order_) {
     if (late()) break;
-    descend(belief.mean, policies, *start);
+    descend(policies, *start);
   }
   std::sort(order_.begin(), order_.end(), cheaper);
   valleys_.clear();
@@ -114,31 +97,9 @@ const std::vector<const Eigen::MatrixXd*>& ValleySearch::search(
   return valleys_;
 }
 
-/// ±√d σ_i e_i about the mean, for the eigenvectors e_i of the covariance.
-void ValleySearch::place_points(const Gaussian& belief) {
-  const Eigen::Index dim = belief.mean.size();
-  if (covariance_.size() == 0 || covariance_ != belief.covariance) {
-    covariance_ = belief.covariance;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance_);
-    const Eigen::VectorXd reach =
-        (static_cast<double>(dim) * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
-    offsets_.resize(dim, 2 * dim);
-    offsets_.leftCols(dim) = eigen.eigenvectors() * reach.asDiagonal();
-    offsets_.rightCols(dim) = -offsets_.leftCols(dim);
-  }
-  noise_free_.stages[0].locations = offsets_.colwise() + belief.mean;
-}
-
-/// Makes the cost that of the policy with these inputs, which are left in `z_`.
-void ValleySearch::hold(const Eigen::VectorXd& mean, const Eigen::MatrixXd& inputs,
-                        PolicyMaker& policies) {
-  policies.make(mean, inputs, no_gain_change_, policy_);
-  cost_.hold(noise_free_, policy_);
-  z_ = inputs.reshaped();
-}
-
-void ValleySearch::descend(const Eigen::VectorXd& mean, PolicyMaker& policies, Start& start) {
-  hold(mean, start.inputs, policies);
+void ValleySearch::descend(PolicyMaker& policies, Start& start) {
+  cost_.hold(start.inputs, no_gain_change_, policies);
+  z_ = start.inputs.reshaped();
   solver_->forget();
   const SolverResult& result = solver_->minimise(
       problem_, z_,
@@ -146,8 +107,7 @@ void ValleySearch::descend(const Eigen::VectorXd& mean, PolicyMaker& policies, S
   if (!(result.value < start.cost)) return;
   start.inputs = result.z.reshaped(start.inputs.rows(), start.inputs.cols());
   // With the gains that belong to them.
-  hold(mean, start.inputs, policies);
-  start.cost = or_infinity(cost_.price(z_));
+  start.cost = cost_.price(start.inputs, no_gain_change_, policies);
 }
 
 }  // namespace qsmpc

@@ -3,8 +3,8 @@
 // The cost has a valley for each way round each obstacle, and a descent ends in the one in which it
 // starts. Inputs that are constant over each half of the horizon are priced in all combinations;
 // the best of each first half descends a little; the bottoms of different valleys are what a plan
-// may start from. All of this on a handful of points that have the belief's mean and covariance,
-// without noise: it is to find valleys, not to tell which of two like ones is the deeper.
+// may start from. All of this without noise: it is to find valleys, not to tell which of two like
+// ones is the deeper.
 #pragma once
 
 #include <chrono>
@@ -13,24 +13,22 @@
 
 #include <Eigen/Core>
 
-#include "controller/measure/measures.hpp"
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/noise_free_cost.hpp"
 #include "controller/planning/ocp_solver.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
-#include "controller/prediction/prediction.hpp"
 
 namespace qsmpc {
 
 class ValleySearch {
  public:
-  /// `terms` and all they refer to must stay alive. Their covariances should be zero.
-  ValleySearch(const PlannerSettings& settings, const HorizonCostTerms& terms);
+  /// `cost` must stay alive.
+  ValleySearch(const PlannerSettings& settings, NoiseFreeCost& cost);
 
-  /// Inputs (input_dim x horizon, within the bounds) in different valleys, the cheapest first; at
-  /// least one set of inputs, even after `deadline`. Valid until the next search. Allocates only
-  /// where the belief's covariance is another one than before.
-  const std::vector<const Eigen::MatrixXd*>& search(const Gaussian& belief, PolicyMaker& policies,
+  /// Inputs (input_dim x horizon, within the bounds) in different valleys of the cost for the belief
+  /// at which it has been placed, the cheapest first; at least one set of inputs, even after
+  /// `deadline`. Valid until the next search.
+  const std::vector<const Eigen::MatrixXd*>& search(PolicyMaker& policies,
                                                     std::chrono::steady_clock::time_point deadline);
 
  private:
@@ -40,11 +38,9 @@ class ValleySearch {
     double cost = 0.0;
   };
 
-  void place_points(const Gaussian& belief);
-  void hold(const Eigen::VectorXd& mean, const Eigen::MatrixXd& inputs, PolicyMaker& policies);
-  void descend(const Eigen::VectorXd& mean, PolicyMaker& policies, Start& start);
+  void descend(PolicyMaker& policies, Start& start);
 
-  HorizonCost cost_;
+  NoiseFreeCost& cost_;
   OcpProblem problem_;
   std::unique_ptr<OcpSolver> solver_;
   Eigen::MatrixXd no_gain_change_;
@@ -53,10 +49,6 @@ class ValleySearch {
   std::vector<Start> starts_;  // the best of each group
   std::vector<Start*> order_;
   std::vector<const Eigen::MatrixXd*> valleys_;
-  Eigen::MatrixXd covariance_;  // that `offsets_` belong to
-  Eigen::MatrixXd offsets_;     // of the points from the mean
-  Prediction noise_free_;       // of which only the sizes, the weights and the belief matter
-  Policy policy_;
   Eigen::VectorXd z_;
 };
 

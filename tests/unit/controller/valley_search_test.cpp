@@ -30,12 +30,20 @@ class Valleys : public ::testing::Test {
       : car_(dubins_car()),
         settings_(block_settings()),
         policies_(*car_, settings_),
-        search_(settings_, {.dynamics = *car_,
+        cost_(settings_.horizon,
+              {.dynamics = *car_,
                             .safe_set = settings_.safe_set,
                             .cost = settings_.cost,
                             .penalty = settings_.penalty,
                             .noise_covariance = zero_,
-                            .within_covariance = zero_}) {}
+                            .within_covariance = zero_}),
+        search_(settings_, cost_) {}
+
+  const std::vector<const Eigen::MatrixXd*>& searched(const Gaussian& belief,
+                                                      Clock::time_point deadline) {
+    cost_.place(belief);
+    return search_.search(policies_, deadline);
+  }
 
   [[nodiscard]] double height_at_block(const Eigen::MatrixXd& inputs) const {
     const Eigen::MatrixXd path = nominal_states(*car_, Eigen::Vector3d::Zero(), inputs);
@@ -46,13 +54,14 @@ class Valleys : public ::testing::Test {
   PlannerSettings settings_;
   Eigen::MatrixXd zero_ = Eigen::MatrixXd::Zero(3, 3);
   PolicyMaker policies_;
+  NoiseFreeCost cost_;
   ValleySearch search_;
 };
 
 TEST_F(Valleys, both_ways_round_a_block_are_found) {
   const Gaussian belief{.mean = Eigen::Vector3d::Zero(),
                         .covariance = 1e-3 * Eigen::Matrix3d::Identity()};
-  const auto& valleys = search_.search(belief, policies_, Clock::time_point::max());
+  const auto& valleys = searched(belief, Clock::time_point::max());
   ASSERT_GE(valleys.size(), 2U);
   EXPECT_LT(height_at_block(*valleys[0]), -0.2);  // the shorter way first
   double highest = -1.0;
@@ -66,20 +75,20 @@ TEST_F(Valleys, both_ways_round_a_block_are_found) {
 
 TEST_F(Valleys, the_same_search_gives_the_same) {
   const Gaussian belief = dubins_belief();
-  const Eigen::MatrixXd first = *search_.search(belief, policies_, Clock::time_point::max())[0];
+  const Eigen::MatrixXd first = *searched(belief, Clock::time_point::max())[0];
   Gaussian other = belief;
   other.mean[1] = 0.2;
-  (void)search_.search(other, policies_, Clock::time_point::max());
-  EXPECT_EQ(*search_.search(belief, policies_, Clock::time_point::max())[0], first);
+  (void)searched(other, Clock::time_point::max());
+  EXPECT_EQ(*searched(belief, Clock::time_point::max())[0], first);
 }
 
 TEST_F(Valleys, without_time_or_numbers_there_is_a_start_all_the_same) {
   Gaussian belief = dubins_belief();
-  const auto& hurried = search_.search(belief, policies_, Clock::now());
+  const auto& hurried = searched(belief, Clock::now());
   ASSERT_EQ(hurried.size(), 1U);
   EXPECT_EQ(hurried[0]->cols(), settings_.horizon);
   belief.mean[0] = 1e300;
-  const auto& lost = search_.search(belief, policies_, Clock::time_point::max());
+  const auto& lost = searched(belief, Clock::time_point::max());
   ASSERT_EQ(lost.size(), 1U);
   EXPECT_TRUE(lost[0]->allFinite());
 }
