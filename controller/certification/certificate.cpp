@@ -18,12 +18,8 @@ constexpr double kWorthwhile = 1e-4;
 // From where on another core, which alone costs some 1e-2, may help.
 constexpr double kTryNarrow = 0.03;
 
-double unsafe_mass(const DiscreteMeasure& measure, const SafeSet& safe_set) {
-  double mass = 0.0;
-  for (Eigen::Index i = 0; i < measure.size(); ++i) {
-    if (clearance(measure.locations.col(i), safe_set) <= 0.0) mass += measure.weights[i];
-  }
-  return mass;
+double unsafe_mass(const Eigen::VectorXd& clearance, const Eigen::VectorXd& weights) {
+  return (clearance.array() <= 0.0).select(weights.array(), 0.0).sum();
 }
 
 /// C3 and C4 of one stage. C4 takes the better of the two for every part of the unsafe set.
@@ -97,8 +93,10 @@ StageCertificate certify_stage(const PredictedMotion& motion, const SafeSet& saf
   certificate.surrogate = surrogate.markov;
   certificate.smoothed = surrogate.smooth;
   const double leaving = budget.leaving;
-  certificate.particles =
-      std::min(1.0, leaving + worst_case_probability(particles, safe_set, budget.total));
+  const Eigen::VectorXd clearance = clearances(particles.locations, safe_set);
+  const double nearest =
+      worst_case_probability(clearance.cwiseMax(0.0), particles.weights, budget.total);
+  certificate.particles = std::min(1.0, leaving + nearest);
   const double least =
       std::min({certificate.particles, certificate.surrogate, certificate.smoothed});
   const GaussianMixture stepped{.centres = motion.prediction.stepped[k],
@@ -108,7 +106,7 @@ StageCertificate certify_stage(const PredictedMotion& motion, const SafeSet& saf
   certificate.mixture =
       std::min(1.0, leaving + smoothed_probability(stepped, safe_set, budget.before_noise, useful));
   certificate.thesis = thesis_probability(particles, safe_set, radius);
-  certificate.unsafe_mass = unsafe_mass(particles, safe_set);
+  certificate.unsafe_mass = unsafe_mass(clearance, particles.weights);
   certificate.value = std::min(least, certificate.mixture);
   // Of equal bounds the simplest is named.
   certificate.kind = certificate.value == certificate.particles   ? "c1"

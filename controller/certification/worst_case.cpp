@@ -2,56 +2,66 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace qsmpc {
 namespace {
 
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
 /// Moves mass in the order of its unit cost until `budget` is spent; returns the mass moved.
 double greedy_transport(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
                         const Eigen::Ref<const Eigen::VectorXd>& weights, double budget) {
-  std::vector<Eigen::Index> order(unit_costs.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](auto a, auto b) {
-    return unit_costs[a] != unit_costs[b] ? unit_costs[a] < unit_costs[b] : a < b;
-  });
-  double moved = 0.0;
-  for (const Eigen::Index i : order) {
-    const double cost = unit_costs[i] * weights[i];
+  // Where there is enough for all that can be moved, the order does not matter.
+  double all_costs = 0.0;
+  double all_mass = 0.0;
+  for (Eigen::Index i = 0; i < unit_costs.size(); ++i) {
+    if (std::isinf(unit_costs[i])) continue;
+    all_costs += unit_costs[i] * weights[i];
+    all_mass += weights[i];
+  }
+  if (all_costs <= budget) return std::min(1.0, all_mass);
+  // Only the nearest are put in order, as far as the budget goes.
+  std::vector<std::pair<double, double>> heap;  // unit cost and mass
+  heap.reserve(unit_costs.size());
+  for (Eigen::Index i = 0; i < unit_costs.size(); ++i) {
     // Mass infinitely far away cannot be moved at all, not even none of it at cost 0 · ∞.
-    if (std::isinf(unit_costs[i])) break;
-    if (cost > budget) return std::min(1.0, moved + budget / unit_costs[i]);
+    if (!std::isinf(unit_costs[i])) heap.emplace_back(unit_costs[i], weights[i]);
+  }
+  std::make_heap(heap.begin(), heap.end(), std::greater<>());
+  double moved = 0.0;
+  for (; !heap.empty(); heap.pop_back()) {
+    std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+    const auto [unit_cost, mass] = heap.back();
+    const double cost = unit_cost * mass;
+    if (cost > budget) return std::min(1.0, moved + budget / unit_cost);
     budget -= cost;
-    moved += weights[i];
+    moved += mass;
   }
   return std::min(1.0, moved);
 }
 
-/// Algorithm 3 with p = 2; unbounded dimensions have no faces and do not count.
-double thesis_distance(const Eigen::Ref<const Eigen::VectorXd>& point, const Box& bounds) {
-  double squares = 0.0;
-  bool bounded = false;
-  for (Eigen::Index axis = 0; axis < point.size(); ++axis) {
-    const double nearest =
-        std::min(point[axis] - bounds.lower[axis], bounds.upper[axis] - point[axis]);
-    if (nearest < 0.0) return 0.0;
-    if (std::isinf(nearest)) continue;
-    squares += nearest * nearest;
-    bounded = true;
+/// Algorithm 3 with p = 2 for every point; unbounded dimensions have no faces and do not count.
+Eigen::VectorXd thesis_distances(const Points& points, const Box& bounds) {
+  const Eigen::Index count = points.cols();
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(count);
+  Eigen::ArrayXd least = Eigen::ArrayXd::Constant(count, kInfinity);
+  for (Eigen::Index axis = 0; axis < points.rows(); ++axis) {
+    const double lower = bounds.lower[axis];
+    const double upper = bounds.upper[axis];
+    if (std::isinf(lower) && std::isinf(upper)) continue;
+    const Eigen::Map<const Eigen::ArrayXd> x(points.data() + axis * count, count);
+    const Eigen::ArrayXd nearest = (x - lower).min(upper - x);
+    squares += nearest.square();
+    least = least.min(nearest);
   }
-  return bounded ? std::sqrt(squares) : std::numeric_limits<double>::infinity();
-}
-
-/// Of every point to the unsafe set.
-Eigen::VectorXd distances_of(const DiscreteMeasure& measure, const SafeSet& safe_set) {
-  Eigen::VectorXd distances(measure.size());
-  for (Eigen::Index i = 0; i < measure.size(); ++i) {
-    distances[i] = distance_to_unsafe(measure.locations.col(i), safe_set);
-  }
-  return distances;
+  const bool bounded = least.size() > 0 && !std::isinf(least[0]);
+  if (!bounded) return Eigen::VectorXd::Constant(count, kInfinity);
+  return (least < 0.0).select(0.0, squares.sqrt()).matrix();
 }
 
 }  // namespace
@@ -72,20 +82,19 @@ double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances
 
 double worst_case_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
                               double radius) {
-  return worst_case_probability(distances_of(measure, safe_set), measure.weights, radius);
+  return worst_case_probability(clearances(measure.locations, safe_set).cwiseMax(0.0),
+                                measure.weights, radius);
 }
 
 double linear_transport_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
                                     double radius) {
-  return greedy_transport(distances_of(measure, safe_set), measure.weights, radius);
+  return greedy_transport(clearances(measure.locations, safe_set).cwiseMax(0.0), measure.weights,
+                          radius);
 }
 
 double thesis_probability(const DiscreteMeasure& measure, const SafeSet& safe_set, double radius) {
-  Eigen::VectorXd distances(measure.size());
-  for (Eigen::Index i = 0; i < measure.size(); ++i) {
-    distances[i] = thesis_distance(measure.locations.col(i), safe_set.bounds);
-  }
-  return greedy_transport(distances, measure.weights, radius);
+  return greedy_transport(thesis_distances(measure.locations, safe_set.bounds), measure.weights,
+                          radius);
 }
 
 }  // namespace qsmpc

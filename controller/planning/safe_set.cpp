@@ -61,4 +61,30 @@ double clearance(const Eigen::Ref<const Eigen::VectorXd>& point, const SafeSet& 
   return least;
 }
 
+Eigen::VectorXd clearances(const Points& points, const SafeSet& safe_set) {
+  const Eigen::Index count = points.cols();
+  Eigen::ArrayXd least;
+  Eigen::ArrayXd depth(count);
+  Eigen::ArrayXd squares(count);
+  const auto measure_box = [&](const Box& box) {
+    depth.setConstant(kInfinity);
+    squares.setZero();
+    for (Eigen::Index axis = 0; axis < safe_set.dim(); ++axis) {
+      const double lower = box.lower[axis];
+      const double upper = box.upper[axis];
+      if (std::isinf(lower) && std::isinf(upper)) continue;
+      const Eigen::Map<const Eigen::ArrayXd> x(points.data() + axis * count, count);
+      depth = depth.min(x - lower).min(upper - x);
+      squares += (lower - x).max(x - upper).max(0.0).square();
+    }
+  };
+  measure_box(safe_set.bounds);
+  least = (depth > 0.0).select(depth, -squares.sqrt());
+  for (const Box& obstacle : safe_set.obstacles) {
+    measure_box(obstacle);
+    least = least.min((depth >= 0.0).select(-depth, squares.sqrt()));
+  }
+  return least.matrix();
+}
+
 }  // namespace qsmpc

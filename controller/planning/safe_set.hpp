@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "controller/measure/measures.hpp"
+
 namespace qsmpc {
 
 /// An axis-aligned box; ±infinity where a coordinate is not restricted.
@@ -44,5 +46,8 @@ void check_safe_set(const SafeSet& safe_set);
 /// leads out of the obstacle, or back into `bounds`. Reports use it as the clearance.
 [[nodiscard]] double clearance(const Eigen::Ref<const Eigen::VectorXd>& point,
                                const SafeSet& safe_set);
+
+/// The clearances of all points (dim x n).
+[[nodiscard]] Eigen::VectorXd clearances(const Points& points, const SafeSet& safe_set);
 
 }  // namespace qsmpc

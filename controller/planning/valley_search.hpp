@@ -25,8 +25,8 @@ class ValleySearch {
   /// `cost` must stay alive.
   ValleySearch(const PlannerSettings& settings, NoiseFreeCost& cost);
 
-  /// Inputs (input_dim x horizon, within the bounds) in different valleys of the cost for the belief
-  /// at which it has been placed, the cheapest first; at least one set of inputs, even after
+  /// Inputs (input_dim x horizon, within the bounds) in different valleys of the cost for the
+  /// belief at which it has been placed, the cheapest first; at least one set of inputs, even after
   /// `deadline`. Valid until the next search.
   const std::vector<const Eigen::MatrixXd*>& search(PolicyMaker& policies,
                                                     std::chrono::steady_clock::time_point deadline);
