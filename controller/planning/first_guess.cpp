@@ -34,9 +34,8 @@ FirstGuess::FirstGuess(const PlannerSettings& settings) {
   }
 }
 
-GuessVerdict FirstGuess::compare(const Eigen::MatrixXd* previous,
-                                 const Eigen::MatrixXd& gain_change, NoiseFreeCost& cost,
-                                 PolicyMaker& policies) {
+bool FirstGuess::compare(const Eigen::MatrixXd* previous, const Eigen::MatrixXd& gain_change,
+                         NoiseFreeCost& cost, PolicyMaker& policies) {
   double least = std::numeric_limits<double>::infinity();
   constant_ = 0;
   for (std::size_t n = 0; n < constants_.size(); ++n) {
@@ -46,11 +45,11 @@ GuessVerdict FirstGuess::compare(const Eigen::MatrixXd* previous,
       constant_ = n;
     }
   }
-  if (previous == nullptr) return GuessVerdict::kConstant;
+  if (previous == nullptr) return false;
   shift_inputs(*previous, shifted_);
   const double value = cost.price(shifted_, gain_change, policies);
-  if (!std::isfinite(value)) return GuessVerdict::kConstant;
-  return clearly_cheaper(least, value) ? GuessVerdict::kDoubtful : GuessVerdict::kPrevious;
+  advantage_ = value - least;
+  return std::isfinite(value);
 }
 
 }  // namespace qsmpc

@@ -15,29 +15,26 @@
 
 namespace qsmpc {
 
-/// What the candidates for a start look like.
-enum class GuessVerdict {
-  kPrevious,  ///< the shifted previous plan is the best of them
-  kDoubtful,  ///< without noise, a constant is clearly cheaper than the shifted previous plan
-  kConstant,  ///< there is no previous plan of a finite cost
-};
-
 class FirstGuess {
  public:
   explicit FirstGuess(const PlannerSettings& settings);
 
   /// Compares them by `cost`, which has been placed at the belief. previous: the inputs of the
-  /// previous plan, or null. Allocates only in the first call.
-  GuessVerdict compare(const Eigen::MatrixXd* previous, const Eigen::MatrixXd& gain_change,
-                       NoiseFreeCost& cost, PolicyMaker& policies);
+  /// previous plan, or null. Returns whether these are there and have a finite cost. Allocates only
+  /// in the first call.
+  [[nodiscard]] bool compare(const Eigen::MatrixXd* previous, const Eigen::MatrixXd& gain_change,
+                             NoiseFreeCost& cost, PolicyMaker& policies);
 
   /// The previous inputs one stage later, and the cheapest of the constants; input_dim x horizon.
   [[nodiscard]] const Eigen::MatrixXd& shifted() const { return shifted_; }
   [[nodiscard]] const Eigen::MatrixXd& constant() const { return constants_[constant_]; }
+  /// How much less than the shifted previous inputs the constant ones cost, without noise.
+  [[nodiscard]] double advantage() const { return advantage_; }
 
  private:
   std::vector<Eigen::MatrixXd> constants_;
   std::size_t constant_ = 0;
+  double advantage_ = 0.0;
   Eigen::MatrixXd shifted_;
 };
 

@@ -152,41 +152,58 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
     gain_change_.setZero();
   }
   noise_free_.place(belief);
-  const GuessVerdict verdict =
-      guess_.compare(previous != nullptr ? &previous->policy.inputs : nullptr, gain_change_,
-                     noise_free_, policies_);
-  if (verdict == GuessVerdict::kDoubtful) round.priced = true;
-  const bool warm = verdict == GuessVerdict::kPrevious ||
-                    (verdict == GuessVerdict::kDoubtful && !constant_is_clearly_cheaper(belief));
-  start_solver(*inputs_.solver, warm);
-  if (gain_search_) start_solver(*gain_search_->solver, warm);
-  if (!warm && valleys_) {
-    start_in_deepest_valley(belief, round);
-  } else if (!round.priced) {
-    set_policy(belief, warm ? guess_.shifted() : guess_.constant(), *current_);
-    if (warm && maps_fit(*last_)) {
+  bool warm = guess_.compare(previous != nullptr ? &previous->policy.inputs : nullptr, gain_change_,
+                             noise_free_, policies_);
+  if (warm) {
+    set_policy(belief, guess_.shifted(), *current_);
+    if (maps_fit(*last_)) {
       last_->prediction.stages[0] = belief_.measure;
       hold(last_->prediction, current_->policy);
     } else {
       predict_and_price(*current_);
       round.priced = true;
     }
+    warm = !constant_is_clearly_cheaper(belief, round);
+  }
+  start_solver(*inputs_.solver, warm);
+  if (gain_search_) start_solver(*gain_search_->solver, warm);
+  if (!warm && valleys_) {
+    start_in_deepest_valley(belief, round);
   } else if (!warm) {
-    std::swap(current_, candidate_);
-    hold(current_->prediction, current_->policy);
+    set_policy(belief, guess_.constant(), *current_);
+    predict_and_price(*current_);
+    round.priced = true;
   }
   stopwatch.add_to(round.timing.propagate);
   return warm;
 }
 
-/// Whether the best constant inputs are clearly cheaper than the shifted previous plan with the
-/// noise, too. Both are predicted, the latter as `current_`, whose assignments are then held.
-bool Planner::constant_is_clearly_cheaper(const Gaussian& belief) {
+/// Whether the best constant inputs are clearly cheaper than the shifted previous plan, which is
+/// `current_`, with the noise, too. Where the assignments that are held do not rule it out, both
+/// are predicted. Leaves the assignments for `current_` held.
+bool Planner::constant_is_clearly_cheaper(const Gaussian& belief, Round& round) {
+  // Without noise many a constant looks better than a plan that is careful because of it.
+  if (!(guess_.advantage() > 0.0)) return false;
   set_policy(belief, guess_.constant(), *candidate_);
+  if (!round.priced) {
+    const double shifted = price_held(*current_);
+    hold(last_->prediction, candidate_->policy);
+    const bool possible = clearly_cheaper(price_held(*candidate_), shifted);
+    if (!possible) {
+      hold(last_->prediction, current_->policy);
+      return false;
+    }
+  }
   predict_and_price(*candidate_);
-  set_policy(belief, guess_.shifted(), *current_);
   predict_and_price(*current_);
+  round.priced = true;
   return clearly_cheaper(candidate_->cost.total(), current_->cost.total());
+}
+
+/// What the assignments that are held say of the plan's cost.
+double Planner::price_held(const Plan& plan) {
+  flatten(plan.policy, inputs_.z);
+  return cost_.price(inputs_.z);
 }
 
 /// Makes `plan` about `inputs`, with the gains that belong to them.

@@ -120,7 +120,8 @@ class Planner {
   [[nodiscard]] bool begin(const Gaussian& belief, Round& round);
   void make_search(Eigen::Index entries, Search& out);
   void start_solver(OcpSolver& solver, bool warm) const;
-  [[nodiscard]] bool constant_is_clearly_cheaper(const Gaussian& belief);
+  [[nodiscard]] bool constant_is_clearly_cheaper(const Gaussian& belief, Round& round);
+  [[nodiscard]] double price_held(const Plan& plan);
   void set_policy(const Gaussian& belief, const Eigen::MatrixXd& inputs, Plan& plan);
   void start_in_deepest_valley(const Gaussian& belief, Round& round);
   void optimise(const Gaussian& belief, Round& round);
