@@ -176,7 +176,9 @@ void copy_parts(const MixtureCopy& copy) {
       for (int c = 0; c < 3; ++c) {
         const std::size_t to = c * to_stride + count;
         const std::size_t from = c * from_stride + i;
-        store_chosen(load(copy.intervals[a].lower + from), some, copy.to_edges[a][0] + to);
+        if (copy.to_edges[a][0] != nullptr) {
+          store_chosen(load(copy.intervals[a].lower + from), some, copy.to_edges[a][0] + to);
+        }
         store_chosen(load(copy.intervals[a].upper + from), some, copy.to_edges[a][1] + to);
       }
     }
@@ -188,7 +190,9 @@ void copy_parts(const MixtureCopy& copy) {
     for (int a = 0; a < copy.dim; ++a) {
       store(zeros(), copy.to_position + a * to_stride + i);
       for (int c = 0; c < 3; ++c) {
-        for (double* const edge : copy.to_edges[a]) store(zeros(), edge + c * to_stride + i);
+        for (double* const edge : copy.to_edges[a]) {
+          if (edge != nullptr) store(zeros(), edge + c * to_stride + i);
+        }
       }
     }
   }

@@ -70,7 +70,8 @@ struct MixtureCopy {
   double* to_source = nullptr;
   double* to_weight = nullptr;
   double* to_position = nullptr;
-  std::array<std::array<double*, 2>, kMixtureDimLimit> to_edges{};  ///< lower and upper, by axis
+  /// Lower and upper, by axis; the lower may be null: it is not copied.
+  std::array<std::array<double*, 2>, kMixtureDimLimit> to_edges{};
   std::size_t to_stride = 0;
 };
 

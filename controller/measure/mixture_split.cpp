@@ -116,6 +116,7 @@ struct MixtureSplitter::Work {
   Eigen::MatrixXd product;
 
   Arena arena;
+  double* nothing = nullptr;  // zeros, for edges where no cut has been
   std::vector<Table> tables;
   std::vector<Cell> cell_list;
   std::vector<std::uint32_t> keys;  // of the cells: rounded(spread), or 0: not to be split
@@ -153,7 +154,7 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
   Cell cell;
   cell.moments.mass = weights.sum();
   second_moment = 0.0;
-  double* const nothing = arena.take(3 * stride);
+  nothing = arena.take(3 * stride);
   std::fill(nothing, nothing + 3 * stride, 0.0);
   for (int a = 0; a < dim; ++a) {
     double* const position = table.position + a * stride;
@@ -327,8 +328,11 @@ void MixtureSplitter::Work::give_own_table(Cell& cell, std::size_t parts) {
   copy.to_position = own.position;
   copy.to_stride = stride;
   for (int a = 0; a < dim; ++a) {
-    for (double*& edge : copy.to_edges[a]) edge = arena.take(3 * stride);
-    cell.intervals[a] = {.lower = copy.to_edges[a][0], .upper = copy.to_edges[a][1]};
+    // Zeros are zeros for any choice of sources.
+    const bool uncut = cell.intervals[a].lower == nothing;
+    copy.to_edges[a] = {uncut ? nullptr : arena.take(3 * stride), arena.take(3 * stride)};
+    cell.intervals[a] = {.lower = uncut ? nothing : copy.to_edges[a][0],
+                         .upper = copy.to_edges[a][1]};
   }
   cell.table = tables.size();
   tables.push_back(own);
