@@ -189,7 +189,7 @@ bool Planner::constant_is_clearly_cheaper(const Gaussian& belief, Round& round) 
     const double shifted = price_held(*current_);
     hold(last_->prediction, candidate_->policy);
     const bool possible = clearly_cheaper(price_held(*candidate_), shifted);
-    if (!possible) {
+    if (!possible || Clock::now() >= round.deadline) {
       hold(last_->prediction, current_->policy);
       return false;
     }

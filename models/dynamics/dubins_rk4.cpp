@@ -5,6 +5,7 @@
 #include <string>
 
 #include "models/dynamics/dubins.hpp"
+#include "models/dynamics/dubins_rk4_batch.hpp"
 #include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/spectral_norm.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
@@ -16,6 +17,21 @@ constexpr const char* kName = "dubins_rk4";
 constexpr const char* kSummary =
     "Dubins car by the Runge-Kutta method: x, y, heading; steered by its yaw rate, which it holds "
     "over a period";
+
+/// Batches go through loops made by hand.
+class DubinsRk4Dynamics final : public TemplatedDynamics<DubinsRk4> {
+ public:
+  using TemplatedDynamics::TemplatedDynamics;
+
+  void step(const BatchView& states, const BatchView& inputs, BatchOut next) const override {
+    step_dubins_rk4(model(), states, inputs, next);
+  }
+
+  void pullback(const BatchView& states, const BatchView& inputs, const BatchView& next_adjoint,
+                BatchOut state_adjoint, BatchOut input_adjoint) const override {
+    pullback_dubins_rk4(model(), states, inputs, next_adjoint, state_adjoint, input_adjoint);
+  }
+};
 
 }  // namespace
 
@@ -64,8 +80,7 @@ std::unique_ptr<const Dynamics> make_dubins_rk4(const ParameterMap& parameters, 
     throw std::invalid_argument("dubins_rk4: speed must be a finite number of at least 0 m/s");
   }
   check_time_step(kName, time_step);
-  return std::make_unique<TemplatedDynamics<DubinsRk4>>(
-      DubinsRk4{.speed = speed, .time_step = time_step});
+  return std::make_unique<DubinsRk4Dynamics>(DubinsRk4{.speed = speed, .time_step = time_step});
 }
 
 SystemEntry dubins_rk4_entry() {

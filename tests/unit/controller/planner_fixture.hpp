@@ -39,6 +39,19 @@ inline Gaussian dubins_belief() {
   return {.mean = Eigen::Vector3d::Zero(), .covariance = 0.01 * Eigen::Matrix3d::Identity()};
 }
 
+/// A block before the car, nearly in the middle of its way: below is a little shorter.
+inline PlannerSettings block_settings() {
+  PlannerSettings settings = dubins_settings();
+  settings.horizon = 12;
+  settings.cost.target << 6.0, 0.0, 0.0;
+  settings.penalty.obstacle = 5000.0;
+  settings.penalty.box = 5000.0;
+  settings.safe_set.bounds.lower.head<2>().setConstant(-10.0);
+  settings.safe_set.obstacles.push_back(
+      {.lower = Eigen::Vector3d(0.7, -0.3, -1e9), .upper = Eigen::Vector3d(1.1, 0.35, 1e9)});
+  return settings;
+}
+
 /// The Dubins car, of which no Lipschitz constant is known, and which gives NaN when `broken`.
 class FragileCar final : public Dynamics {
  public:

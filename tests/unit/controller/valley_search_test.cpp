@@ -11,32 +11,18 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// A block before the car, nearly in the middle of its way: below is a little shorter.
-PlannerSettings block_settings() {
-  PlannerSettings settings = dubins_settings();
-  settings.horizon = 12;
-  settings.cost.target << 6.0, 0.0, 0.0;
-  settings.penalty.obstacle = 5000.0;
-  settings.penalty.box = 5000.0;
-  settings.safe_set.bounds.lower.head<2>().setConstant(-10.0);
-  settings.safe_set.obstacles.push_back(
-      {.lower = Eigen::Vector3d(0.7, -0.3, -1e9), .upper = Eigen::Vector3d(1.1, 0.35, 1e9)});
-  return settings;
-}
-
 class Valleys : public ::testing::Test {
  protected:
   Valleys()
       : car_(dubins_car()),
         settings_(block_settings()),
         policies_(*car_, settings_),
-        cost_(settings_.horizon,
-              {.dynamics = *car_,
-                            .safe_set = settings_.safe_set,
-                            .cost = settings_.cost,
-                            .penalty = settings_.penalty,
-                            .noise_covariance = zero_,
-                            .within_covariance = zero_}),
+        cost_(settings_.horizon, {.dynamics = *car_,
+                                  .safe_set = settings_.safe_set,
+                                  .cost = settings_.cost,
+                                  .penalty = settings_.penalty,
+                                  .noise_covariance = zero_,
+                                  .within_covariance = zero_}),
         search_(settings_, cost_) {}
 
   const std::vector<const Eigen::MatrixXd*>& searched(const Gaussian& belief,

@@ -1,0 +1,17 @@
+// The step along arcs and its reverse mode for whole batches, for the processor's widest vectors.
+#pragma once
+
+#include "models/dynamics/dubins_rk4.hpp"
+
+namespace qsmpc {
+
+/// As Dynamics::step.
+void step_dubins_rk4(const DubinsRk4& car, const Dynamics::BatchView& states,
+                     const Dynamics::BatchView& inputs, Dynamics::BatchOut next);
+
+/// As Dynamics::pullback.
+void pullback_dubins_rk4(const DubinsRk4& car, const Dynamics::BatchView& states,
+                         const Dynamics::BatchView& inputs, const Dynamics::BatchView& next_adjoint,
+                         Dynamics::BatchOut state_adjoint, Dynamics::BatchOut input_adjoint);
+
+}  // namespace qsmpc
