@@ -65,16 +65,22 @@ TEST(FirstGuess, compares_the_shifted_plan_with_the_cheapest_constant) {
   EXPECT_FALSE(Guesses(broken, settings).compare(belief, &previous));
 }
 
-// What a careful plan costs without noise is more than what a careless constant does.
+// A target beside a wall: what a careful plan costs without noise is more than what a careless
+// constant does.
 TEST(FirstGuess, a_plan_that_is_careful_because_of_the_noise_is_gone_on_with) {
   const auto car = dubins_car();
-  const PlannerSettings settings = block_settings();
+  PlannerSettings settings = block_settings();
+  settings.safe_set.bounds.lower[1] = -0.8;
+  settings.cost.target << 6.0, -0.7, 0.0;
+  settings.cost.terminal(1, 1) = 400.0;
+  settings.penalty.box = 2e5;
+  settings.penalty.length = 0.1;
   Planner planner(*car, settings);
   Guesses guesses(*car, settings);
   Gaussian belief = dubins_belief();
   const Plan* plan = &planner.plan(belief);
   int doubts = 0;
-  for (int period = 0; period < 34; ++period) {
+  for (int period = 0; period < 16; ++period) {
     const Eigen::MatrixXd previous = plan->policy.inputs;
     belief.mean = plan->policy.states.col(1);
     EXPECT_TRUE(guesses.compare(belief, &previous));
@@ -83,7 +89,7 @@ TEST(FirstGuess, a_plan_that_is_careful_because_of_the_noise_is_gone_on_with) {
     plan = &planner.plan(belief);
     EXPECT_TRUE(plan->warm) << period;
   }
-  EXPECT_GE(doubts, 3);
+  EXPECT_GE(doubts, 10);
 }
 
 TEST(FirstGuess, a_plan_that_leads_into_a_block_is_given_up) {
