@@ -48,6 +48,7 @@ Json horizon_json(const Comparison& comparison, const PlantComparison& plant) {
     const W2Floor& floor = comparison.floors[static_cast<std::size_t>(stage.stage)];
     stages.push_back({{"stage", stage.stage},
                       {"divergence_rmse", vector_json(stage.divergence_rmse)},
+                      {"w2_to_model", stage.w2_to_model()},
                       {"w2", stage.w2},
                       {"w2_floor", floor.mean},
                       {"w2_floor_deviation", floor.deviation},

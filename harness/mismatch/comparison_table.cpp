@@ -113,9 +113,9 @@ std::string horizon_head(const SystemDescription& system, const std::vector<int>
   std::vector<Coordinate> shown;
   shown.reserve(states.size());
   for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
-  std::string head = state_head(
-      shown, kStageWidth, kStageStateWidth,
-      fmt::format("{:>10}{:>18}{:>11}{:>20}", "W2", "floor", "certified", "observed (99 %)"));
+  std::string head = state_head(shown, kStageWidth, kStageStateWidth,
+                                fmt::format("{:>10}{:>10}{:>18}{:>11}{:>20}", "to model", "W2",
+                                            "floor", "certified", "observed (99 %)"));
   return head.replace(0, kStageWidth, fmt::format("{:>{}}", "stage", kStageWidth));
 }
 
@@ -128,7 +128,7 @@ std::string stage_row(const Comparison& comparison, const HorizonStage& stage,
   }
   const W2Floor& floor = comparison.floors[k];
   row += fmt::format(
-      "{:>10}{:>18}{:>11.1e}{:>20}\n", number(stage.w2),
+      "{:>10}{:>10}{:>18}{:>11.1e}{:>20}\n", number(stage.w2_to_model()), number(stage.w2),
       fmt::format("{} +- {:.3f}", number(floor.mean), floor.deviation),
       comparison.in_force()[k - 1].value,
       fmt::format("[{:.1e}, {:.1e}]", stage.unsafe_limits.lower, stage.unsafe_limits.upper));
@@ -182,6 +182,9 @@ std::string comparison_table(const Comparison& comparison) {
                      printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
          closed_loop_section(comparison) + one_step_section(comparison, system) +
          horizon_section(comparison, system) + certificate_section(comparison) +
+         "to model: W2 between the laws of plant and model is at most this, by paths with the same "
+         "random numbers.\n"
+         "W2: between the predicted particles and the plant's paths; "
          "floor: W2 where the plant is the model, as there are few particles and paths.\n"
          "stages exceeded: the observed rate is certainly (99.5 % each) above the certificate.\n"
          "p: small where more periods end unsafe than certified for them.\n";

@@ -56,6 +56,11 @@ struct HorizonStage {
   Eigen::VectorXd residual_rmse;    ///< of the period that leads to this stage
   std::int64_t unsafe = 0;          ///< paths whose plant is unsafe, or broken, at this stage
   RateInterval unsafe_limits;       ///< Clopper–Pearson, 99 %
+
+  /// √ Σ divergence_rmse²: at least W2 between the laws of plant and model, as far as the paths
+  /// tell, since paths with the same random numbers are a coupling of the two. 0 for the model
+  /// itself, where W2 between ensembles is not.
+  [[nodiscard]] double w2_to_model() const { return divergence_rmse.norm(); }
 };
 
 struct HorizonSettings {

@@ -134,7 +134,8 @@ PageTable stage_table(const Comparison& comparison, const PlantComparison& plant
   for (const Coordinate& state : system.states) {
     table.heads.push_back("divergence, " + escape_html(state.name));
   }
-  for (const char* head : {"W₂", "floor of W₂", "certified"}) table.heads.emplace_back(head);
+  for (const char* head : {"W₂ to the model, at most", "W₂", "floor of W₂", "certified"})
+    table.heads.emplace_back(head);
   if (comparison.with_error) table.heads.emplace_back("with model error");
   table.heads.emplace_back("observed, 99 % interval");
   table.heads.emplace_back("exceeded");
@@ -143,6 +144,7 @@ PageTable stage_table(const Comparison& comparison, const PlantComparison& plant
     const W2Floor& floor = comparison.floors[static_cast<std::size_t>(stage.stage)];
     std::vector<std::string> row = {fmt::format("{}", stage.stage)};
     for (const double value : stage.divergence_rmse) row.push_back(number_html(value));
+    row.push_back(number_html(stage.w2_to_model()));
     row.push_back(number_html(stage.w2));
     row.push_back(plus_minus(floor.mean, floor.deviation));
     row.push_back(number_html(comparison.certificates[k].value));

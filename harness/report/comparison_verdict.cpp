@@ -55,7 +55,7 @@ bool is_exceeded_in_closed_loop(const PlantComparison& plant) {
 double largest_divergence(const PlantComparison& plant) {
   double largest = -1.0;
   for (const HorizonStage& stage : plant.horizon) {
-    const double norm = stage.divergence_rmse.norm();
+    const double norm = stage.w2_to_model();
     if (std::isfinite(norm)) largest = std::max(largest, norm);
   }
   return largest < 0.0 ? std::numeric_limits<double>::infinity() : largest;

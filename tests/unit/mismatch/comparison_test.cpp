@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -103,6 +104,30 @@ TEST(ComparePlants, the_analytic_plant_is_the_model_but_for_rounding) {
     const W2Floor& floor = comparison->floors[static_cast<std::size_t>(stage.stage)];
     // As in W2Floors: 1 in 1000.
     EXPECT_LT(std::abs(stage.w2 - floor.mean), 5.41 * 1.07 * floor.deviation) << stage.stage;
+  }
+}
+
+// The corridor's car turns along arcs, as its joints do: what separates these from the model is
+// MuJoCo's integrator; what separates the wheeled car is tyres, suspension and servos.
+TEST(ComparePlants, in_the_corridor_the_planar_car_is_nearer_to_the_model_than_the_wheeled_one) {
+  const Scenario corridor = load_scenario("dubins_corridor", {});
+  ComparisonOptions options = small_options({"analytic", "mujoco_planar", "mujoco_car"});
+  options.paths = 200;
+  const auto comparison = compare_plants(corridor, options);
+  ASSERT_TRUE(comparison);
+  const auto& [model, planar, wheeled] =
+      std::tie(comparison->plants[0], comparison->plants[1], comparison->plants[2]);
+  EXPECT_LT(model.one_step.rmse.norm(), 1e-14);
+  EXPECT_LT(model.one_step.rmse.norm(), planar.one_step.rmse.norm());
+  EXPECT_LT(planar.one_step.rmse.norm(), wheeled.one_step.rmse.norm());
+  ASSERT_EQ(planar.horizon.size(), 8U);
+  for (std::size_t k = 0; k < planar.horizon.size(); ++k) {
+    EXPECT_LT(model.horizon[k].w2_to_model(), 1e-14) << k;
+    EXPECT_LT(model.horizon[k].w2_to_model(), planar.horizon[k].w2_to_model()) << k;
+    EXPECT_LT(planar.horizon[k].w2_to_model(), wheeled.horizon[k].w2_to_model()) << k;
+    // As in W2Floors: 1 in 1000.
+    const W2Floor& floor = comparison->floors[k + 1];
+    EXPECT_LT(std::abs(model.horizon[k].w2 - floor.mean), 5.41 * 1.07 * floor.deviation) << k;
   }
 }
 
