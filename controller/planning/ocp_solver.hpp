@@ -60,7 +60,7 @@ struct OcpProblem {
 
 struct SolverOptions {
   int max_evaluations = 100;         ///< of cost and gradient, ≥ 1
-  double relative_tolerance = 1e-7;  ///< stop when the cost falls by less, relatively
+  double relative_tolerance = 1e-8;  ///< stop when the cost falls by less, relatively
   /// No evaluation begins later.
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
   double constraint_tolerance = 1e-6;  ///< a constraint up to here counts as kept

@@ -14,6 +14,9 @@ namespace {
 constexpr int kAssignmentRounds = 3;
 // The same with the gains among what is optimised.
 constexpr int kGainRounds = 2;
+// On a warm start the rounds need not be more precise than this, relatively: the next period goes
+// on.
+constexpr double kWarmTolerance = 1e-7;
 // What a round must promise of the cost, relatively, to be worth a prediction.
 constexpr double kSettled = 1e-5;
 // How far a particle may be beyond a bound (m, or the state's unit) and still count as within.
@@ -120,7 +123,7 @@ const Plan& Planner::plan(const Gaussian& belief) {
   }
   current_ = spare[0];
   candidate_ = spare[1];
-  const bool warm = begin(belief, round);
+  round.warm = begin(belief, round);
   optimise(belief, round);
   bool fallback = false;
   if (!std::isfinite(current_->cost.total()) && last_ != nullptr) {
@@ -130,7 +133,7 @@ const Plan& Planner::plan(const Gaussian& belief) {
   current_->belief = belief_;
   current_->status = round.status;
   current_->evaluations = round.evaluations;
-  current_->warm = warm;
+  current_->warm = round.warm;
   current_->fallback = fallback;
   current_->timing = round.timing;
   failed_ = fallback || round.status == SolverStatus::kNumericalTrouble;
@@ -316,6 +319,7 @@ bool Planner::run_solver(Search& search, Round& round) {
   flatten(current_->policy, search.z);
   SolverOptions options{.max_evaluations = settings_.max_evaluations - round.evaluations,
                         .constraint_tolerance = kConstraintTolerance};
+  if (round.warm) options.relative_tolerance = kWarmTolerance;
   if (round.deadline != Clock::time_point::max()) {
     // Time for the prediction that belongs to the result.
     options.deadline =

@@ -99,6 +99,7 @@ class Planner {
   /// One plan in the making.
   struct Round {
     Clock::time_point deadline;
+    bool warm = false;    // whether it goes on from the last plan
     bool priced = false;  // whether `current_` is a plan with a prediction of its own
     SolverStatus status = SolverStatus::kConverged;
     int evaluations = 0;

@@ -16,9 +16,9 @@ namespace {
 
 constexpr std::size_t kNameWidth = 20;   // of plants and of rows
 constexpr std::size_t kStateWidth = 12;  // of what is said by state; six fit a line
-constexpr std::size_t kStageWidth = 7;
-constexpr std::size_t kStageStateWidth = 10;
-constexpr std::size_t kNameLimit = 9;  // of a state among stages; a longer one is cut and marked
+constexpr std::size_t kStageWidth = 5;
+constexpr std::size_t kStageStateWidth = 9;
+constexpr std::size_t kNameLimit = 8;  // of a state among stages; a longer one is cut and marked
 constexpr double kSurprising = 0.01;   // a p-value below it is marked
 
 std::string plant_name(const std::string& name) {
@@ -114,7 +114,7 @@ std::string horizon_head(const SystemDescription& system, const std::vector<int>
   shown.reserve(states.size());
   for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
   std::string head = state_head(shown, kStageWidth, kStageStateWidth,
-                                fmt::format("{:>10}{:>10}{:>18}{:>11}{:>20}", "to model", "W2",
+                                fmt::format("{:>10}{:>9}{:>16}{:>10}{:>19}", "to model", "W2",
                                             "floor", "certified", "observed (99 %)"));
   return head.replace(0, kStageWidth, fmt::format("{:>{}}", "stage", kStageWidth));
 }
@@ -128,7 +128,7 @@ std::string stage_row(const Comparison& comparison, const HorizonStage& stage,
   }
   const W2Floor& floor = comparison.floors[k];
   row += fmt::format(
-      "{:>10}{:>10}{:>18}{:>11.1e}{:>20}\n", number(stage.w2_to_model()), number(stage.w2),
+      "{:>10}{:>9}{:>16}{:>10.1e}{:>19}\n", number(stage.w2_to_model()), number(stage.w2),
       fmt::format("{} +- {:.3f}", number(floor.mean), floor.deviation),
       comparison.in_force()[k - 1].value,
       fmt::format("[{:.1e}, {:.1e}]", stage.unsafe_limits.lower, stage.unsafe_limits.upper));
@@ -182,9 +182,8 @@ std::string comparison_table(const Comparison& comparison) {
                      printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
          closed_loop_section(comparison) + one_step_section(comparison, system) +
          horizon_section(comparison, system) + certificate_section(comparison) +
-         "to model: W2 between the laws of plant and model is at most this, by paths with the same "
-         "random numbers.\n"
-         "W2: between the predicted particles and the plant's paths; "
+         "to model: W2 between the laws of plant and model at most, from paths with equal numbers.\n"
+         "W2: between the predicted particles and the plant's paths.\n"
          "floor: W2 where the plant is the model, as there are few particles and paths.\n"
          "stages exceeded: the observed rate is certainly (99.5 % each) above the certificate.\n"
          "p: small where more periods end unsafe than certified for them.\n";
