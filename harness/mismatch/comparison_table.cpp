@@ -182,7 +182,8 @@ std::string comparison_table(const Comparison& comparison) {
                      printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
          closed_loop_section(comparison) + one_step_section(comparison, system) +
          horizon_section(comparison, system) + certificate_section(comparison) +
-         "to model: W2 between the laws of plant and model at most, from paths with equal numbers.\n"
+         "to model: W2 between the laws of plant and model at most, from paths with equal "
+         "numbers.\n"
          "W2: between the predicted particles and the plant's paths.\n"
          "floor: W2 where the plant is the model, as there are few particles and paths.\n"
          "stages exceeded: the observed rate is certainly (99.5 % each) above the certificate.\n"
