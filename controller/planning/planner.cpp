@@ -172,6 +172,9 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
   if (gain_search_) start_solver(*gain_search_->solver, warm);
   if (!warm && valleys_) {
     start_in_deepest_valley(belief, round);
+  } else if (!warm && round.priced) {
+    std::swap(current_, candidate_);  // the constant inputs, which won
+    hold(current_->prediction, current_->policy);
   } else if (!warm) {
     set_policy(belief, guess_.constant(), *current_);
     predict_and_price(*current_);
@@ -198,8 +201,12 @@ bool Planner::constant_is_clearly_cheaper(const Gaussian& belief, Round& round) 
     }
   }
   predict_and_price(*candidate_);
-  predict_and_price(*current_);
-  round.priced = true;
+  if (round.priced) {
+    hold(current_->prediction, current_->policy);
+  } else {
+    predict_and_price(*current_);
+    round.priced = true;
+  }
   return clearly_cheaper(candidate_->cost.total(), current_->cost.total());
 }
 
