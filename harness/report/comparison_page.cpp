@@ -134,11 +134,11 @@ PageTable stage_table(const Comparison& comparison, const PlantComparison& plant
   for (const Coordinate& state : system.states) {
     table.heads.push_back("divergence, " + escape_html(state.name));
   }
-  for (const char* head : {"W₂ to the model, at most", "W₂", "floor of W₂", "certified"})
+  for (const char* head : {"W₂ to the model, at most", "W₂", "floor of W₂", "certified"}) {
     table.heads.emplace_back(head);
+  }
   if (comparison.with_error) table.heads.emplace_back("with model error");
   table.heads.emplace_back("observed, 99 % interval");
-  table.heads.emplace_back("exceeded");
   for (std::size_t k = 0; k < plant.horizon.size(); ++k) {
     const HorizonStage& stage = plant.horizon[k];
     const W2Floor& floor = comparison.floors[static_cast<std::size_t>(stage.stage)];
@@ -149,8 +149,8 @@ PageTable stage_table(const Comparison& comparison, const PlantComparison& plant
     row.push_back(plus_minus(floor.mean, floor.deviation));
     row.push_back(number_html(comparison.certificates[k].value));
     if (comparison.with_error) row.push_back(number_html((*comparison.with_error)[k].value));
-    row.push_back(rate_html(comparison, stage));
-    row.emplace_back(is_exceeded(plant, k) ? "<strong>yes</strong>" : "no");
+    row.push_back(rate_html(comparison, stage) +
+                  (is_exceeded(plant, k) ? " <strong>exceeded</strong>" : ""));
     table.rows.push_back(std::move(row));
   }
   return table;
