@@ -130,7 +130,10 @@ const Plan& Planner::plan(const Gaussian& belief) {
     fall_back(belief);
     fallback = true;
   }
-  current_->belief = belief_;
+  // A place in which no plan has been finished yet is made ready at once, not in some later period.
+  for (Plan& plan : plans_) {
+    if (&plan == current_ || plan.belief.measure.size() == 0) plan.belief = belief_;
+  }
   current_->status = round.status;
   current_->evaluations = round.evaluations;
   current_->warm = round.warm;

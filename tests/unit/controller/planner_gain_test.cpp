@@ -65,7 +65,7 @@ TEST(PlannerGain, optimising_pays_where_the_given_gain_is_a_bad_one) {
 
 TEST(PlannerGain, warm_starts_keep_the_gain_that_was_found) {
   const auto car = dubins_car();
-  PlannerSettings settings = room_settings(400.0);
+  PlannerSettings settings = room_settings(200.0);
   settings.optimise_gain = true;
   Planner planner(*car, settings);
   Gaussian belief = dubins_belief();
