@@ -80,6 +80,29 @@ TEST(SafeSet, clearance_in_the_unsafe_set_is_minus_the_way_out) {
   }
 }
 
+TEST(SafeSet, clearances_of_many_points_are_those_of_each) {
+  Generator generator(33);
+  SafeSet room = room_with_a_pillar();
+  room.bounds.upper[0] = kInfinity;
+  for (const SafeSet& safe_set : {room_with_a_pillar(), room, unbounded_safe_set(2)}) {
+    Points points(2, 203);
+    for (double& x : points.reshaped()) x = uniform(generator, -2.0, 6.0);
+    points.col(7) << 4.0, 1.5;    // on a wall
+    points.col(100) << 2.0, 1.5;  // on the pillar
+    const Eigen::VectorXd found = clearances(points, safe_set);
+    ASSERT_EQ(found.size(), points.cols());
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const double expected = clearance(points.col(i), safe_set);
+      if (std::isinf(expected)) {
+        EXPECT_EQ(found[i], expected);
+      } else {
+        EXPECT_NEAR(found[i], expected, kRounding) << points.col(i).transpose();
+      }
+      EXPECT_EQ(found[i] <= 0.0, expected <= 0.0);
+    }
+  }
+}
+
 TEST(SafeSet, boundaries_count_as_unsafe) {
   const SafeSet room = room_with_a_pillar();
   for (const Eigen::Vector2d& point :
