@@ -84,6 +84,10 @@ Eigen::VectorXd clearances(const Points& points, const SafeSet& safe_set) {
     measure_box(obstacle);
     least = least.min((depth >= 0.0).select(-depth, squares.sqrt()));
   }
+  // What is not a number is not safe; minima may have lost it.
+  for (const auto& x : points.rowwise()) {
+    least = (x.transpose().array().isFinite()).select(least, -kInfinity);
+  }
   return least.matrix();
 }
 

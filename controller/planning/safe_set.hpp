@@ -47,7 +47,7 @@ void check_safe_set(const SafeSet& safe_set);
 [[nodiscard]] double clearance(const Eigen::Ref<const Eigen::VectorXd>& point,
                                const SafeSet& safe_set);
 
-/// The clearances of all points (dim x n).
+/// The clearances of all points (dim x n); −infinity where a coordinate is not finite.
 [[nodiscard]] Eigen::VectorXd clearances(const Points& points, const SafeSet& safe_set);
 
 }  // namespace qsmpc

@@ -100,6 +100,14 @@ TEST(SafeSet, clearances_of_many_points_are_those_of_each) {
       }
       EXPECT_EQ(found[i] <= 0.0, expected <= 0.0);
     }
+    for (const double broken : {std::nan(""), kInfinity, -kInfinity}) {
+      for (const int axis : {0, 1}) {
+        Points lost = points;
+        lost(axis, 11) = broken;
+        EXPECT_EQ(clearances(lost, safe_set)[11], -kInfinity);
+        EXPECT_EQ(clearances(lost, safe_set)[12], found[12]);
+      }
+    }
   }
 }
 
