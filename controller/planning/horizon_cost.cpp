@@ -26,11 +26,8 @@ HorizonCost::HorizonCost(const HorizonCostTerms& terms, Executor run)
       terminal_form_(terms.cost.terminal, terms.cost.target),
       input_form_(terms.cost.input, Eigen::VectorXd::Zero(terms.cost.input.rows())),
       penalties_(terms.safe_set, terms.penalty),
-      expected_bounds_(penalties_) {
-  // Of the printed penalty nothing is taken in expectation.
-  const bool smooth = terms.penalty.shape == PenaltyShape::kSmooth;
-  (smooth ? penalties_.bounds : expected_bounds_.bounds).clear();
-  expected_bounds_.obstacles.clear();
+      expected_bounds_(terms.safe_set, terms.penalty) {
+  if (terms.penalty.shape == PenaltyShape::kSmooth) penalties_.bounds.clear();
 }
 
 HorizonCost::HorizonCost(const HorizonCostTerms& terms, const Prediction& prediction,
@@ -174,8 +171,8 @@ void HorizonCost::forward(const Eigen::VectorXd& z) {
       parts_.input += part.input;
       parts_.state += part.state;
       parts_.terminal += part.terminal;
-      parts_.box += part.box;
     }
+    parts_.box += price_bounds(k);
     const bool spread = prediction_->maps[k].spread.size() != 0;
     if (spread) {
       for_chunks(run_, clusters, [&](ParticleRange range, int) {
@@ -211,14 +208,22 @@ CostParts HorizonCost::forward_sources(Eigen::Index k, ParticleRange range) {
     cost.state =
         weighted_quadratic(state_form_, 0.5, stage.stepped, weights, range, stage.state_gradient);
   }
-  if (!expected_bounds_.bounds.empty() && expected_bounds_.penalty.box > 0.0) {
-    cost.box = add_expected_bounds(expected_bounds_, noise_deviations_, stage.stepped, weights,
-                                   range, stage.state_gradient);
-  }
   if (!prediction_->maps[k].identity) {
     pack(stage.stepped, range.begin, range.end, stage.packed_stepped);
   }
   return cost;
+}
+
+/// The penalties of the bounds for the next state, in expectation.
+double HorizonCost::price_bounds(Eigen::Index k) {
+  if (expected_bounds_.empty()) return 0.0;
+  Stage& stage = stages_[k];
+  // Particles that no compression has made stand for themselves alone.
+  const double smoothing =
+      prediction_->maps[k].identity ? 0.0 : smoothing_of(stage.points.cols(), stage.points.rows());
+  return expected_bounds_.add({.noise_deviation = noise_deviations_, .smoothing = smoothing},
+                              stage.stepped, prediction_->stages[k].weights, run_,
+                              stage.state_gradient);
 }
 
 /// Some particles of stage k + 1, and their penalties.

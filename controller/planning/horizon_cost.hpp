@@ -7,7 +7,7 @@
 // before this stage's compression, which would lose a part of the second moment:
 //     ½ E|x − r|²_Q = ½ Σ_i ρ_i |f_i − r|²_Q + ½ tr(Q Σ_w),
 // and the terminal cost (Eq. 4-19) likewise, without the ½. The smooth penalties of the bounds are
-// taken there, too, in expectation over the noise; the others act on the compressed points.
+// taken there, too, in expectation (expected_bounds.hpp); the others act on the compressed points.
 #pragma once
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include <Eigen/Core>
 
 #include "controller/parallel.hpp"
+#include "controller/planning/expected_bounds.hpp"
 #include "controller/planning/penalty.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/planning/stage_kernels.hpp"
@@ -128,6 +129,7 @@ class HorizonCost {
   void set_decision(const Eigen::VectorXd& z);
   void forward(const Eigen::VectorXd& z);
   [[nodiscard]] CostParts forward_sources(Eigen::Index k, ParticleRange range);
+  [[nodiscard]] double price_bounds(Eigen::Index k);
   [[nodiscard]] PenaltyValue forward_clusters(Eigen::Index k, ParticleRange range);
   void backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient);
   void backward_sources(Eigen::Index k, bool with_cost, ParticleRange range, Partial& partial);
@@ -142,8 +144,8 @@ class HorizonCost {
   QuadraticForm state_form_;
   QuadraticForm terminal_form_;
   QuadraticForm input_form_;
-  PenaltyTable penalties_;        // at the particles
-  PenaltyTable expected_bounds_;  // before noise and compression, in expectation over the noise
+  PenaltyTable penalties_;          // at the particles
+  ExpectedBounds expected_bounds_;  // before noise and compression
   Eigen::VectorXd noise_deviations_;
   const Prediction* prediction_ = nullptr;
   Policy policy_;                       // with the decision last evaluated

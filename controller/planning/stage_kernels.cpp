@@ -8,7 +8,6 @@
 #define HWY_TARGET_INCLUDE "controller/planning/stage_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-#include "controller/measure/normal_cdf-inl.hpp"
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -151,38 +150,6 @@ HWY_INLINE Hinge hinge(Vector signed_distance, Vector inverse_length) {
   return {hn::IfThenZeroElse(far, value), hn::IfThenZeroElse(far, slope)};
 }
 
-// Standard deviations from a hinge beyond which normal_values leaves nothing of it.
-constexpr double kFarDeviations = 8.3;
-
-/// E(m + s z)²₊ and half its derivative with respect to m, for standard normal z and s > 0: with
-/// a = m/s, (m² + s²) Φ(a) + m s φ(a) and m Φ(a) + s φ(a).
-struct SquaredHinge {
-  Vector value;
-  Vector half_slope;
-};
-
-HWY_INLINE SquaredHinge squared_hinge_of_normal(Vector mean, Vector spread) {
-  const NormalValues normal = normal_values(mean / spread);
-  const Vector half_slope = mean * normal.probability + spread * normal.density;
-  return {mean * half_slope + spread * spread * normal.probability, half_slope};
-}
-
-/// E h(r + s z) for a ratio r = distance/ℓ and its derivative with respect to r. With t = 1 − r,
-/// h = ½ t²₊ − ½ (t − 1)²₊.
-HWY_INLINE Hinge hinge_of_normal(Vector ratio, Vector spread) {
-  const Vector t = constant(1.0) - ratio;
-  const SquaredHinge whole = squared_hinge_of_normal(t, spread);
-  const SquaredHinge beyond = squared_hinge_of_normal(t - constant(1.0), spread);
-  const Vector reach = constant(kFarDeviations) * spread;
-  const Mask far = hn::Lt(t, zeros() - reach);
-  const Mask deep = hn::Gt(t - constant(1.0), reach);
-  const Vector value = constant(0.5) * (whole.value - beyond.value);
-  const Vector slope = beyond.half_slope - whole.half_slope;
-  // Far away squares may be infinite; deep inside h is straight.
-  return {hn::IfThenZeroElse(far, hn::IfThenElse(deep, t - constant(0.5), value)),
-          hn::IfThenZeroElse(far, hn::IfThenElse(deep, constant(-1.0), slope))};
-}
-
 HWY_INLINE Vector positive(Vector value) { return hn::Max(value, zeros()); }
 
 /// Where a point is relative to an obstacle.
@@ -209,15 +176,6 @@ class PenaltyLoops {
     PenaltyValue value;
     for (const PenaltyTable::Face& face : table_.bounds) value.box += smooth_bound(face);
     for (const auto& obstacle : table_.obstacles) value.obstacle += smooth_obstacle(obstacle);
-    return value;
-  }
-
-  double expected_bounds(const Eigen::VectorXd& deviations) {
-    double value = 0.0;
-    for (const PenaltyTable::Face& face : table_.bounds) {
-      const double deviation = deviations[face.axis];
-      value += deviation > 0.0 ? smooth_bound_of_normal(face, deviation) : smooth_bound(face);
-    }
     return value;
   }
 
@@ -251,28 +209,6 @@ class PenaltyLoops {
       const Vector weight = scale * load_at(weight_ + i);
       sum.add(part, weight * (low.value + high.value));
       add(load_at, store_at, face.axis, i, weight * (low.slope - high.slope));
-    });
-    return sum.total();
-  }
-
-  /// Expectation of the bounds' penalties over normal noise of this standard deviation.
-  double smooth_bound_of_normal(const PenaltyTable::Face& face, double deviation) {
-    const VectorTag d;
-    const Vector scale = constant(table_.penalty.box);
-    const Vector spread = constant(deviation) * inverse_length_;
-    Sum sum;
-    for_vectors(size_, [&](std::size_t i, auto load_at, auto store_at, std::size_t part) HWY_ATTR {
-      const Vector x = coordinate(load_at, face.axis, i);
-      const Vector below = (x - constant(face.lower)) * inverse_length_;
-      const Vector above = (constant(face.upper) - x) * inverse_length_;
-      // Most particles are far from both faces; NaN is not.
-      const Vector far = constant(1.0) + constant(kFarDeviations) * spread;
-      if (hn::AllTrue(d, hn::And(hn::Gt(below, far), hn::Gt(above, far)))) return;
-      const Hinge low = hinge_of_normal(below, spread);
-      const Hinge high = hinge_of_normal(above, spread);
-      const Vector weight = scale * load_at(weight_ + i);
-      sum.add(part, weight * (low.value + high.value));
-      add(load_at, store_at, face.axis, i, weight * inverse_length_ * (low.slope - high.slope));
     });
     return sum.total();
   }
@@ -390,13 +326,6 @@ class PenaltyLoops {
   Vector inverse_length_;
 };
 
-double expected_bounds_loops(const PenaltyTable& table, const Eigen::VectorXd& deviations,
-                             const Points& points, const Eigen::VectorXd& weights,
-                             ParticleRange range, Points& gradient) {
-  PenaltyLoops loops(table, points, weights, range, gradient);
-  return loops.expected_bounds(deviations);
-}
-
 PenaltyValue penalty_loops(const PenaltyTable& table, const Points& locations,
                            const Eigen::VectorXd& weights, ParticleRange range, Points& adjoint) {
   for (Eigen::Index axis = 0; axis < adjoint.rows(); ++axis) {
@@ -418,7 +347,6 @@ HWY_EXPORT(policy_forward);
 HWY_EXPORT(policy_backward);
 HWY_EXPORT(quadratic);
 HWY_EXPORT(add_rows);
-HWY_EXPORT(expected_bounds_loops);
 HWY_EXPORT(penalty_loops);
 
 namespace {
@@ -466,13 +394,6 @@ PenaltyTable::PenaltyTable(const SafeSet& safe_set, const Penalty& chosen)
 PenaltyValue penalise(const PenaltyTable& table, const Points& locations,
                       const Eigen::VectorXd& weights, ParticleRange range, Points& adjoint) {
   return HWY_DYNAMIC_DISPATCH(penalty_loops)(table, locations, weights, range, adjoint);
-}
-
-double add_expected_bounds(const PenaltyTable& table, const Eigen::VectorXd& deviations,
-                           const Points& points, const Eigen::VectorXd& weights,
-                           ParticleRange range, Points& gradient) {
-  return HWY_DYNAMIC_DISPATCH(expected_bounds_loops)(table, deviations, points, weights, range,
-                                                     gradient);
 }
 
 }  // namespace qsmpc

@@ -72,12 +72,4 @@ class PenaltyTable {
 PenaltyValue penalise(const PenaltyTable& table, const Points& locations,
                       const Eigen::VectorXd& weights, ParticleRange range, Points& adjoint);
 
-/// The expectation of the bounds' smooth penalties, Σ_i weights_i E h(x_i + n) over all faces, for
-/// normal noise n with the standard deviations `deviations` (d) in the coordinates; its gradient is
-/// added to `gradient` (d x n). h is quadratic, then linear (penalty.hpp), so that this has a
-/// closed form.
-double add_expected_bounds(const PenaltyTable& table, const Eigen::VectorXd& deviations,
-                           const Points& points, const Eigen::VectorXd& weights,
-                           ParticleRange range, Points& gradient);
-
 }  // namespace qsmpc

@@ -114,14 +114,29 @@ ValueAndSlope squared_hinge(double m, double s) {
   return {(m * m + s * s) * inside + m * s * density, m * inside + s * density};
 }
 
+/// By the distance and by the deviation.
+struct ExpectedHinge {
+  double value = 0.0;
+  double slope = 0.0;
+  double deviation_slope = 0.0;
+};
+
 /// E h(distance + n) for normal noise n: h is ½ t²₊ − ½ (t − 1)²₊ with t = 1 − distance/length.
-ValueAndSlope expected_hinge(double distance, double deviation, double length) {
-  if (deviation == 0.0) return hinge(distance, length);
+ExpectedHinge expected_hinge(double distance, double deviation, double length) {
+  if (deviation == 0.0) {
+    const ValueAndSlope plain = hinge(distance, length);
+    return {plain.value, plain.slope, 0.0};
+  }
   if (std::isinf(distance)) return {};
   const double t = 1.0 - distance / length;
-  const ValueAndSlope whole = squared_hinge(t, deviation / length);
-  const ValueAndSlope beyond = squared_hinge(t - 1.0, deviation / length);
-  return {0.5 * (whole.value - beyond.value), (beyond.slope - whole.slope) / length};
+  const double s = deviation / length;
+  const ValueAndSlope whole = squared_hinge(t, s);
+  const ValueAndSlope beyond = squared_hinge(t - 1.0, s);
+  // d/ds ½ E(t + s z)²₊ = E z (t + s z)₊ = s P(t + s z > 0), by Stein's identity.
+  const double between =
+      0.5 * (std::erfc(-t / s / std::sqrt(2.0)) - std::erfc(-(t - 1.0) / s / std::sqrt(2.0)));
+  return {0.5 * (whole.value - beyond.value), (beyond.slope - whole.slope) / length,
+          s * between / length};
 }
 
 bool bounded(const Box& box, Eigen::Index axis) {
@@ -138,20 +153,29 @@ class PlainPenalty {
     return penalty_.shape == PenaltyShape::kThesis ? thesis(x, slope) : smooth(x, slope);
   }
 
-  /// Of the bounds, in expectation over the noise; 0 for the printed shape, which has them above.
-  double of_bounds(const Eigen::VectorXd& x, const Eigen::MatrixXd& noise,
-                   Eigen::VectorXd& slope) const {
+  /// Of the bounds, for particles (d x n) that stand for normal laws of these deviations; 0 for the
+  /// printed shape, which has them above. Overwrites the slopes by the particles (d x n) and by the
+  /// deviations (d) with those of the weighted sum.
+  double of_bounds(const Eigen::MatrixXd& x, const Eigen::VectorXd& weights,
+                   const Eigen::VectorXd& deviations, Eigen::MatrixXd& slopes,
+                   Eigen::VectorXd& deviation_slopes) const {
     double value = 0.0;
+    slopes.setZero(x.rows(), x.cols());
+    deviation_slopes.setZero(x.rows());
     if (penalty_.shape == PenaltyShape::kThesis) return value;
     const Box& room = safe_set_.bounds;
-    for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
-      const double deviation = std::sqrt(noise(axis, axis));
-      const ValueAndSlope low =
-          expected_hinge(x[axis] - room.lower[axis], deviation, penalty_.length);
-      const ValueAndSlope high =
-          expected_hinge(room.upper[axis] - x[axis], deviation, penalty_.length);
-      value += penalty_.box * (low.value + high.value);
-      slope[axis] += penalty_.box * (low.slope - high.slope);
+    for (Eigen::Index axis = 0; axis < x.rows(); ++axis) {
+      for (Eigen::Index i = 0; i < x.cols(); ++i) {
+        for (const double side : {1.0, -1.0}) {
+          const double distance =
+              side > 0.0 ? x(axis, i) - room.lower[axis] : room.upper[axis] - x(axis, i);
+          const ExpectedHinge h = expected_hinge(distance, deviations[axis], penalty_.length);
+          const double weight = penalty_.box * weights[i];
+          value += weight * h.value;
+          slopes(axis, i) += side * weight * h.slope;
+          deviation_slopes[axis] += weight * h.deviation_slope;
+        }
+      }
     }
     return value;
   }
@@ -297,12 +321,7 @@ class PlainHorizon {
       Stage& stage = stages_[k];
       for (std::size_t i = 0; i < stage.states.size(); ++i) act(k, i);
       price_states(k + 1, stage.stepped, terms_.noise_covariance, k);
-      for (std::size_t i = 0; i < stage.stepped.size(); ++i) {
-        Eigen::VectorXd slope = Eigen::VectorXd::Zero(dim_);
-        result_.parts.box +=
-            weight(k, i) * penalty.of_bounds(stage.stepped[i], terms_.noise_covariance, slope);
-        stage.bound_slope.emplace_back(weight(k, i) * slope);
-      }
+      price_bounds(k, penalty);
       Stage& next = stages_[k + 1];
       next.states = moved(prediction_.maps[k], stage.stepped);
       for (std::size_t n = 0; n < next.states.size(); ++n) {
@@ -312,6 +331,40 @@ class PlainHorizon {
         result_.parts.obstacle += weight(k + 1, n) * value.obstacle;
         next.penalty_slope.emplace_back(weight(k + 1, n) * slope);
       }
+    }
+  }
+
+  /// Of what the stepped particles stand for: m + θ (f_i − m), and a normal law of the variance
+  /// σ² + (1 − θ²) v (expected_bounds.hpp).
+  void price_bounds(Eigen::Index k, const PlainPenalty& penalty) {
+    Stage& stage = stages_[k];
+    const auto count = static_cast<Eigen::Index>(stage.stepped.size());
+    const double smoothing = prediction_.compressed ? smoothing_of(count, dim_) : 0.0;
+    const double share = std::sqrt(1.0 - smoothing);
+    Eigen::VectorXd weights(count);
+    Eigen::MatrixXd stepped(dim_, count);
+    for (Eigen::Index i = 0; i < count; ++i) {
+      weights[i] = weight(k, i);
+      stepped.col(i) = stage.stepped[i];
+    }
+    const Eigen::VectorXd mean = stepped * weights;
+    const Eigen::MatrixXd away = stepped.colwise() - mean;
+    const Eigen::VectorXd variance = away.cwiseAbs2() * weights;
+    const Eigen::VectorXd deviations =
+        (terms_.noise_covariance.diagonal() + smoothing * variance).cwiseSqrt();
+    Eigen::MatrixXd slopes;
+    Eigen::VectorXd by_deviation;
+    result_.parts.box += penalty.of_bounds((share * away).colwise() + mean, weights, deviations,
+                                           slopes, by_deviation);
+    const Eigen::VectorXd by_mean = (1.0 - share) * slopes.rowwise().sum();
+    for (Eigen::Index i = 0; i < count; ++i) {
+      Eigen::VectorXd slope = share * slopes.col(i) + weights[i] * by_mean;
+      for (Eigen::Index axis = 0; axis < dim_; ++axis) {
+        if (deviations[axis] == 0.0) continue;
+        slope[axis] +=
+            by_deviation[axis] * smoothing * weights[i] * away(axis, i) / deviations[axis];
+      }
+      stage.bound_slope.push_back(slope);
     }
   }
 
@@ -409,6 +462,7 @@ class PlainHorizon {
 PlainPrediction plain_predict(const Dynamics& dynamics, const DiscreteMeasure& start,
                               const Policy& policy, const PlainNoise& noise) {
   PlainPrediction prediction;
+  prediction.compressed = !noise.none;
   prediction.stages.emplace_back();
   for (Eigen::Index i = 0; i < start.size(); ++i) {
     prediction.stages[0].push_back({start.locations.col(i), start.weights[i]});

@@ -33,6 +33,7 @@ struct PlainPrediction {
   std::vector<std::vector<PlainParticle>> stages;   ///< horizon + 1
   std::vector<std::vector<PlainDestination>> maps;  ///< horizon
   std::vector<double> w2;                           ///< horizon; of the maps
+  bool compressed = true;                           ///< whether the maps do anything
 };
 
 /// How a stage takes up noise: as "mixture" does, or as "noise_free".
