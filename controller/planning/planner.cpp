@@ -10,15 +10,21 @@
 namespace qsmpc {
 namespace {
 
-// Rounds of "optimise at frozen assignments, then predict with new ones" in one plan.
-constexpr int kAssignmentRounds = 3;
+// Rounds of "optimise at frozen assignments, then predict with new ones" in one plan, warm or cold.
+constexpr int kWarmRounds = 3;
+constexpr int kColdRounds = 5;
 // The same with the gains among what is optimised.
 constexpr int kGainRounds = 2;
 // On a warm start the rounds need not be more precise than this, relatively: the next period goes
 // on.
 constexpr double kWarmTolerance = 1e-7;
-// What a round must promise of the cost, relatively, to be worth a prediction.
-constexpr double kSettled = 1e-5;
+// The first round of a cold start need be no more precise than this, relatively, as new assignments
+// will change the problem, and the following ones than this share of the last change.
+constexpr double kColdTolerance = 1e-4;
+constexpr double kShareOfChange = 0.01;
+// What a round must promise of the cost, relatively, to be worth a prediction, warm or cold.
+constexpr double kWarmSettled = 1e-5;
+constexpr double kColdSettled = 1e-6;
 // How far a particle may be beyond a bound (m, or the state's unit) and still count as within.
 constexpr double kConstraintTolerance = 1e-6;
 // Further rounds where a particle is beyond a bound with new assignments, though none was with the
@@ -261,7 +267,11 @@ bool Planner::maps_fit(const Plan& plan) const {
 /// inputs are optimised, and then, if wanted, the gain with them, so that it never costs more.
 void Planner::optimise(const Gaussian& belief, Round& round) {
   constraints_.set_margin(0.0);
-  const int rounds = kAssignmentRounds + (round.priced ? 0 : 1);
+  const int rounds = (round.warm ? kWarmRounds : kColdRounds) + (round.priced ? 0 : 1);
+  // Constraints are met by rounds that are precise, or else by none; and gains are searched for
+  // about inputs that have converged.
+  const bool loose = !round.warm && !constrained_ && !gain_search_;
+  round.tolerance = loose ? kColdTolerance : 0.0;
   if (optimise(belief, inputs_, rounds, round) && gain_search_) {
     // What was predicted last may be a candidate that was refused.
     hold(current_->prediction, current_->policy);
@@ -286,9 +296,18 @@ bool Planner::optimise(const Gaussian& belief, Search& search, int rounds, Round
   for (int n = 0; n < rounds && may_go_on(); ++n) {
     const bool promising = run_solver(search, round);
     stopwatch.add_to(round.timing.optimise);
-    if (!promising) break;
+    if (!promising) {
+      if (round.tolerance == 0.0) break;
+      round.tolerance = 0.0;
+      --n;  // no prediction was needed
+      continue;
+    }
     predict_candidate(belief, search.z);
     stopwatch.add_to(round.timing.propagate);
+    if (round.tolerance > 0.0) {
+      const double change = std::abs(candidate_->cost.total() / search.least - 1.0);
+      round.tolerance = std::min(round.tolerance, kShareOfChange * change);
+    }
     const double excess = candidate_->violation;
     const bool accepted = !round.priced || better(*candidate_, *current_);
     if (accepted) {
@@ -330,6 +349,7 @@ bool Planner::run_solver(Search& search, Round& round) {
   SolverOptions options{.max_evaluations = settings_.max_evaluations - round.evaluations,
                         .constraint_tolerance = kConstraintTolerance};
   if (round.warm) options.relative_tolerance = kWarmTolerance;
+  options.relative_tolerance = std::max(options.relative_tolerance, round.tolerance);
   if (round.deadline != Clock::time_point::max()) {
     // Time for the prediction that belongs to the result.
     options.deadline =
@@ -338,6 +358,7 @@ bool Planner::run_solver(Search& search, Round& round) {
   const SolverResult& result = search.solver->minimise(search.problem, search.z, options);
   round.evaluations += result.evaluations;
   round.status = result.status;
+  search.least = result.value;
   if (!std::isfinite(result.value)) {
     // Without time for a single evaluation there is no value, and the plan stands as it is.
     const bool trouble = result.status == SolverStatus::kNumericalTrouble;
@@ -348,7 +369,8 @@ bool Planner::run_solver(Search& search, Round& round) {
   if (!round.priced) return true;
   if (Clock::now() >= round.deadline) return false;
   const double gain = current_->cost.total() - result.value;
-  return gain > kSettled * std::abs(current_->cost.total()) ||
+  const double settled = round.warm ? kWarmSettled : kColdSettled;
+  return gain > settled * std::abs(current_->cost.total()) ||
          current_->violation > std::max(kConstraintTolerance, result.violation);
 }
 

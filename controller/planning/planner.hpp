@@ -103,6 +103,7 @@ class Planner {
     bool priced = false;  // whether `current_` is a plan with a prediction of its own
     SolverStatus status = SolverStatus::kConverged;
     int evaluations = 0;
+    double tolerance = 0.0;  // that the solver's own is raised to
     PlanTiming timing;
 
     [[nodiscard]] bool stopped() const {
@@ -114,6 +115,7 @@ class Planner {
     OcpProblem problem;
     std::unique_ptr<OcpSolver> solver;
     Eigen::VectorXd z;
+    double least = 0.0;  // that the solver has found in its last run, at the assignments held then
   };
 
   void take_belief(const Gaussian& belief);

@@ -61,16 +61,8 @@ std::string name_of(const ::testing::TestParamInfo<std::tuple<int, std::size_t>>
 
 INSTANTIATE_TEST_SUITE_P(
     horizons, ClosedLoopPlan,
-    ::testing::Combine(::testing::Values(8, 12),
+    ::testing::Combine(::testing::Values(8, 12, 18),
                        ::testing::Range<std::size_t>(0, places_among_blocks().size())),
-    name_of);
-
-// The last place, near the target and a wall, is left out: over 18 stages few paths get lost there
-// and cost much, of which a hundred points know too little (docs/theory/planning.md, "Quality").
-INSTANTIATE_TEST_SUITE_P(
-    long_horizon, ClosedLoopPlan,
-    ::testing::Combine(::testing::Values(18),
-                       ::testing::Range<std::size_t>(0, places_among_blocks().size() - 1)),
     name_of);
 
 }  // namespace
