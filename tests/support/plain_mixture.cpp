@@ -14,7 +14,8 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The rules of the split (mixture_split.cpp).
-constexpr double kRoundShare = 0.5;
+constexpr double kLeastRatio = 2.0;
+constexpr double kMostRatio = 16.0;
 constexpr double kNoSpread = 1e-14;
 constexpr double kNoMass = 1e-12;
 constexpr int kDroppedBits = 6;
@@ -84,8 +85,7 @@ class PlainSplit {
     }
     choose_axis(whole);
     cells_.push_back(whole);
-    for (std::vector<int> round = next_round(); !round.empty(); round = next_round()) {
-      for (const int index : round) split(index);
+    while (cut_round()) {
     }
     return finished();
   }
@@ -136,22 +136,42 @@ class PlainSplit {
     return std::bit_cast<std::uint32_t>(static_cast<float>(spread)) >> kDroppedBits;
   }
 
-  [[nodiscard]] std::vector<int> next_round() const {
-    std::vector<int> round;
-    const int left = limit_ - static_cast<int>(cells_.size());
+  /// Cuts all cells that spread a fraction of what the most spread one does, until their pieces do
+  /// not, within bounds; of those that are too many for what is left, the most spread ones once.
+  bool cut_round() {
+    const auto left = static_cast<std::size_t>(limit_) - cells_.size();
     const Cell* widest = nullptr;
     for (const Cell& cell : cells_) {
       if (cell.axis >= 0 && (widest == nullptr || cell.key > widest->key)) widest = &cell;
     }
-    if (left <= 0 || widest == nullptr) return round;
-    const std::uint32_t least = rounded(kRoundShare * widest->spread);
-    for (int n = 0; n < static_cast<int>(cells_.size()); ++n) {
+    if (left == 0 || widest == nullptr) return false;
+    const double ratio =
+        std::clamp(limit_ / static_cast<double>(cells_.size()), kLeastRatio, kMostRatio);
+    const std::uint32_t least = rounded(widest->spread / ratio);
+    std::vector<std::size_t> round;
+    for (std::size_t n = 0; n < cells_.size(); ++n) {
       if (cells_[n].axis >= 0 && cells_[n].key >= least) round.push_back(n);
     }
-    std::stable_sort(round.begin(), round.end(),
-                     [&](int a, int b) { return cells_[a].key > cells_[b].key; });
-    if (static_cast<int>(round.size()) > left) round.resize(left);
-    return round;
+    std::size_t most = 1 + left / round.size();
+    if (round.size() >= left) {
+      most = 2;
+      std::stable_sort(round.begin(), round.end(),
+                       [&](std::size_t a, std::size_t b) { return cells_[a].key > cells_[b].key; });
+      round.resize(left);
+      std::sort(round.begin(), round.end());
+    }
+    // From the last to the first, so that places stay what they are.
+    std::for_each(round.rbegin(), round.rend(), [&](std::size_t n) { refine(n, least, most); });
+    return true;
+  }
+
+  /// Cuts cell `n` and its pieces, the lower ones first, into at most `most`.
+  void refine(std::size_t n, std::uint32_t least, std::size_t most) {
+    std::size_t pieces = 1;
+    for (std::size_t at = n; at < n + pieces; ++at) {
+      while (pieces < most && cells_[at].axis >= 0 && cells_[at].key >= least && split(at))
+        ++pieces;
+    }
   }
 
   /// Where the piece is cut: at the cell's mean, or not at all if a part were too small.
@@ -169,7 +189,8 @@ class PlainSplit {
     return lower >= upper ? own.upper : own.lower;
   }
 
-  void split(int index) {
+  /// Leaves the lower half in the cell's place, and the upper one after it. False if one is empty.
+  bool split(std::size_t index) {
     const Cell& cell = cells_[index];
     Cell lower;
     Cell upper;
@@ -187,10 +208,11 @@ class PlainSplit {
     const double least = kNoMass * cell.mass;
     if (!(lower.mass > least && upper.mass > least)) {
       cells_[index].axis = -1;
-      return;
+      return false;
     }
     cells_[index] = lower;
-    cells_.push_back(upper);
+    cells_.insert(cells_.begin() + static_cast<std::ptrdiff_t>(index) + 1, upper);
+    return true;
   }
 
   [[nodiscard]] PlainCell finished_cell(const Cell& cell) const {

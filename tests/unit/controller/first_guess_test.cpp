@@ -73,7 +73,7 @@ TEST(FirstGuess, a_plan_that_is_careful_because_of_the_noise_is_gone_on_with) {
   settings.safe_set.bounds.lower[1] = -0.8;
   settings.cost.target << 6.0, -0.7, 0.0;
   settings.cost.terminal(1, 1) = 400.0;
-  settings.penalty.box = 1e5;
+  settings.penalty.box = 5e4;
   settings.penalty.length = 0.1;
   Planner planner(*car, settings);
   Guesses guesses(*car, settings);
