@@ -87,8 +87,8 @@ void CellCutter::choose_axis(const MixtureFrame& frame, MixtureBox& box) {
 }
 
 std::ptrdiff_t CellCutter::refine(const MixtureFrame& frame, MixtureBox* box, std::uint32_t least,
-                                  std::size_t most, MixtureBox** out) {
-  MixtureBox** const begin = out;
+                                  std::size_t most, ListedBox* out) {
+  ListedBox* const begin = out;
   std::size_t pieces = 1;
   pending_.assign(1, box);
   while (!pending_.empty()) {
@@ -96,7 +96,7 @@ std::ptrdiff_t CellCutter::refine(const MixtureFrame& frame, MixtureBox* box, st
     pending_.pop_back();
     MixtureBox* const upper = next->key >= least && pieces < most ? cut(frame, *next) : nullptr;
     if (upper == nullptr) {
-      *out++ = next;
+      *out++ = {next, next->key, static_cast<std::uint32_t>(next->table->size)};
       continue;
     }
     ++pieces;

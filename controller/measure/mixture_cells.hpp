@@ -40,6 +40,13 @@ struct MixtureBox {
   std::uint32_t key = 0;  ///< rounded_spread(spread), or 0: not to be cut
 };
 
+/// A box with what rounds ask of it, in a list that is gone through again and again.
+struct ListedBox {
+  MixtureBox* box = nullptr;
+  std::uint32_t key = 0;      ///< of the box
+  std::uint32_t sources = 0;  ///< in its table
+};
+
 /// Spreads that differ by rounding alone, as those of mirror images do, are equal.
 [[nodiscard]] std::uint32_t rounded_spread(double spread);
 
@@ -71,7 +78,7 @@ class CellCutter {
   /// them. Writes them to `out`, which has room for `most`, the lower one of each cut first, and
   /// returns how many they are.
   std::ptrdiff_t refine(const MixtureFrame& frame, MixtureBox* box, std::uint32_t least,
-                        std::size_t most, MixtureBox** out);
+                        std::size_t most, ListedBox* out);
 
   /// Chooses where the box will be cut next.
   static void choose_axis(const MixtureFrame& frame, MixtureBox& box);

@@ -62,12 +62,12 @@ struct MixtureSplitter::Work {
   Eigen::MatrixXd cells_covariance;    // of the cells' means
   Eigen::MatrixXd product;
 
-  std::vector<MixtureBox*> boxes;  // neighbours in a cut follow one another, the lower one first
-  std::vector<MixtureBox*> merged;
+  std::vector<ListedBox> boxes;  // neighbours in a cut follow one another, the lower one first
+  std::vector<ListedBox> merged;
   std::vector<Chosen> round;
-  std::vector<MixtureBox*> pieces;  // of the chosen, `most` places each
-  std::uint32_t least = 0;          // key of what is cut in the round
-  std::size_t most = 0;             // pieces that a cell is cut into
+  std::vector<ListedBox> pieces;  // of the chosen, `most` places each
+  std::uint32_t least = 0;        // key of what is cut in the round
+  std::size_t most = 0;           // pieces that a cell is cut into
   std::vector<Task> tasks;
   std::vector<std::unique_ptr<CellCutter>> cutters;
   std::vector<CellCutter*> idle;
@@ -166,33 +166,33 @@ void MixtureSplitter::Work::start(const Points& sources, const Eigen::VectorXd& 
     }
   }
   CellCutter::choose_axis(frame, box);
-  boxes.assign(1, &box);
+  boxes.assign(1, {&box, box.key, static_cast<std::uint32_t>(size)});
   hand_back(cutter);
 }
 
 /// Chooses the cells that are cut next, and divides them into tasks; false if there is none.
 bool MixtureSplitter::Work::begin_round() {
-  const auto by_key = [](const MixtureBox* a, const MixtureBox* b) { return a->key < b->key; };
-  const MixtureBox& widest = **std::max_element(boxes.begin(), boxes.end(), by_key);
+  const auto by_key = [](const ListedBox& a, const ListedBox& b) { return a.key < b.key; };
+  const ListedBox& widest = *std::max_element(boxes.begin(), boxes.end(), by_key);
   const std::size_t left = limit - boxes.size();
   if (left == 0 || widest.key == 0) return false;
   const double ratio = std::clamp(static_cast<double>(limit) / static_cast<double>(boxes.size()),
                                   kLeastRatio, kMostRatio);
-  least = std::max(rounded_spread(widest.spread / ratio), std::uint32_t{1});
+  least = std::max(rounded_spread(widest.box->spread / ratio), std::uint32_t{1});
   round.clear();
   for (std::size_t n = 0; n < boxes.size(); ++n) {
-    if (boxes[n]->key >= least) round.push_back({.place = static_cast<std::ptrdiff_t>(n)});
+    if (boxes[n].key >= least) round.push_back({.place = static_cast<std::ptrdiff_t>(n)});
   }
   most = 1 + left / round.size();
   if (round.size() >= left) {
     // The last cuts: the most spread cells, each once.
     most = 2;
     const auto before = [this](const Chosen& a, const Chosen& b) {
-      const std::uint32_t key = boxes[a.place]->key;
-      const std::uint32_t other = boxes[b.place]->key;
+      const std::uint32_t key = boxes[a.place].key;
+      const std::uint32_t other = boxes[b.place].key;
       return key != other ? key > other : a.place < b.place;
     };
-    std::sort(round.begin(), round.end(), before);
+    std::nth_element(round.begin(), round.begin() + (left - 1), round.end(), before);
     round.resize(left);
     std::sort(round.begin(), round.end(),
               [](const Chosen& a, const Chosen& b) { return a.place < b.place; });
@@ -204,7 +204,7 @@ bool MixtureSplitter::Work::begin_round() {
       tasks.push_back({.begin = n});
       sources = 0;
     }
-    sources += boxes[round[n].place]->table->size;
+    sources += boxes[round[n].place].sources;
     tasks.back().end = n + 1;
   }
   return true;
@@ -214,7 +214,7 @@ void MixtureSplitter::Work::run_task(std::size_t task) {
   CellCutter& cutter = borrow();
   for (std::size_t n = tasks[task].begin; n < tasks[task].end; ++n) {
     round[n].pieces =
-        cutter.refine(frame, boxes[round[n].place], least, most, pieces.data() + n * most);
+        cutter.refine(frame, boxes[round[n].place].box, least, most, pieces.data() + n * most);
   }
   hand_back(cutter);
 }
@@ -245,9 +245,9 @@ void MixtureSplitter::Work::list(const Executor& run, MixtureCells& out) {
   places.clear();
   make_room(places, boxes.size());
   std::size_t room = 0;
-  for (const MixtureBox* box : boxes) {
+  for (const ListedBox& listed_box : boxes) {
     places.push_back(room);
-    room += box->table->stride;
+    room += padded_sources(listed_box.sources) + kMixturePadding;
   }
   make_room(part_mass, room);
   make_room(part_source, room);
@@ -307,7 +307,7 @@ void MixtureSplitter::Work::list(const Executor& run, MixtureCells& out) {
 }
 
 MixtureParts MixtureSplitter::Work::list_box(std::size_t n) {
-  const MixtureBox& box = *boxes[n];
+  const MixtureBox& box = *boxes[n].box;
   const SourceTable& table = *box.table;
   MixtureCell finished{.dim = frame.dim,
                        .intervals = box.intervals,
