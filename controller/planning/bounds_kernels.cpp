@@ -32,12 +32,20 @@ HWY_INLINE SquaredHinge squared_hinge_of_normal(Vector mean, Vector spread) {
   return {mean * half_slope + spread * spread * normal.probability, half_slope, normal.probability};
 }
 
-/// With t = 1 − r, h = ½ t²₊ − ½ (t − 1)²₊.
+/// With t = 1 − r, h = ½ t²₊ − ½ (t − 1)²₊. Most particles are far from most faces, and of those
+/// that are not most are far from where h becomes straight; nothing is computed for what leaves
+/// nothing.
 HWY_INLINE Hinge hinge_of_normal(Vector ratio, Vector spread) {
+  const VectorTag d;
   const Vector t = constant(1.0) - ratio;
-  const SquaredHinge whole = squared_hinge_of_normal(t, spread);
-  const SquaredHinge beyond = squared_hinge_of_normal(t - constant(1.0), spread);
   const Vector reach = constant(kFarDeviations) * spread;
+  // NaN is not far.
+  if (hn::AllTrue(d, hn::Lt(t, zeros() - reach))) return {zeros(), zeros(), zeros()};
+  const SquaredHinge whole = squared_hinge_of_normal(t, spread);
+  SquaredHinge beyond{zeros(), zeros(), zeros()};
+  if (!hn::AllTrue(d, hn::Lt(t - constant(1.0), zeros() - reach))) {
+    beyond = squared_hinge_of_normal(t - constant(1.0), spread);
+  }
   const Mask far = hn::Lt(t, zeros() - reach);
   const Mask deep = hn::Gt(t - constant(1.0), reach);
   const Vector value = constant(0.5) * (whole.value - beyond.value);

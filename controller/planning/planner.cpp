@@ -10,9 +10,8 @@
 namespace qsmpc {
 namespace {
 
-// Rounds of "optimise at frozen assignments, then predict with new ones" in one plan, warm or cold.
-constexpr int kWarmRounds = 3;
-constexpr int kColdRounds = 5;
+// Rounds of "optimise at frozen assignments, then predict with new ones" in one plan.
+constexpr int kAssignmentRounds = 3;
 // The same with the gains among what is optimised.
 constexpr int kGainRounds = 2;
 // On a warm start the rounds need not be more precise than this, relatively: the next period goes
@@ -20,7 +19,7 @@ constexpr int kGainRounds = 2;
 constexpr double kWarmTolerance = 1e-7;
 // The first round of a cold start need be no more precise than this, relatively, as new assignments
 // will change the problem, and the following ones than this share of the last change.
-constexpr double kColdTolerance = 1e-4;
+constexpr double kColdTolerance = 1e-5;
 constexpr double kShareOfChange = 0.01;
 // What a round must promise of the cost, relatively, to be worth a prediction, warm or cold.
 constexpr double kWarmSettled = 1e-5;
@@ -267,7 +266,7 @@ bool Planner::maps_fit(const Plan& plan) const {
 /// inputs are optimised, and then, if wanted, the gain with them, so that it never costs more.
 void Planner::optimise(const Gaussian& belief, Round& round) {
   constraints_.set_margin(0.0);
-  const int rounds = (round.warm ? kWarmRounds : kColdRounds) + (round.priced ? 0 : 1);
+  const int rounds = kAssignmentRounds + (round.priced ? 0 : 1);
   // Constraints are met by rounds that are precise, or else by none; and gains are searched for
   // about inputs that have converged.
   const bool loose = !round.warm && !constrained_ && !gain_search_;
