@@ -6,7 +6,6 @@
 #include <bit>
 #include <cstddef>
 #include <memory>
-#include <type_traits>
 
 #include "controller/storage.hpp"
 

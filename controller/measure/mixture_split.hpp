@@ -50,7 +50,8 @@ class MixtureSplitter {
 
   /// Cuts the mixture about `sources` (d x n, finite) with `weights` (n, non-negative, summing to
   /// one) into at most as many cells as wished; fewer only where nothing is left to split. Makes
-  /// no allocation once it has worked on a mixture of this size.
+  /// no allocation once it has worked on a mixture of this size; with several threads, whose memory
+  /// is divided anew each time, hardly any.
   void split(const Points& sources, const Eigen::VectorXd& weights, const Executor& run,
              MixtureCells& out);
 

@@ -78,7 +78,7 @@ CoordinateMoments moments_loop(const double* x, const double* weights, std::size
           hn::GetLane(hn::MaxOfLanes(d, most))};
 }
 
-FacePrice price_loop(const BoundedCoordinate& bounds, const SmoothedCoordinate& law, double scale,
+FacePrice price_loop(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law, double scale,
                      double length, const double* x, const double* weights, std::size_t size,
                      double* gradient) {
   const Vector inverse_length = constant(1.0 / length);
@@ -131,7 +131,7 @@ CoordinateMoments coordinate_moments(const double* x, const double* weights, std
   return HWY_DYNAMIC_DISPATCH(moments_loop)(x, weights, size, reference);
 }
 
-FacePrice price_faces(const BoundedCoordinate& bounds, const SmoothedCoordinate& law,
+FacePrice price_faces(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law,
                       const Penalty& penalty, const double* x, const double* weights,
                       std::size_t size, double* gradient) {
   return HWY_DYNAMIC_DISPATCH(price_loop)(bounds, law, penalty.box, penalty.length, x, weights,

@@ -5,18 +5,12 @@
 #include <cstddef>
 
 #include "controller/planning/penalty.hpp"
+#include "controller/planning/stage_kernels.hpp"
 
 namespace qsmpc {
 
 /// Standard deviations from a hinge beyond which nothing is left of it in these loops.
 inline constexpr double kFarDeviations = 8.3;
-
-/// A coordinate with its bounds; where there is none it is infinite.
-struct BoundedCoordinate {
-  int axis = 0;
-  double lower = 0.0;
-  double upper = 0.0;
-};
 
 /// Σ ρ (x − r), Σ ρ (x − r)² and the range of x − r, with 0, for a reference r.
 struct CoordinateMoments {
@@ -52,7 +46,7 @@ struct FaceCorrection {
                                                    std::size_t size, double reference);
 
 /// Adds the derivatives by the x_i, at fixed share, offset and deviation, to `gradient`.
-FacePrice price_faces(const BoundedCoordinate& bounds, const SmoothedCoordinate& law,
+FacePrice price_faces(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law,
                       const Penalty& penalty, const double* x, const double* weights,
                       std::size_t size, double* gradient);
 

@@ -62,7 +62,7 @@ class ExpectedBounds {
   void describe(const Law& law, const Points& points);
 
   Penalty penalty_;
-  std::vector<BoundedCoordinate> bounds_;
+  std::vector<PenaltyTable::Face> bounds_;
   std::vector<Coordinate> coordinates_;     // as bounds_
   std::vector<CoordinateMoments> moments_;  // chunks x bounds
   std::vector<FacePrice> prices_;           // chunks x bounds
