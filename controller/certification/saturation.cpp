@@ -16,7 +16,7 @@ namespace {
 constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 // Quadrature of moments: how far it goes, and what the nodes can leave, relative.
-constexpr double kQuadratureReach = 12.0;
+constexpr int kQuadratureReach = 12;
 constexpr double kQuadratureError = 1e-8;
 
 double power(double base, int exponent) {
@@ -29,7 +29,7 @@ double power(double base, int exponent) {
 /// moves it by at most that, Z and the fit by |Z| each, and further outside the clamp is constant
 /// up to the reach. E[Z^p; |Z| > r] is at most 2 r^{p−1} φ(r)/(1 − p/r²).
 double beyond_reach(int order) {
-  const double squared = kQuadratureReach * kQuadratureReach;
+  constexpr double squared = kQuadratureReach * kQuadratureReach;
   return 2.0 * power(3.0, order) * power(kQuadratureReach, order - 1) *
          normal_density(kQuadratureReach) / (1.0 - order / squared);
 }
@@ -49,6 +49,44 @@ Excess excess(double z) {
   return {.first = std::max(0.0, density - z * tail),
           .second = std::max(0.0, (1.0 + z * z) * tail - z * density),
           .rounding = kRounding * std::max(0.0, roundings * (1.0 + z * z) * tail)};
+}
+
+using Rule = boost::math::quadrature::gauss<double, 10>;  // half of the nodes; they are symmetric
+
+/// A node of a quadrature over z ~ N(0, 1): its weight times the density.
+struct NormalNode {
+  double z;
+  double mass;
+};
+
+using PanelNodes =
+    std::array<NormalNode, 2 * std::tuple_size_v<std::decay_t<decltype(Rule::abscissa())>>>;
+
+/// Over [from, to], at most one deviation: ten nodes leave no more than rounding of what is smooth
+/// there.
+PanelNodes panel_nodes(double from, double to) {
+  PanelNodes nodes;
+  const double half = 0.5 * (to - from);
+  const double centre = 0.5 * (from + to);
+  for (std::size_t i = 0; i < Rule::abscissa().size(); ++i) {
+    for (const int side : {0, 1}) {
+      const double offset = half * Rule::abscissa()[i];
+      const double z = side == 0 ? centre - offset : centre + offset;
+      nodes[2 * i + side] = {.z = z, .mass = half * Rule::weights()[i] * normal_density(z)};
+    }
+  }
+  return nodes;
+}
+
+constexpr int kUnitPanels = 2 * kQuadratureReach;
+
+/// The panels between whole numbers of deviations, up to the reach.
+std::array<PanelNodes, kUnitPanels> nodes_of_unit_panels() {
+  std::array<PanelNodes, kUnitPanels> panels;
+  for (int i = 0; i < kUnitPanels; ++i) {
+    panels[i] = panel_nodes(i - kQuadratureReach, i + 1 - kQuadratureReach);
+  }
+  return panels;
 }
 
 }  // namespace
@@ -81,37 +119,40 @@ SaturationFit fit_saturation(double mean, double deviation, double lower, double
 std::array<double, kHigherOrders.size()> saturation_residual_norms(const SaturationFit& fit,
                                                                    double mean, double deviation,
                                                                    double lower, double upper) {
-  using Rule = boost::math::quadrature::gauss<double, 10>;  // half of the nodes; they are symmetric
   std::array<double, kHigherOrders.size()> norms{};
   if (!std::isfinite(mean) || !std::isfinite(deviation)) {
     norms.fill(std::numeric_limits<double>::infinity());
     return norms;
   }
   if (deviation <= 0.0) return norms;
-  const auto add = [&](double z, double weight) {
-    const double q =
-        (std::clamp(mean + deviation * z, lower, upper) - fit.mean) / deviation - fit.slope * z;
-    const double mass = weight * normal_density(z);
-    for (std::size_t k = 0; k < norms.size(); ++k) norms[k] += mass * power(q, kHigherOrders[k]);
-  };
-  // Panels of at most one deviation between the places where the clamp bends: the integrand is
-  // smooth on each, and ten nodes leave no more than rounding.
-  const auto inner = [&](double bound) {
-    return std::clamp((bound - mean) / deviation, -kQuadratureReach, kQuadratureReach);
-  };
-  const std::array<double, 4> ends = {-kQuadratureReach, inner(lower), inner(upper),
-                                      kQuadratureReach};
-  for (std::size_t piece = 0; piece + 1 < ends.size(); ++piece) {
-    const int panels = static_cast<int>(std::ceil(ends[piece + 1] - ends[piece]));
-    for (int i = 0; i < panels; ++i) {
-      const double half = 0.5 * (ends[piece + 1] - ends[piece]) / panels;
-      const double centre = ends[piece] + (2 * i + 1) * half;
-      for (std::size_t node = 0; node < Rule::abscissa().size(); ++node) {
-        const double offset = half * Rule::abscissa()[node];
-        add(centre - offset, half * Rule::weights()[node]);
-        add(centre + offset, half * Rule::weights()[node]);
+  // q/s is that of a standard normal variable with these bounds.
+  const double low = (lower - mean) / deviation;
+  const double high = (upper - mean) / deviation;
+  const double centre = (fit.mean - mean) / deviation;
+  const auto add = [&](const PanelNodes& panel) {
+    for (std::size_t node = 0; node < panel.size(); ++node) {
+      const double z = panel[node].z;
+      const double q = std::clamp(z, low, high) - centre - fit.slope * z;
+      for (std::size_t k = 0; k < norms.size(); ++k) {
+        norms[k] += panel[node].mass * power(q, kHigherOrders[k]);
       }
     }
+  };
+  static const std::array<PanelNodes, kUnitPanels> unit_panels = nodes_of_unit_panels();
+  for (int i = 0; i < kUnitPanels; ++i) {
+    // The integrand is smooth where the clamp does not bend.
+    const double from = i - kQuadratureReach;
+    const double to = from + 1.0;
+    const double first = std::clamp(low, from, to);
+    const double second = std::clamp(high, from, to);
+    const bool bends = (first > from && first < to) || (second > from && second < to);
+    if (!bends) {
+      add(unit_panels[i]);
+      continue;
+    }
+    add(panel_nodes(from, first));
+    add(panel_nodes(first, second));
+    add(panel_nodes(second, to));
   }
   for (std::size_t k = 0; k < norms.size(); ++k) {
     const double total = norms[k] + beyond_reach(kHigherOrders[k]);
