@@ -157,22 +157,28 @@ class WidenedPart {
   /// At least P(z ∈ part widened by τ norms): the least over its coordinates and, unless one of
   /// these is small enough by itself, its pairs of coordinates.
   double probability(double ratio) {
-    return least_over_pairs(ratio, [&](Eigen::Index a, Eigen::Index b) {
+    widen(ratio);
+    const double slab = least_slab();
+    if (slab <= kZeroProbability) return slab;
+    const double rectangle = least_over_pairs([&](Eigen::Index a, Eigen::Index b) {
       const Eigen::Matrix2d covariance = pair_covariance(a, b);
       const double inside =
           rectangle_probability({law_.mean[a], law_.mean[b]}, covariance,
                                 {box_.lower[a], box_.lower[b]}, {box_.upper[a], box_.upper[b]});
       return inside + rectangle_error(covariance);
     });
+    return std::min(slab, rectangle);
   }
 
-  /// About the same, for searches.
+  /// About the same, for searches; a pair's rectangle is never more than its slabs.
   double estimate(double ratio) {
-    return least_over_pairs(ratio, [&](Eigen::Index a, Eigen::Index b) {
+    widen(ratio);
+    if (axes_.size() == 1) return least_slab();
+    return least_over_pairs([&](Eigen::Index a, Eigen::Index b) {
       const double first = std::sqrt(law_.covariance(a, a));
       const double second = std::sqrt(law_.covariance(b, b));
       const double correlation = law_.covariance(a, b) / (first * second);
-      if (!(std::abs(correlation) < 1.0)) return 1.0;
+      if (!(std::abs(correlation) < 1.0)) return least_slab();
       return rectangle_estimate(
           {.low = {(box_.lower[a] - law_.mean[a]) / first, (box_.lower[b] - law_.mean[b]) / second},
            .high = {(box_.upper[a] - law_.mean[a]) / first,
@@ -182,15 +188,25 @@ class WidenedPart {
   }
 
  private:
-  template <class Rectangle>
-  double least_over_pairs(double ratio, const Rectangle& rectangle) {
-    double least = 1.0;
+  void widen(double ratio) {
     for (const Eigen::Index axis : axes_) {
       box_.lower[axis] = part_.lower[axis] - ratio * norms_[axis];
       box_.upper[axis] = part_.upper[axis] + ratio * norms_[axis];
+    }
+  }
+
+  [[nodiscard]] double least_slab() const {
+    double least = 1.0;
+    for (const Eigen::Index axis : axes_) {
       least = std::min(least, slab_probability(law_, box_, axis));
     }
-    for (std::size_t i = 0; i < axes_.size() && least > kZeroProbability; ++i) {
+    return least;
+  }
+
+  template <class Rectangle>
+  [[nodiscard]] double least_over_pairs(const Rectangle& rectangle) const {
+    double least = 1.0;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) least = std::min(least, rectangle(axes_[j], axes_[i]));
     }
     return least;

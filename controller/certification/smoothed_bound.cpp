@@ -112,8 +112,11 @@ class SoftMixture {
   [[nodiscard]] double value(double t, double enough = kInfinity) const {
     const Eigen::Index size = mixture_.centres.cols();
     double sum = 0.0;
-    for (Eigen::Index begin = 0; begin < size && sum < enough; begin += kBlock) {
-      const Eigen::Index count = std::min(kBlock, size - begin);
+    // Where a part may be enough, the first centres may be.
+    Eigen::Index block = std::isinf(enough) ? kBlock : kFirstBlock;
+    for (Eigen::Index begin = 0; begin < size && sum < enough; begin += block) {
+      if (begin > 0) block = kBlock;
+      const Eigen::Index count = std::min(block, size - begin);
       std::array<double, kBlock> total{};
       add_independent(t, begin, count, total.data());
       for (Eigen::Index i = 0; i < count; ++i) {
@@ -129,6 +132,7 @@ class SoftMixture {
 
  private:
   static constexpr Eigen::Index kBlock = 64;
+  static constexpr Eigen::Index kFirstBlock = 8;
 
   /// One axis of a face or an obstacle; the values of its axes are multiplied.
   struct Factor {

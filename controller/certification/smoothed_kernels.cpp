@@ -1,5 +1,10 @@
 #include "controller/certification/smoothed_kernels.hpp"
 
+#include <array>
+#include <cmath>
+
+#include <boost/math/quadrature/gauss.hpp>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "controller/certification/smoothed_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -40,13 +45,28 @@ HWY_INLINE Vector before_wall(Vector wall, const NormalValues& edge, const SoftS
   return hn::IfThenElseZero(near, hn::Min(hn::Max(value, zeros()), mass));
 }
 
+/// Which ends of an interval are finite.
+struct FiniteEnds {
+  bool lower;
+  bool upper;
+};
+
 /// `below`: the interval's lower end less the mean; `above`: the mean less its upper end.
-HWY_INLINE Vector soft_interval(Vector below, Vector above, const SoftScale& scale) {
-  const NormalValues lower = normal_values(below * scale.inverse);
-  const NormalValues upper = normal_values(above * scale.inverse);
-  const Vector inside = (constant(1.0) - lower.probability) - upper.probability;
-  const Vector value = hn::Max(inside, zeros()) + before_wall(below, lower, scale) +
-                       before_wall(above, upper, scale) + constant(kSoftMassError);
+HWY_INLINE Vector soft_interval(Vector below, Vector above, const SoftScale& scale,
+                                FiniteEnds finite) {
+  Vector inside = constant(1.0);
+  Vector before = zeros();
+  if (finite.lower) {
+    const NormalValues lower = normal_values(below * scale.inverse);
+    inside = inside - lower.probability;
+    before = before_wall(below, lower, scale);
+  }
+  if (finite.upper) {
+    const NormalValues upper = normal_values(above * scale.inverse);
+    inside = inside - upper.probability;
+    before = before + before_wall(above, upper, scale);
+  }
+  const Vector value = hn::Max(inside, zeros()) + before + constant(kSoftMassError);
   return hn::Min(value, constant(1.0));
 }
 
@@ -61,14 +81,19 @@ HWY_INLINE SoftScale scale_of(double deviation, Vector reach) {
           constant(1.0) / (reach * reach)};
 }
 
+FiniteEnds finite_ends(const SoftInterval& interval) {
+  return {.lower = std::isfinite(interval.lower), .upper = std::isfinite(interval.upper)};
+}
+
 void by_reach(const SoftInterval& interval, const double* reaches, std::size_t count, double* out) {
   const Vector below = constant(interval.lower);
   const Vector above = constant(-interval.upper);
   const bool spread = interval.deviation > 0.0;
+  const FiniteEnds finite = finite_ends(interval);
   for_vectors(count, [&](std::size_t i, auto read, auto write, std::size_t) HWY_ATTR {
     // Lanes that do not exist read as zero; what comes of them is not written.
     const SoftScale scale = scale_of(interval.deviation, read(reaches + i));
-    write(spread ? soft_interval(below, above, scale) : hard_interval(below, above, scale),
+    write(spread ? soft_interval(below, above, scale, finite) : hard_interval(below, above, scale),
           out + i);
   });
 }
@@ -79,31 +104,33 @@ void by_mean(const SoftInterval& interval, double t, const double* means, std::s
   const Vector upper = constant(interval.upper);
   const SoftScale scale = scale_of(interval.deviation, constant(t));
   const bool spread = interval.deviation > 0.0;
+  const FiniteEnds finite = finite_ends(interval);
   for_vectors(count, [&](std::size_t i, auto read, auto write, std::size_t) HWY_ATTR {
     const Vector mean = read(means + i);
     const Vector below = lower - mean;
     const Vector above = mean - upper;
-    write(spread ? soft_interval(below, above, scale) : hard_interval(below, above, scale),
+    write(spread ? soft_interval(below, above, scale, finite) : hard_interval(below, above, scale),
           out + i);
   });
 }
 
 // Beyond it lies less than 1e-9.
 constexpr double kEstimateReach = 6.0;
-constexpr std::size_t kEstimateNodes = 4 * kLanes;
+// A multiple of kLanes.
+constexpr std::size_t kEstimateNodes = 16;
 
-/// ∫ φ(x) [Φ((high − rx)/√(1 − r²)) − Φ((low − rx)/√(1 − r²))] dx by the midpoint rule.
-double estimate_rectangle(const StandardRectangle& rectangle, double correlation) {
+/// ∫ φ(x) [Φ((high − rx)/√(1 − r²)) − Φ((low − rx)/√(1 − r²))] dx by Gauss's rule, whose nodes and
+/// weights on [−1, 1] come one after the other.
+double estimate_rectangle(const StandardRectangle& rectangle, double correlation,
+                          const double* nodes, const double* weights) {
   const double from = std::fmax(rectangle.low[0], -kEstimateReach);
   const double to = std::fmin(rectangle.high[0], kEstimateReach);
   if (!(from < to)) return 0.0;
   const double inverse = 1.0 / std::sqrt((1.0 - correlation) * (1.0 + correlation));
-  const double width = (to - from) / kEstimateNodes;
-  const VectorTag d;
+  const double half = 0.5 * (to - from);
   Sum sum;
   for (std::size_t i = 0; i < kEstimateNodes; i += kWidth) {
-    const Vector node = hn::Iota(d, static_cast<double>(i)) + constant(0.5);
-    const Vector x = constant(from) + constant(width) * node;
+    const Vector x = constant(0.5 * (from + to)) + constant(half) * load(nodes + i);
     const Vector shift = constant(correlation) * x;
     const Vector upper = (constant(rectangle.high[1]) - shift) * constant(inverse);
     const Vector lower = (constant(rectangle.low[1]) - shift) * constant(inverse);
@@ -111,9 +138,10 @@ double estimate_rectangle(const StandardRectangle& rectangle, double correlation
     const Mask flip = hn::Gt(lower, zeros());
     const Vector far = normal_values(hn::IfThenElse(flip, zeros() - lower, upper)).probability;
     const Vector near = normal_values(hn::IfThenElse(flip, zeros() - upper, lower)).probability;
-    sum.add(i / kWidth % kParts, normal_values(x).density * (far - near));
+    const Vector mass = load(weights + i) * normal_values(x).density;
+    sum.add(i / kWidth % kParts, mass * (far - near));
   }
-  return width * sum.total();
+  return half * sum.total();
 }
 
 }  // namespace HWY_NAMESPACE
@@ -122,6 +150,26 @@ HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
 namespace qsmpc {
+
+namespace {
+
+/// Gauss's rule for rectangle_estimate.
+struct EstimateRule {
+  static constexpr std::size_t kCount = 16;
+  std::array<double, kCount> nodes;
+  std::array<double, kCount> weights;
+
+  EstimateRule() {
+    using Half = boost::math::quadrature::gauss<double, kCount>;  // the other half is its mirror
+    for (std::size_t i = 0; i < kCount / 2; ++i) {
+      nodes[2 * i] = Half::abscissa()[i];
+      nodes[2 * i + 1] = -nodes[2 * i];
+      weights[2 * i] = weights[2 * i + 1] = Half::weights()[i];
+    }
+  }
+};
+
+}  // namespace
 
 HWY_EXPORT(by_reach);
 HWY_EXPORT(by_mean);
@@ -138,7 +186,9 @@ void soft_interval_by_mean(const SoftInterval& interval, double t, const double*
 }
 
 double rectangle_estimate(const StandardRectangle& rectangle, double correlation) {
-  return HWY_DYNAMIC_DISPATCH(estimate_rectangle)(rectangle, correlation);
+  static const EstimateRule rule;
+  return HWY_DYNAMIC_DISPATCH(estimate_rectangle)(rectangle, correlation, rule.nodes.data(),
+                                                  rule.weights.data());
 }
 
 }  // namespace qsmpc

@@ -114,7 +114,7 @@ TEST(RectangleEstimate, is_near_the_probability) {
     Eigen::Matrix2d covariance;
     covariance << 1.0, r, r, 1.0;
     const double exact = rectangle_probability(Eigen::Vector2d::Zero(), covariance, lower, upper);
-    // What the midpoint rule's 32 nodes over at most 12 deviations leave.
+    // What Gauss's 16 nodes over at most 12 deviations leave.
     EXPECT_NEAR(rectangle_estimate(rectangle, r), exact, 3e-2 * exact + 1e-6);
   }
 }
