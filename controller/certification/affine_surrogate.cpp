@@ -16,40 +16,29 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Applies `combine` to each bound of the one and of the other.
-template <class Combine>
-StageError combined(const StageError& one, const StageError& other, Combine combine) {
-  StageError result{.mean_square = combine(one.mean_square, other.mean_square),
-                    .higher = {},
-                    .largest = combine(one.largest, other.largest)};
-  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
-    result.higher[k] = combine(one.higher[k], other.higher[k]);
-  }
-  return result;
-}
-
 /// Bounds of a sum.
 StageError added(const StageError& one, const StageError& other) {
-  return combined(one, other, [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return Eigen::VectorXd(a + b);
-  });
+  return {.bounds = one.bounds + other.bounds};
 }
 
 /// The better of two bounds of the same error.
 StageError lesser(const StageError& one, const StageError& other) {
-  return combined(one, other, [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) {
-    return Eigen::VectorXd(a.cwiseMin(b));
-  });
+  return {.bounds = one.bounds.cwiseMin(other.bounds)};
 }
 
 /// sizes · bounds, where a coordinate of which nothing is known is infinite and does not matter to
 /// those that do not depend on it (0 · ∞ = 0).
-Eigen::VectorXd product(const Eigen::MatrixXd& sizes, const Eigen::VectorXd& bounds) {
-  if (bounds.allFinite()) return sizes * bounds;
-  Eigen::VectorXd result = Eigen::VectorXd::Zero(sizes.rows());
-  for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
-    for (Eigen::Index a = 0; a < sizes.cols(); ++a) {
-      if (sizes(i, a) != 0.0 && bounds[a] != 0.0) result[i] += sizes(i, a) * bounds[a];
+StageError::Bounds product(const Eigen::Ref<const Eigen::MatrixXd>& sizes,
+                           const Eigen::Ref<const StageError::Bounds>& bounds) {
+  // Coefficient by coefficient: these are too small for anything else.
+  if (bounds.allFinite()) return sizes.lazyProduct(bounds);
+  StageError::Bounds result = StageError::Bounds::Zero(sizes.rows(), StageError::kColumns);
+  for (Eigen::Index column = 0; column < StageError::kColumns; ++column) {
+    for (Eigen::Index i = 0; i < sizes.rows(); ++i) {
+      for (Eigen::Index a = 0; a < sizes.cols(); ++a) {
+        if (sizes(i, a) == 0.0 || bounds(a, column) == 0.0) continue;
+        result(i, column) += sizes(i, a) * bounds(a, column);
+      }
     }
   }
   return result;
@@ -57,18 +46,55 @@ Eigen::VectorXd product(const Eigen::MatrixXd& sizes, const Eigen::VectorXd& bou
 
 /// Bounds of an error after a map whose entries are at most `sizes` in size.
 StageError moved(const Eigen::MatrixXd& sizes, const StageError& error) {
-  return combined(error, error, [&](const Eigen::VectorXd& a, const Eigen::VectorXd&) {
-    return product(sizes, a);
-  });
+  return {.bounds = product(sizes, error.bounds)};
 }
 
 /// `error` in the event in which it is at most `largest`: this bounds norms that are unknown.
 StageError where_limited(StageError error) {
-  for (Eigen::VectorXd& norms : error.higher) {
-    norms = norms.array().isFinite().select(norms, error.largest);
+  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+    error.higher(k) = error.higher(k).array().isFinite().select(error.higher(k), error.largest());
   }
   return error;
 }
+
+/// Residuals of all stages so far, each with its bounds and the map that takes it to the present.
+class CarriedErrors {
+ public:
+  /// For at most `count` residuals of `dim` coordinates.
+  CarriedErrors(Eigen::Index dim, Eigen::Index count)
+      : dim_(dim),
+        maps_(dim, dim * count),
+        sizes_(dim, dim * count),
+        bounds_(dim * count, StageError::kColumns) {}
+
+  /// Takes all of them on by `transition`.
+  void carry(const Eigen::MatrixXd& transition) {
+    // `sizes_` serves for what must not be written where it is still read.
+    sizes_.leftCols(used_) = transition.lazyProduct(maps_.leftCols(used_));
+    maps_.leftCols(used_) = sizes_.leftCols(used_);
+    sizes_.leftCols(used_) = maps_.leftCols(used_).cwiseAbs();
+  }
+
+  /// One more, of the present.
+  void add(const StageError& error) {
+    maps_.middleCols(used_, dim_).setIdentity();
+    sizes_.middleCols(used_, dim_).setIdentity();
+    bounds_.middleRows(used_, dim_) = error.bounds;
+    used_ += dim_;
+  }
+
+  /// Bounds of their sum in the present.
+  [[nodiscard]] StageError sum() const {
+    return {.bounds = product(sizes_.leftCols(used_), bounds_.topRows(used_))};
+  }
+
+ private:
+  Eigen::Index dim_;
+  Eigen::MatrixXd maps_;       ///< Φ_{k,j+1} side by side, dim x dim each
+  Eigen::MatrixXd sizes_;      ///< of the maps' entries
+  StageError::Bounds bounds_;  ///< of the residuals, below one another
+  Eigen::Index used_ = 0;      ///< columns and rows
+};
 
 /// The recursion from stage to stage: the law, and the error
 ///     x − z = Σ_j Φ_{k,j+1} (r_j(x_j) + e_j − m_j),   r_j(x_j) = r_j(z_j) + [r_j(x_j) − r_j(z_j)],
@@ -80,14 +106,13 @@ class SurrogateRecursion {
       : motion_(motion),
         core_{.affine = affine_coordinates(motion.dynamics), .reach = core},
         law_(motion.belief),
-        error_{.mean_square = Eigen::VectorXd::Zero(law_.mean.size()),
-               .higher = zero_norms(law_.mean.size()),
-               .largest = Eigen::VectorXd::Zero(law_.mean.size())} {
+        error_(StageError::none(law_.mean.size())),
+        past_(law_.mean.size(), motion.policy.horizon() + 1) {
     // Then a residual is known on the whole space, and only its changes need the core.
     fits_everywhere_ =
         std::all_of(core_.affine.begin(), core_.affine.end(), [](bool one) { return one; });
     if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
-      residual_.emplace(*unicycle, law_.mean.size());
+      residual_.emplace(*unicycle, law_.mean.size(), motion.policy.horizon());
       fits_everywhere_ = true;
     }
     if (motion.belief_error != nullptr) start_from(*motion.belief_error);
@@ -96,14 +121,16 @@ class SurrogateRecursion {
   /// The surrogate of the present stage, with `region` as far as the next step tells.
   [[nodiscard]] SurrogateStage stage() const {
     const Eigen::Index dim = law_.mean.size();
-    return {.law = law_,
-            .transition = {},
-            .error = error_.mean_square,
-            .higher = error_.higher,
-            .largest = error_.largest,
-            .leaving = leaving_,
-            .region = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
-                       .upper = Eigen::VectorXd::Constant(dim, kInfinity)}};
+    SurrogateStage stage{.law = law_,
+                         .transition = {},
+                         .error = error_.mean_square(),
+                         .higher = {},
+                         .largest = error_.largest(),
+                         .leaving = leaving_,
+                         .region = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
+                                    .upper = Eigen::VectorXd::Constant(dim, kInfinity)}};
+    for (std::size_t k = 0; k < kHigherOrders.size(); ++k) stage.higher[k] = error_.higher(k);
+    return stage;
   }
 
   /// Takes the step of stage `stage` and completes `before`, the surrogate before it. False once
@@ -122,13 +149,13 @@ class SurrogateRecursion {
     before.transition = fit.transition;
     const StageError difference = residual_difference(before_step, fit, inputs);
     outside_ += fit.outside;
-    const bool uses_core = !fits_everywhere_ || !difference.mean_square.isZero(0.0);
+    const bool uses_core = !fits_everywhere_ || !difference.mean_square().isZero(0.0);
     if (uses_core) {
       leaving_ = std::min(1.0, outside_);
       before.region = fit.region;
     }
     if (residual_) residual_->add_stage(law_, fit.transition);
-    StageError own{.mean_square = fit.residual, .higher = fit.higher, .largest = fit.largest};
+    StageError own = fit.residual;
     const ModelError* error = motion_.error_at(stage);
     CutError cut;
     if (error != nullptr) {
@@ -139,7 +166,7 @@ class SurrogateRecursion {
     // Where feedback is clamped and large, the step's own slopes may grow less than the products'.
     if (uses_core) {
       StageError slopes = moved(fit.growth, before_step);
-      slopes.mean_square += fit.closed_form;
+      slopes.mean_square() += fit.closed_form;
       error_ = lesser(error_, added(slopes, own));
     }
     law_.covariance =
@@ -148,8 +175,8 @@ class SurrogateRecursion {
     law_.mean = fit.next_mean;
     if (error != nullptr) move_mean(*error);
     outside_ += cut.outside;
-    return law_.mean.allFinite() && law_.covariance.allFinite() && error_.mean_square.allFinite() &&
-           error_.largest.allFinite();
+    return law_.mean.allFinite() && law_.covariance.allFinite() &&
+           error_.mean_square().allFinite() && error_.largest().allFinite();
   }
 
  private:
@@ -165,11 +192,10 @@ class SurrogateRecursion {
 
   /// The state has `error` beside the belief at stage 0, and its offset less beside the surrogate.
   void start_from(const ModelError& error) {
-    const Eigen::Index dim = law_.mean.size();
     const CutError cut = cut_error(error, error_count(), core_.reach);
     error_ = cut.bound;
     outside_ = cut.outside;
-    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim), .bound = cut.bound});
+    past_.add(cut.bound);
     move_mean(error);
   }
 
@@ -178,12 +204,12 @@ class SurrogateRecursion {
   [[nodiscard]] static StageError residual_difference(const StageError& error, const StageFit& fit,
                                                       const std::vector<InputFit>& inputs) {
     StageError difference = moved(fit.stretch, error);
-    difference.largest.setZero();
+    difference.largest().setZero();
     for (std::size_t b = 0; b < inputs.size(); ++b) {
-      const Eigen::VectorXd gain = fit.input_gain.col(static_cast<Eigen::Index>(b));
-      difference.mean_square += gain * inputs[b].difference;
+      const auto gain = fit.input_gain.col(static_cast<Eigen::Index>(b));
+      difference.mean_square() += gain * inputs[b].difference;
       for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
-        difference.higher[k] += gain * inputs[b].higher_difference[k];
+        difference.higher(k) += gain * inputs[b].higher_difference[k];
       }
     }
     return difference;
@@ -191,22 +217,11 @@ class SurrogateRecursion {
 
   /// Adds this stage's residual, bounded by `bound`, to those carried along.
   void carry(const Eigen::MatrixXd& transition, const StageError& bound) {
-    const Eigen::Index dim = law_.mean.size();
-    for (Past& past : past_) past.product = transition * past.product;
-    past_.push_back({.product = Eigen::MatrixXd::Identity(dim, dim), .bound = bound});
-    error_ = {.mean_square = residual_ ? residual_->root_mean_squares()
-                                       : Eigen::VectorXd(Eigen::VectorXd::Zero(dim)),
-              .higher = zero_norms(dim),
-              .largest = Eigen::VectorXd::Zero(dim)};
-    for (const Past& past : past_) {
-      error_ = added(error_, moved(past.product.cwiseAbs(), past.bound));
-    }
+    past_.carry(transition);
+    past_.add(bound);
+    error_ = past_.sum();
+    if (residual_) error_.mean_square() += residual_->root_mean_squares();
   }
-
-  struct Past {
-    Eigen::MatrixXd product;  ///< Φ_{k,j+1}
-    StageError bound;         ///< of the residual
-  };
 
   const PredictedMotion& motion_;
   CoreShape core_;
@@ -216,7 +231,7 @@ class SurrogateRecursion {
   double outside_ = 0.0;  ///< Σ P(z_j not in its core) + P(an error beyond its cut)
   double leaving_ = 0.0;
   std::optional<UnicycleResidual> residual_;
-  std::vector<Past> past_;
+  CarriedErrors past_;
 };
 
 bool open_loop(const Policy& policy) {
@@ -224,14 +239,22 @@ bool open_loop(const Policy& policy) {
                      [](const auto& gain) { return gain.isZero(0.0); });
 }
 
+/// Covariance of (x, y) under N(0, covariance).
+Eigen::Matrix2d of_position(const UnicycleStructure& unicycle, const Eigen::MatrixXd& covariance) {
+  Eigen::Matrix2d position;
+  position << covariance(unicycle.x, unicycle.x), covariance(unicycle.x, unicycle.y),
+      covariance(unicycle.y, unicycle.x), covariance(unicycle.y, unicycle.y);
+  return position;
+}
+
 /// Covariance of what of (x, y) is independent of the heading, for N(0, covariance).
 Eigen::Matrix2d beside_heading(const UnicycleStructure& unicycle,
                                const Eigen::MatrixXd& covariance) {
-  const std::vector<int> position = {unicycle.x, unicycle.y};
   const double variance = covariance(unicycle.heading, unicycle.heading);
-  Eigen::Matrix2d beside = covariance(position, position);
+  Eigen::Matrix2d beside = of_position(unicycle, covariance);
   if (variance > 0.0) {
-    const Eigen::Vector2d cross = covariance(position, unicycle.heading);
+    const Eigen::Vector2d cross(covariance(unicycle.x, unicycle.heading),
+                                covariance(unicycle.y, unicycle.heading));
     beside -= cross * cross.transpose() / variance;
   }
   return beside;
@@ -272,11 +295,9 @@ Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index
   // own noise moves them; with feedback the position of stage k − 2 is the last that can, so that
   // the noise which came into that of k − 1 still is independent. Where the heading itself is
   // restricted, what moves it with the position must not count either.
-  const std::vector<int> position = {unicycle->x, unicycle->y};
   const Eigen::Matrix2d noise = beside_heading(*unicycle, motion.noise_covariance);
   const Eigen::Matrix2d belief = beside_heading(*unicycle, motion.belief.covariance);
-  Eigen::Matrix2d sum = motion.noise_covariance(position, position);
-  if (heading) sum = noise;
+  Eigen::Matrix2d sum = heading ? noise : of_position(*unicycle, motion.noise_covariance);
   if (always_open) {
     sum += static_cast<double>(stage - 1) * noise + belief;
   } else {
@@ -284,7 +305,10 @@ Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index
   }
   Eigen::MatrixXd smoothing =
       Eigen::MatrixXd::Zero(motion.noise_covariance.rows(), motion.noise_covariance.cols());
-  smoothing(position, position) = sum;
+  smoothing(unicycle->x, unicycle->x) = sum(0, 0);
+  smoothing(unicycle->x, unicycle->y) = sum(0, 1);
+  smoothing(unicycle->y, unicycle->x) = sum(1, 0);
+  smoothing(unicycle->y, unicycle->y) = sum(1, 1);
   return smoothing;
 }
 

@@ -35,15 +35,15 @@ SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
   if (surrogate.leaving >= 1.0) return {};
   SurrogateBounds bounds{.markov = surrogate.leaving, .smooth = surrogate.leaving};
   for (const UnsafePart& part : parts) {
-    const Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, part.axes);
-    const PerturbedGaussian state{
-        .law = surrogate.law, .error = surrogate.error, .smoothing = smoothing};
     // One value of the highest order settles the parts that are far away.
     const std::size_t highest = kHigherOrders.size() - 1;
     double markov = far_part_bound(surrogate.law, surrogate.higher[highest], kHigherOrders[highest],
                                    part, kNegligible);
     double smooth = markov;
     if (markov > kNegligible) {
+      const Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, part.axes);
+      const PerturbedGaussian state{
+          .law = surrogate.law, .error = surrogate.error, .smoothing = smoothing};
       markov = std::min(markov, markov_part_bound(state, part));
       smooth = std::min(markov, smooth_part_bound(state, part));
     }
@@ -70,6 +70,8 @@ std::vector<SurrogateBounds> surrogate_bounds_of_stages(const PredictedMotion& m
   for (const double core : {kWideCore, kNarrowCore}) {
     const std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core);
     const auto stage = [&](int k) {
+      // Neither bound can be less than the probability of leaving, nor C3 less than C4.
+      if (least[k].markov <= surrogates[k + 1].leaving) return;
       const SurrogateBounds bounds = surrogate_bounds(
           motion, parts, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1], effort);
       least[k] = {.markov = std::min(least[k].markov, bounds.markov),

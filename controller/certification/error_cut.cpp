@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "controller/certification/stage_fit.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -33,20 +35,19 @@ KnownNorm highest_norm(const ModelError& error, Eigen::Index i) {
 
 CutError cut_error(const ModelError& error, Eigen::Index count, double reach) {
   const Eigen::Index dim = error.root_mean_square.size();
-  CutError cut{.bound = {.mean_square = error.root_mean_square,
-                         .higher = error.higher,
-                         .largest = Eigen::VectorXd::Zero(dim)}};
+  CutError cut{.bound = StageError::none(dim)};
+  cut.bound.mean_square() = error.root_mean_square;
   for (Eigen::Index i = 0; i < dim; ++i) {
     // No error is none in every norm.
-    if (error.root_mean_square[i] == 0.0) {
-      for (Eigen::VectorXd& norms : cut.bound.higher) norms[i] = 0.0;
-      continue;
+    if (error.root_mean_square[i] == 0.0) continue;
+    for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+      cut.bound.higher(k)[i] = error.higher[k][i];
     }
     const KnownNorm norm = highest_norm(error, i);
     const double cost = reach < kWideCore ? kNarrowCost : norm.cost;
     const double share = cost / static_cast<double>(count * dim);
     // Markov: P(|e_i| > share^{−1/p} ‖e_i‖_p) ≤ share.
-    cut.bound.largest[i] = norm.value * std::pow(share, -1.0 / norm.order);
+    cut.bound.largest()[i] = norm.value * std::pow(share, -1.0 / norm.order);
     cut.outside += share;
   }
   return cut;

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include "controller/certification/stage_fit.hpp"
+#include "controller/certification/stage_error.hpp"
 #include "controller/prediction/model_error.hpp"
 
 namespace qsmpc {

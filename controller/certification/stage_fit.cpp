@@ -49,8 +49,9 @@ double quadratic_norm(const Eigen::MatrixXd& most, const Moments& moments, std::
 }
 
 Neighbourhood neighbourhood(const PredictedMotion& motion, const Gaussian& law,
-                            const Eigen::VectorXd& largest, const Eigen::MatrixXd& gain,
+                            const StageError& error, const Eigen::MatrixXd& gain,
                             const std::vector<InputFit>& inputs, const CoreShape& core) {
+  const auto largest = error.largest();
   const Eigen::Index states = law.mean.size();
   const Eigen::Index total = states + static_cast<Eigen::Index>(inputs.size());
   Neighbourhood near{Eigen::VectorXd(total), Eigen::VectorXd(total), Eigen::VectorXd(total)};
@@ -186,10 +187,10 @@ void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
     const Curvature curvature =
         curvature_of(bounds.hessian_lower[i], bounds.hessian_upper[i], law, moments, near.reach);
     fit.next_mean[i] += curvature.offset;
-    fit.residual[i] = curvature.residual;
-    fit.largest[i] = curvature.largest;
+    fit.residual.mean_square()[i] = curvature.residual;
+    fit.residual.largest()[i] = curvature.largest;
     for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
-      fit.higher[k][i] = curvature.higher[k];
+      fit.residual.higher(k)[i] = curvature.higher[k];
     }
   }
   Eigen::MatrixXd jacobian(states, states + count);
@@ -248,14 +249,14 @@ std::vector<InputFit> fit_inputs(const PredictedMotion& motion, Eigen::Index sta
     input.deviation = std::sqrt(std::max(0.0, row.dot(law.covariance * row)));
     input.saturation = fit_saturation(input.mean, input.deviation, lower, upper);
     const Eigen::VectorXd sizes = row.cwiseAbs();
-    const double largest = sizes.dot(error.largest);
+    const double largest = sizes.dot(error.largest());
     const double clamped = probability_near_bounds(input, largest, lower, upper);
-    input.difference = clamp_difference(input, sizes.dot(error.mean_square), largest, clamped, 2);
+    input.difference = clamp_difference(input, sizes.dot(error.mean_square()), largest, clamped, 2);
     input.higher_residual =
         saturation_residual_norms(input.saturation, input.mean, input.deviation, lower, upper);
     for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
       input.higher_difference[k] =
-          clamp_difference(input, sizes.dot(error.higher[k]), largest, clamped, kHigherOrders[k]);
+          clamp_difference(input, sizes.dot(error.higher(k)), largest, clamped, kHigherOrders[k]);
     }
   }
   return inputs;
@@ -283,12 +284,10 @@ StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaus
                    const CoreShape& core) {
   const Eigen::MatrixXd& gain = motion.policy.gains[stage];
   const Eigen::Index states = law.mean.size();
-  const Neighbourhood near = neighbourhood(motion, law, error.largest, gain, inputs, core);
+  const Neighbourhood near = neighbourhood(motion, law, error, gain, inputs, core);
   StageFit fit;
-  fit.residual = Eigen::VectorXd::Zero(states);
-  fit.largest = Eigen::VectorXd::Zero(states);
+  fit.residual = StageError::none(states);
   fit.closed_form = Eigen::VectorXd::Zero(states);
-  fit.higher = zero_norms(states);
   fit.region = {.lower = near.lower.head(states), .upper = near.upper.head(states)};
   fit.outside = outside_core(law, inputs, core);
   if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
@@ -302,14 +301,15 @@ StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage, const Gaus
   }
   for (Eigen::Index b = 0; b < gain.rows(); ++b) {
     const InputFit& input = inputs[b];
-    const double span = core.reach * input.deviation + gain.row(b).cwiseAbs().dot(error.largest);
+    const double span = core.reach * input.deviation + gain.row(b).cwiseAbs().dot(error.largest());
     const double worst =
         largest_saturation_residual(input.saturation, input.mean, span,
                                     motion.policy.bounds.lower[b], motion.policy.bounds.upper[b]);
-    fit.residual += fit.input_gain.col(b) * input.saturation.residual;
-    fit.largest += fit.input_gain.col(b) * worst;
+    const auto by_input = fit.input_gain.col(b);
+    fit.residual.mean_square() += by_input * input.saturation.residual;
+    fit.residual.largest() += by_input * worst;
     for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
-      fit.higher[k] += fit.input_gain.col(b) * input.higher_residual[k];
+      fit.residual.higher(k) += by_input * input.higher_residual[k];
     }
   }
   return fit;

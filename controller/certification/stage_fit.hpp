@@ -9,6 +9,7 @@
 
 #include "controller/certification/higher_norms.hpp"
 #include "controller/certification/saturation.hpp"
+#include "controller/certification/stage_error.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
@@ -18,24 +19,17 @@ namespace qsmpc {
 /// The affine map z ↦ next_mean + transition (z − m) about the law N(m, S) of a stage, and the
 /// residual r(x) = f(x, u(x)) − map(x).
 struct StageFit {
-  Eigen::MatrixXd transition;   ///< A, n x n
-  Eigen::VectorXd next_mean;    ///< n
-  Eigen::VectorXd residual;     ///< n, bounds √E[r_i(z)²; z in the core] without `closed_form`
-  Eigen::VectorXd largest;      ///< n, bounds |r_i(x)| over the region
+  Eigen::MatrixXd transition;  ///< A, n x n
+  Eigen::VectorXd next_mean;   ///< n
+  /// Bounds of r(z), z in the core, the mean square without `closed_form`; and of |r(x)| over the
+  /// region.
+  StageError residual;
   Eigen::VectorXd closed_form;  ///< n, √E[…²] of the unicycle's part of r(z); else zero
-  HigherNorms higher;           ///< bounds ‖r(z)‖_p, z in the core, all parts of r included
   Eigen::MatrixXd growth;  ///< n x n: |g_i(x) − g_i(z)| ≤ Σ_a growth_ia |x_a − z_a|, g the step
   Eigen::MatrixXd stretch;  ///< n x n: |r_i(x) − r_i(z)| ≤ Σ_a stretch_ia |x_a − z_a| + …
   Eigen::MatrixXd input_gain;  ///< n x m: … + Σ_b input_gain_ib |q_b(x) − q_b(z)|
   Box region;                  ///< core, widened by what x can be from z; infinite if affine there
   double outside = 0.0;        ///< bounds P(z not in the core)
-};
-
-/// What is known of x − z before the step.
-struct StageError {
-  Eigen::VectorXd mean_square;  ///< n, bounds √E[(x_i − z_i)²; inside]
-  HigherNorms higher;           ///< n each, bounds ‖x − z‖_p inside
-  Eigen::VectorXd largest;      ///< n, bounds |x_i − z_i| in the event of the next stage
 };
 
 /// One input's feedback under the law of a stage.
@@ -48,7 +42,7 @@ struct InputFit {
   std::array<double, kHigherOrders.size()> higher_difference{};  ///< ‖q(x) − q(z)‖_p inside
 };
 
-/// The inputs' fits at stage `stage` about `law`.
+/// The inputs' fits at stage `stage` about `law`; `error` is x − z before the step.
 [[nodiscard]] std::vector<InputFit> fit_inputs(const PredictedMotion& motion, Eigen::Index stage,
                                                const Gaussian& law, const StageError& error);
 
@@ -67,7 +61,7 @@ struct CoreShape {
 inline constexpr double kWideCore = 5.5;
 inline constexpr double kNarrowCore = 3.5;
 
-/// The fit of stage `stage`.
+/// The fit of stage `stage`; law and error as above.
 [[nodiscard]] StageFit fit_stage(const PredictedMotion& motion, Eigen::Index stage,
                                  const Gaussian& law, const StageError& error,
                                  const std::vector<InputFit>& inputs, const CoreShape& core);

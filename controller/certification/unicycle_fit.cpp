@@ -69,16 +69,18 @@ void bound_residual(const UnicycleStructure& unicycle, const Gaussian& law,
   const double away = unicycle.reach == 0.0 ? 0.0 : feedback.away;
   for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
     const HeadingNorms norms = heading_norms(variance, k);
-    fit.higher[k][unicycle.x] = unicycle.reach * (norms.along * along_x + norms.across * along_y);
-    fit.higher[k][unicycle.y] = unicycle.reach * (norms.along * along_y + norms.across * along_x);
+    fit.residual.higher(k)[unicycle.x] =
+        unicycle.reach * (norms.along * along_x + norms.across * along_y);
+    fit.residual.higher(k)[unicycle.y] =
+        unicycle.reach * (norms.along * along_y + norms.across * along_x);
   }
   // |e^{iδ} − 1 − iδ| ≤ δ²/2, and the fit takes the share `lost` off 1 + iδ; far off, both are as
   // large as they can be.
   const double fitted = std::sqrt(1.0 + away * away);
   const double position =
       unicycle.reach * std::min(0.5 * away * away + lost * fitted, 1.0 + shrink * fitted);
-  fit.largest[unicycle.x] = position;
-  fit.largest[unicycle.y] = position;
+  fit.residual.largest()[unicycle.x] = position;
+  fit.residual.largest()[unicycle.y] = position;
   // The residual's slope is reach · i e^{im} (e^{iδ} − e^{−v/2}): sin δ along the mean heading,
   // cos δ − e^{−v/2} across it. That of the step itself is reach · i e^{im} e^{iδ}.
   const double turned = largest_sine(away);

@@ -39,32 +39,39 @@ Eigen::Matrix2d residual_moments(double mean_i, double variance_i, double mean_j
   return 0.5 * moments;
 }
 
-UnicycleResidual::UnicycleResidual(const UnicycleStructure& unicycle, Eigen::Index dim)
-    : unicycle_(unicycle), second_moment_(Eigen::MatrixXd::Zero(dim, dim)) {}
+UnicycleResidual::UnicycleResidual(const UnicycleStructure& unicycle, Eigen::Index dim,
+                                   Eigen::Index stages)
+    : unicycle_(unicycle),
+      past_(dim, 3 * stages),
+      shifted_(dim, 3 * stages),
+      second_moment_(Eigen::MatrixXd::Zero(dim, dim)) {}
 
 void UnicycleResidual::add_stage(const Gaussian& law, const Eigen::MatrixXd& transition) {
   const int heading = unicycle_.heading;
   const double mean = law.mean[heading];
   const double variance = law.covariance(heading, heading);
-  const Eigen::Index dim = transition.rows();
-  Eigen::MatrixXd cross = Eigen::MatrixXd::Zero(dim, 2);  // E[A κ ρ_kᵀ]
-  for (Past& past : past_) {
-    past.carried = transition * past.carried;
-    cross += past.carried *
-             residual_moments(past.mean, past.variance, mean, variance, past.covariance[heading]);
-    past.covariance = transition * past.covariance;
+  const auto before = static_cast<Eigen::Index>(means_.size());
+  Eigen::Matrix<double, Eigen::Dynamic, 2> cross =
+      Eigen::MatrixXd::Zero(transition.rows(), 2);  // E[A κ ρ_kᵀ]
+  shifted_.leftCols(3 * before) = transition.lazyProduct(past_.leftCols(3 * before));
+  for (Eigen::Index j = 0; j < before; ++j) {
+    const double covariance = past_(heading, 3 * j);
+    cross += shifted_.middleCols<2>(3 * j + 1).lazyProduct(
+        residual_moments(means_[j], variances_[j], mean, variance, covariance));
   }
-  Eigen::MatrixXd entry = Eigen::MatrixXd::Zero(dim, 2);  // where ρ_k enters the state
+  past_.swap(shifted_);
+  Eigen::Matrix<double, Eigen::Dynamic, 2> entry =
+      Eigen::MatrixXd::Zero(transition.rows(), 2);  // where ρ_k enters the state
   entry(unicycle_.x, 0) = unicycle_.reach;
   entry(unicycle_.y, 1) = unicycle_.reach;
-  const Eigen::MatrixXd mixed = cross * entry.transpose();
-  second_moment_ =
-      transition * second_moment_ * transition.transpose() + mixed + mixed.transpose() +
-      entry * residual_moments(mean, variance, mean, variance, variance) * entry.transpose();
-  past_.push_back({.mean = mean,
-                   .variance = variance,
-                   .covariance = transition * law.covariance.col(heading),
-                   .carried = entry});
+  const Eigen::MatrixXd mixed = cross.lazyProduct(entry.transpose());
+  const Eigen::Matrix2d own = residual_moments(mean, variance, mean, variance, variance);
+  second_moment_ = transition * second_moment_ * transition.transpose() + mixed +
+                   mixed.transpose() + entry * own * entry.transpose();
+  means_.push_back(mean);
+  variances_.push_back(variance);
+  past_.col(3 * before) = transition * law.covariance.col(heading);
+  past_.middleCols<2>(3 * before + 1) = entry;
 }
 
 Eigen::VectorXd UnicycleResidual::root_mean_squares() const {

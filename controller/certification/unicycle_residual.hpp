@@ -22,7 +22,8 @@ namespace qsmpc {
 /// The position residuals of all stages so far, carried along: κ_{k+1} = A_k κ_k + reach ρ_k.
 class UnicycleResidual {
  public:
-  explicit UnicycleResidual(const UnicycleStructure& unicycle, Eigen::Index dim);
+  /// For states of `dim` coordinates and at most `stages` stages.
+  UnicycleResidual(const UnicycleStructure& unicycle, Eigen::Index dim, Eigen::Index stages);
 
   /// Adds the residual of a stage with the surrogate's law `law` and its affine map's `transition`.
   /// Takes O(stages) time.
@@ -32,15 +33,12 @@ class UnicycleResidual {
   [[nodiscard]] Eigen::VectorXd root_mean_squares() const;
 
  private:
-  struct Past {
-    double mean;                 ///< of the heading
-    double variance;             ///< of the heading
-    Eigen::VectorXd covariance;  ///< Cov(state now, heading then)
-    Eigen::MatrixXd carried;     ///< n x 2: the residual of then, as it is now
-  };
-
   UnicycleStructure unicycle_;
-  std::vector<Past> past_;
+  std::vector<double> means_;      ///< of the heading at every stage
+  std::vector<double> variances_;  ///< of the same
+  /// Three columns a stage: Cov(state now, heading then) and the residual of then, as it is now.
+  Eigen::MatrixXd past_;
+  Eigen::MatrixXd shifted_;        ///< of the same size, for the step from stage to stage
   Eigen::MatrixXd second_moment_;  ///< E[κ κᵀ]
 };
 

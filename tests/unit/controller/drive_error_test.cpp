@@ -194,14 +194,14 @@ TEST(DriveSurrogate, cuts_each_periods_error_off_where_its_own_norms_say) {
   const SurrogateStage start = affine_surrogates(motion).front();
   // Nine errors: those of eight periods, and that of the belief.
   const CutError cut = cut_error(error.first[0], 9, kWideCore);
-  EXPECT_EQ(start.largest, cut.bound.largest);
+  EXPECT_EQ(start.largest, cut.bound.largest());
   EXPECT_EQ(start.error, error.first[0].root_mean_square);
   const SurrogateStage next = affine_surrogates(motion)[1];
   const CutError own = cut_error(error.first[1], 9, kWideCore);
-  EXPECT_TRUE((next.largest.array() >= own.bound.largest.array()).all());
+  EXPECT_TRUE((next.largest.array() >= own.bound.largest().array()).all());
   // The heading's error is carried on as it is, and no residual is added to it.
   EXPECT_NEAR(next.largest[Dubins::kHeading],
-              cut.bound.largest[Dubins::kHeading] + own.bound.largest[Dubins::kHeading], 1e-12);
+              cut.bound.largest()[Dubins::kHeading] + own.bound.largest()[Dubins::kHeading], 1e-12);
 }
 
 }  // namespace

@@ -210,13 +210,13 @@ TEST(ErrorCut, is_as_far_off_as_the_highest_known_norm_asks) {
   error.higher[0][1] = 0.2;
   const CutError cut = cut_error(error, 10, kWideCore);
   // P(|e| > t) ≤ (‖e‖_p/t)^p is 1/30 of 1e-4 by order 2, and of 1e-5 by order 4.
-  EXPECT_NEAR(cut.bound.largest[0], 0.1 / std::sqrt(1e-4 / 30.0), 1e-10);
-  EXPECT_NEAR(cut.bound.largest[1], 0.2 / std::pow(1e-5 / 30.0, 0.25), 1e-10);
-  EXPECT_EQ(cut.bound.largest[2], 0.0);
+  EXPECT_NEAR(cut.bound.largest()[0], 0.1 / std::sqrt(1e-4 / 30.0), 1e-10);
+  EXPECT_NEAR(cut.bound.largest()[1], 0.2 / std::pow(1e-5 / 30.0, 0.25), 1e-10);
+  EXPECT_EQ(cut.bound.largest()[2], 0.0);
   EXPECT_NEAR(cut.outside, (1e-4 + 1e-5) / 30.0, 1e-18);
   // No error is none in every norm, also where only its mean square is stated.
-  EXPECT_EQ(cut.bound.higher[1][2], 0.0);
-  EXPECT_EQ(cut.bound.higher[1][0], kInfinity);
+  EXPECT_EQ(cut.bound.higher(1)[2], 0.0);
+  EXPECT_EQ(cut.bound.higher(1)[0], kInfinity);
 }
 
 TEST(PlantSurrogate, unknown_norms_are_unknown_only_where_they_reach) {

@@ -97,7 +97,7 @@ TEST(UnicycleResidual, headings_that_are_known_or_independent_have_none_in_commo
 }
 
 TEST(UnicycleResidual, is_zero_along_a_walk_with_known_headings) {
-  UnicycleResidual carried(kUnicycle, 3);
+  UnicycleResidual carried(kUnicycle, 3, 3);
   Eigen::MatrixXd transition = Eigen::MatrixXd::Identity(3, 3);
   for (int stage = 0; stage < 3; ++stage) {
     Gaussian law{.mean = Eigen::Vector3d(1.0, 2.0, 0.5), .covariance = Eigen::Matrix3d::Zero()};
@@ -117,7 +117,7 @@ TEST(UnicycleResidual, carried_residuals_match_simulation) {
   const Eigen::MatrixXd noise = random_spd(generator, 3, 0.05);
   std::vector<Eigen::MatrixXd> transitions;
   std::vector<Gaussian> laws = {belief};
-  UnicycleResidual carried(kUnicycle, 3);
+  UnicycleResidual carried(kUnicycle, 3, kHorizon);
   for (int k = 0; k < kHorizon; ++k) {
     Eigen::MatrixXd transition = Eigen::MatrixXd::Identity(3, 3);
     transition.col(2) += random_matrix(generator, 3, 1, 0.3);
