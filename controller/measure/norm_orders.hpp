@@ -22,7 +22,4 @@ using HigherNorms = std::array<Eigen::VectorXd, kHigherOrders.size()>;
   return norms;
 }
 
-/// All norms zero, for vectors of this dimension.
-[[nodiscard]] inline HigherNorms zero_norms(Eigen::Index dim) { return constant_norms(dim, 0.0); }
-
 }  // namespace qsmpc
