@@ -155,7 +155,7 @@ namespace {
 
 /// Gauss's rule for rectangle_estimate.
 struct EstimateRule {
-  static constexpr std::size_t kCount = 16;
+  static constexpr std::size_t kCount = HWY_NAMESPACE::kEstimateNodes;
   std::array<double, kCount> nodes;
   std::array<double, kCount> weights;
 
