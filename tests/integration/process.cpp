@@ -1,5 +1,6 @@
 #include "tests/integration/process.hpp"
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
@@ -52,7 +53,7 @@ ProcessResult run_qsmpc(const std::vector<std::string>& arguments, const Process
   bool watching = static_cast<bool>(options.meanwhile);
   while (waitpid(child, &status, watching ? WNOHANG : 0) == 0) {
     watching = !options.meanwhile(child);
-    std::this_thread::yield();
+    if (watching) std::this_thread::sleep_for(std::chrono::microseconds(200));
   }
   ProcessResult result;
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
