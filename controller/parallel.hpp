@@ -18,7 +18,7 @@ class TaskRef {
  public:
   template <class Callable>
   requires(!std::is_same_v<std::remove_cvref_t<Callable>, TaskRef>)
-      // NOLINTNEXTLINE(google-explicit-constructor): a lambda is passed where a task is wanted.
+      // NOLINTNEXTLINE(bugprone-forwarding-reference-overload): copies are excluded above.
       TaskRef(Callable&& callable)
       : object_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
         call_([](void* object, int task) {

@@ -11,7 +11,8 @@ namespace {
 unsigned char blended(unsigned char below, float above, float share) {
   const float value =
       static_cast<float>(below) + share * (255.0F * above - static_cast<float>(below));
-  return static_cast<unsigned char>(value + 0.5F);  // to the nearest: it is not negative
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): it is not negative.
+  return static_cast<unsigned char>(value + 0.5F);
 }
 
 // `x` and `y` lie in the image.

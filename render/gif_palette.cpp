@@ -17,8 +17,8 @@ constexpr int kSpread = 10;          // of 255, between the extremes of the patt
 constexpr int kUnseen = 10 * 3 * 3;  // of `distance`: three steps of 255 in each channel
 
 // Ordered dithering (B. E. Bayer, 1973): each value once, neighbours far apart.
-constexpr std::array<int, kPatternSide * kPatternSide> kPattern{0, 8,  2, 10, 12, 4, 14, 6,
-                                                                3, 11, 1, 9,  15, 7, 13, 5};
+constexpr std::array<int, std::size_t{kPatternSide} * kPatternSide> kPattern{
+    0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5};
 
 struct Deleter {
   void operator()(liq_attr* attributes) const { liq_attr_destroy(attributes); }
@@ -53,8 +53,8 @@ int distance(const std::array<int, 3>& colour, std::uint32_t entry) {
 }
 
 int offset_at(int x, int y) {
-  const int place =
-      kPattern[static_cast<std::size_t>(kPatternSide * (y % kPatternSide) + x % kPatternSide)];
+  const int cell = kPatternSide * (y % kPatternSide) + x % kPatternSide;
+  const int place = kPattern[static_cast<std::size_t>(cell)];
   constexpr int kLast = kPatternSide * kPatternSide - 1;
   return (2 * place - kLast) * kSpread / (2 * kLast);
 }

@@ -6,6 +6,7 @@
 
 namespace qsmpc {
 
+// A declared name cannot stand in parentheses. NOLINTNEXTLINE(bugprone-macro-parentheses)
 #define QSMPC_DEFINE_GL(name) decltype(&::name) name = nullptr;
 QSMPC_GL_FUNCTIONS(QSMPC_DEFINE_GL)
 #undef QSMPC_DEFINE_GL

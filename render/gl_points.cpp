@@ -23,6 +23,7 @@ struct Vertex {
 };
 
 unsigned char byte_of(float value) {
+  // NOLINTNEXTLINE(bugprone-incorrect-roundings): it is not negative.
   return static_cast<unsigned char>(255.0F * std::clamp(value, 0.0F, 1.0F) + 0.5F);
 }
 

@@ -22,6 +22,7 @@ Colour tube_colour(double share) {
 template <typename ColourAt>
 std::vector<Colour> ramp(const ColourAt& colour_at) {
   std::vector<Colour> colours;
+  colours.reserve(kRampSteps);
   for (int i = 0; i < kRampSteps; ++i) {
     colours.push_back(colour_at(static_cast<double>(i) / (kRampSteps - 1)));
   }

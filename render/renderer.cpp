@@ -175,6 +175,7 @@ void Renderer::draw(const Frame& frame, Image& out) { parts_->draw({&frame}, out
 
 void Renderer::draw(const std::vector<Frame>& frames, Image& out) {
   std::vector<const Frame*> pointers;
+  pointers.reserve(frames.size());
   for (const Frame& frame : frames) pointers.push_back(&frame);
   parts_->draw(pointers, out);
 }

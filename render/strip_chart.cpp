@@ -61,7 +61,9 @@ PixelPoint point_in(const Plot& plot, const StripChart& chart, std::size_t slot,
 void draw_limit(const StripChart& chart, const Plot& plot, const HudStyle& style, Image& image) {
   const double y = point_in(plot, chart, 0, chart.limit->value).y;
   const double end = plot.ground.x + plot.curve_width;
-  for (double x = plot.ground.x; x < end; x += 2.0 * kDash) {
+  const int dashes = static_cast<int>(std::ceil(plot.curve_width / (2.0 * kDash)));
+  for (int dash = 0; dash < dashes; ++dash) {
+    const double x = plot.ground.x + 2.0 * kDash * dash;
     fill_rectangle(image, {x, y - 0.5, std::min(kDash, end - x), 1.0}, hud_colour::kLimit);
   }
   // At the end of the time axis, where the curve is last, and on a ground of its own.

@@ -29,7 +29,7 @@ double power(double base, int exponent) {
 /// moves it by at most that, Z and the fit by |Z| each, and further outside the clamp is constant
 /// up to the reach. E[Z^p; |Z| > r] is at most 2 r^{p−1} φ(r)/(1 − p/r²).
 double beyond_reach(int order) {
-  constexpr double squared = kQuadratureReach * kQuadratureReach;
+  const double squared = kQuadratureReach * kQuadratureReach;
   return 2.0 * power(3.0, order) * power(kQuadratureReach, order - 1) *
          normal_density(kQuadratureReach) / (1.0 - order / squared);
 }

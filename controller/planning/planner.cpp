@@ -95,13 +95,14 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
   if (!settings_.safe_set.obstacles.empty()) valleys_.emplace(settings_, noise_free_);
   make_search(0, inputs_);
   if (settings_.closed_loop && settings_.optimise_gain) {
-    make_search(gain_change_.size(), gain_search_.emplace());
+    gain_search_ = std::make_unique<Search>();
+    make_search(gain_change_.size(), *gain_search_);
   }
 }
 
 /// Over the inputs of all stages and `entries` entries of the gains, which are not bounded.
 void Planner::make_search(Eigen::Index entries, Search& out) {
-  const Eigen::Index inputs = dynamics_.input_dim() * settings_.horizon;
+  const Eigen::Index inputs = Eigen::Index{dynamics_.input_dim()} * settings_.horizon;
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   out.problem.lower.setConstant(inputs + entries, -kInfinity);
   out.problem.upper.setConstant(inputs + entries, kInfinity);

@@ -154,7 +154,7 @@ class Planner {
   std::optional<ValleySearch> valleys_;  // where there are obstacles
   ParticleConstraints constraints_;
   Search inputs_;
-  std::optional<Search> gain_search_;  // over inputs and gains, where these are optimised
+  std::unique_ptr<Search> gain_search_;  // over inputs and gains, where these are optimised
   PredictionScratch scratch_;
   Eigen::VectorXd constraint_values_;
   Eigen::MatrixXd gain_change_;

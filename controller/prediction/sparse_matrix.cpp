@@ -87,7 +87,7 @@ void multiply_packed(const SparseMatrix& a, const PackedPoints& points, int begi
           const double* const point =
               data + static_cast<std::ptrdiff_t>(column[k + chain]) * stride;
           const Group factor = hn::Set(d, value[k + chain]);
-          for (int piece = 0; piece < kPieces; ++piece) {
+          for (std::ptrdiff_t piece = 0; piece < kPieces; ++piece) {
             sum[chain][piece] =
                 sum[chain][piece] + factor * hn::LoadU(d, point + piece * kGroupWidth);
           }
@@ -99,13 +99,13 @@ void multiply_packed(const SparseMatrix& a, const PackedPoints& points, int begi
         const int entry = exists ? k + chain : stop - 1;
         const double* const point = data + static_cast<std::ptrdiff_t>(column[entry]) * stride;
         const Group factor = hn::Set(d, exists ? value[entry] : 0.0);
-        for (int piece = 0; piece < kPieces; ++piece) {
+        for (std::ptrdiff_t piece = 0; piece < kPieces; ++piece) {
           sum[chain][piece] =
               sum[chain][piece] + factor * hn::LoadU(d, point + piece * kGroupWidth);
         }
       }
       double result[kGroup];
-      for (int piece = 0; piece < kPieces; ++piece) {
+      for (std::ptrdiff_t piece = 0; piece < kPieces; ++piece) {
         hn::StoreU((sum[0][piece] + sum[1][piece]) + (sum[2][piece] + sum[3][piece]), d,
                    result + piece * kGroupWidth);
       }

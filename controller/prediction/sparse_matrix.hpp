@@ -1,6 +1,7 @@
 // Sparse matrices that act on batches of points, for the processor's widest vectors.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "controller/measure/measures.hpp"
@@ -27,7 +28,9 @@ struct PackedPoints {
   int stride = 0;  ///< a multiple of 4, at least the dimension
   LineVector data;
 
-  [[nodiscard]] const double* point(int i) const { return data.data() + i * stride; }
+  [[nodiscard]] const double* point(int i) const {
+    return data.data() + static_cast<std::ptrdiff_t>(i) * stride;
+  }
 };
 
 /// Makes room for `count` points of dimension `dim`.

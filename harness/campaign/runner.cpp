@@ -52,8 +52,9 @@ std::vector<std::string> digests_of(const Campaign& campaign) {
 void remove_traces(const std::string& folder, const std::vector<std::string>& traces) {
   for (const std::string& trace : traces) {
     std::error_code error;
-    std::filesystem::remove_all(folder + "/" + trace, error);
-    if (error) throw IoError(folder + "/" + trace + ": cannot be removed: " + error.message());
+    const std::filesystem::path path = std::filesystem::path(folder) / trace;
+    std::filesystem::remove_all(path, error);
+    if (error) throw IoError(path.string() + ": cannot be removed: " + error.message());
   }
 }
 
@@ -210,7 +211,7 @@ CampaignProgress run_campaign(const Campaign& campaign, const std::string& folde
               campaign.seeds, options.update);
   remove_traces(folder, store.update().traces);
   if (store.update().changed && options.on_update) options.on_update(store.update());
-  const CampaignProgress progress = CampaignRun(campaign, folder, options, store).run();
+  CampaignProgress progress = CampaignRun(campaign, folder, options, store).run();
   store.fold();
   return progress;
 }

@@ -43,6 +43,7 @@ ResidualSample residuals_of(const std::vector<EpisodeResult>& episodes) {
 ResidualSample stretches(const std::vector<EpisodeResult>& episodes, Eigen::Index first,
                          Eigen::Index horizon) {
   std::vector<Eigen::Index> lengths;
+  lengths.reserve(episodes.size());
   for (const EpisodeResult& episode : episodes) lengths.push_back(episode.residuals.cols());
   std::sort(lengths.begin(), lengths.end());
   const Eigen::Index later = std::max<Eigen::Index>(lengths[lengths.size() / 2] - first, 0);

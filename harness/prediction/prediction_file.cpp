@@ -116,13 +116,11 @@ void add_particles(Layout& layout, const Labels& n) {
 }
 
 void add_certificate(Layout& layout) {
-  std::vector<std::string> sources;
-  for (const BudgetField& field : kBudgetColumns) sources.emplace_back(field.name);
   layout.push_back({.path = "/certificate/budget",
-                    .row_shape = {sources.size()},
+                    .row_shape = {kBudgetColumns.size()},
                     .axes = {"stage", "source"},
                     .units = {kStateNorm},
-                    .columns = sources,
+                    .columns = budget_column_names(),
                     .comment = kBudgetMeaning});
   layout.push_back({.path = kModelErrorPath,
                     .axes = {"stage"},

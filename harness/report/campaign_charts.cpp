@@ -155,7 +155,7 @@ std::vector<std::size_t> variants_with_a_chart(const CampaignStatistics& statist
   };
   std::vector<std::size_t> places(statistics.variants.size());
   std::iota(places.begin(), places.end(), std::size_t{0});
-  std::ranges::stable_partition(places, is_exceeded);
+  std::stable_partition(places.begin(), places.end(), is_exceeded);
   places.resize(std::min(places.size(), kMostPanels));
   std::ranges::sort(places);
   return places;

@@ -26,6 +26,7 @@ constexpr std::string_view kInputTitle = "Input: ";
 template <class Figure>
 std::vector<FigureFile> named_by_file(const std::vector<Figure>& figures) {
   std::vector<FigureFile> files;
+  files.reserve(figures.size());
   for (const Figure& figure : figures) {
     files.push_back({.name = figure.file.substr(0, figure.file.rfind('.')),
                      .panels = {figure.charts.begin(), figure.charts.end()}});

@@ -26,8 +26,8 @@ constexpr std::array kMappingKeys = {"state",       "input",      "hold",
                                      "input_delay", "time_steps", "settling"};
 
 std::vector<std::string> names_of(const std::vector<Coordinate>& coordinates) {
-  std::vector<std::string> names;
-  for (const Coordinate& coordinate : coordinates) names.push_back(coordinate.name);
+  std::vector<std::string> names(coordinates.size());
+  std::ranges::transform(coordinates, names.begin(), &Coordinate::name);
   return names;
 }
 
@@ -99,7 +99,7 @@ class MappingReader {
 
   std::string input_name(Section& section, const std::string& key) {
     section.require(key, "an input of the system");
-    const std::string name = section.name(key, "", names_of(system_.description.inputs));
+    std::string name = section.name(key, "", names_of(system_.description.inputs));
     used_.insert(name);
     return name;
   }

@@ -2,8 +2,10 @@
 // written, read and documented is one list.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <vector>
 
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
@@ -45,6 +47,12 @@ inline constexpr std::array<BudgetField, 4> kBudgetColumns = {{
     {"compression", &StageBudget::compression},
     {"total", &StageBudget::total},
 }};
+
+[[nodiscard]] inline std::vector<std::string> budget_column_names() {
+  std::vector<std::string> names(kBudgetColumns.size());
+  std::ranges::transform(kBudgetColumns, names.begin(), &BudgetField::name);
+  return names;
+}
 
 [[nodiscard]] inline std::string certificate_path(const CertificateField& field) {
   return std::string("/certificate/") + field.name;

@@ -150,13 +150,11 @@ void add_particles(std::vector<DatasetSpec>& layout, const Sizes& n) {
 }
 
 void add_certificate(std::vector<DatasetSpec>& layout, const Sizes& n) {
-  std::vector<std::string> sources;
-  for (const BudgetField& field : kBudgetColumns) sources.emplace_back(field.name);
   layout.push_back({.path = "/certificate/budget",
-                    .row_shape = {n.horizon + 1, sources.size()},
+                    .row_shape = {n.horizon + 1, kBudgetColumns.size()},
                     .axes = {"step", "stage", "source"},
                     .units = {kStateNorm},
-                    .columns = sources,
+                    .columns = budget_column_names(),
                     .comment = kBudgetMeaning});
   layout.push_back({.path = kModelErrorPath,
                     .row_shape = {n.horizon + 1},

@@ -52,6 +52,7 @@ PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probabili
 
 std::vector<BeliefEllipses> belief_ellipses(const std::vector<PlanarMoments>& stages) {
   std::vector<BeliefEllipses> ellipses;
+  ellipses.reserve(stages.size());
   for (const PlanarMoments& stage : stages) {
     ellipses.push_back(
         {.half = probability_ellipse(stage, kHalf), .most = probability_ellipse(stage, kMost)});

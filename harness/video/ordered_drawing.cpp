@@ -21,7 +21,7 @@ std::size_t slot_count(const OrderedDrawing::Work& work) {
 
 }  // namespace
 
-OrderedDrawing::OrderedDrawing(const Work& work, DrawerFactory make_drawer)
+OrderedDrawing::OrderedDrawing(const Work& work, const DrawerFactory& make_drawer)
     : total_(work.total), slots_(slot_count(work)) {
   for (int thread = 0; thread < std::min(work.threads, work.total); ++thread) {
     threads_.emplace_back([this, make_drawer] { draw_all(make_drawer); });

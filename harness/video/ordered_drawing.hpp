@@ -31,7 +31,7 @@ class OrderedDrawing {
   };
 
   /// Begins to draw. Throws std::invalid_argument when no thread may draw.
-  OrderedDrawing(const Work& work, DrawerFactory make_drawer);
+  OrderedDrawing(const Work& work, const DrawerFactory& make_drawer);
 
   /// Stops after the pictures that are being drawn.
   ~OrderedDrawing();

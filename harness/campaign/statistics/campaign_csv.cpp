@@ -32,7 +32,7 @@ std::string without_end(std::string line) {
 
 std::string spread_head(const std::string& name) {
   std::string head = fmt::format(",{0}.episodes,{0}.faults,{0}.mean,{0}.standard_error", name);
-  for (const std::string& quantile : spread_names()) head += "," + name + "." + quantile;
+  for (const std::string& quantile : spread_names()) head += fmt::format(",{}.{}", name, quantile);
   return head;
 }
 

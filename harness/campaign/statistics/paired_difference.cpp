@@ -43,7 +43,7 @@ struct NamedValue {
 };
 
 const std::array<NamedValue, 6>& values() {
-  static const std::array<NamedValue, 6> kValues = {{
+  static const std::array<NamedValue, 6> kept = {{
       {"reached",
        [](const EpisodeRow& row) -> std::optional<double> {
          return row.outcome == outcome_name(Outcome::kReached) ? 1.0 : 0.0;
@@ -60,7 +60,7 @@ const std::array<NamedValue, 6>& values() {
       {"iterations",
        [](const EpisodeRow& row) { return unless_faulted(row, row.iterations_median); }},
   }};
-  return kValues;
+  return kept;
 }
 
 }  // namespace
@@ -105,12 +105,12 @@ RateInterval BootstrapMean::interval() const {
 }
 
 const std::vector<std::string>& paired_quantities() {
-  static const std::vector<std::string> kNames = [] {
+  static const std::vector<std::string> kept = [] {
     std::vector<std::string> names;
     for (const NamedValue& value : values()) names.emplace_back(value.name);
     return names;
   }();
-  return kNames;
+  return kept;
 }
 
 PairedDifference::PairedDifference() : quantities_(values().size()) {}

@@ -23,14 +23,13 @@ EpisodeRate episode_rate(std::int64_t events, std::int64_t trials) {
 }
 
 const std::vector<double>& spread_shares() {
-  static const std::vector<double> kShares = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
-  return kShares;
+  static const std::vector<double> shares = {0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0};
+  return shares;
 }
 
 const std::vector<std::string>& spread_names() {
-  static const std::vector<std::string> kNames = {"min", "p5",  "p25", "median",
-                                                  "p75", "p95", "max"};
-  return kNames;
+  static const std::vector<std::string> names = {"min", "p5", "p25", "median", "p75", "p95", "max"};
+  return names;
 }
 
 double VariantStatistics::unsafe_step_rate() const {

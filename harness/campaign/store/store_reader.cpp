@@ -15,7 +15,7 @@ namespace qsmpc {
 namespace {
 
 std::string existing_store(const std::string& folder) {
-  const std::string path = folder + "/" + kStoreFile;
+  std::string path = folder + "/" + kStoreFile;
   std::error_code error;
   if (std::filesystem::is_regular_file(path, error)) return path;
   throw InputError({.file = path,

@@ -10,6 +10,7 @@
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 
+// NOLINTNEXTLINE(readability-identifier-naming): the name that its library gives it
 namespace SQLite {
 class Column;
 class Database;

@@ -46,16 +46,19 @@ void vary_mass(mjModel& model, double factor) {
   }
 }
 
+/// The first coordinate of an element's place, of the places of all of them.
+double& place_x(double* places, int element) { return places[std::ptrdiff_t{3} * element]; }
+
 /// Moves the bodies of the steered wheels away from the fixed axle, which must be beside them in
 /// the tree of bodies.
 bool stretch(const NamedModel& named, mjModel& model, const AckermannLoop& loop, double factor) {
   double axle = 0.0;
   for (const std::string& name : loop.fixed_axle) {
-    axle += model.body_pos[3 * model.jnt_bodyid[scalar_joint(named, name)]];
+    axle += place_x(model.body_pos, model.jnt_bodyid[scalar_joint(named, name)]);
   }
   axle /= static_cast<double>(loop.fixed_axle.size());
   for (const SteeredWheel& wheel : loop.wheels) {
-    double& x = model.body_pos[3 * model.jnt_bodyid[scalar_joint(named, wheel.joint)]];
+    double& x = place_x(model.body_pos, model.jnt_bodyid[scalar_joint(named, wheel.joint)]);
     x = axle + factor * (x - axle);
   }
   return true;
@@ -63,7 +66,7 @@ bool stretch(const NamedModel& named, mjModel& model, const AckermannLoop& loop,
 
 bool stretch(const NamedModel& named, mjModel& model, const AxleForces& forces, double factor) {
   for (const std::string& name : {forces.front_axle, forces.rear_axle}) {
-    model.site_pos[3 * element_index(named, mjOBJ_SITE, name)] *= factor;
+    place_x(model.site_pos, element_index(named, mjOBJ_SITE, name)) *= factor;
   }
   return true;
 }
