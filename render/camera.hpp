@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "render/canvas.hpp"
 #include "render/frame.hpp"
+#include "render/hud/canvas.hpp"
 
 namespace qsmpc {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/camera.hpp"
-#include "render/canvas.hpp"
+#include "render/hud/canvas.hpp"
 
 namespace qsmpc {
 

@@ -4,13 +4,13 @@
 #include <stdexcept>
 
 #include "render/camera.hpp"
-#include "render/hud.hpp"
-#include "render/offscreen_context.hpp"
+#include "render/gl/offscreen_context.hpp"
+#include "render/gl/smoothing.hpp"
+#include "render/hud/hud.hpp"
 #include "render/palette.hpp"
 #include "render/picture_layout.hpp"
-#include "render/scene_painter.hpp"
-#include "render/smoothing.hpp"
-#include "render/vehicle.hpp"
+#include "render/scene/scene_painter.hpp"
+#include "render/scene/vehicle.hpp"
 
 namespace qsmpc {
 namespace {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "render/canvas.hpp"
 #include "render/frame.hpp"
+#include "render/hud/canvas.hpp"
 #include "render/render_options.hpp"
 
 namespace qsmpc {

@@ -7,8 +7,8 @@
 
 #include <Eigen/Cholesky>
 
-#include "controller/certification/error_cut.hpp"
-#include "controller/certification/stage_fit.hpp"
+#include "controller/certification/error_truncation.hpp"
+#include "controller/certification/statistical_linearisation.hpp"
 #include "controller/certification/unicycle_residual.hpp"
 
 namespace qsmpc {
@@ -138,14 +138,16 @@ class SurrogateRecursion {
   bool step(Eigen::Index stage, SurrogateStage& before) {
     // All that rests on what this leaves is in the event that is inside at the next stage.
     const StageError before_step = where_limited(error_);
-    const std::vector<InputFit> inputs = fit_inputs(motion_, stage, law_, before_step);
+    const std::vector<InputLinearisation> inputs =
+        linearise_inputs(motion_, stage, law_, before_step);
     // A plan that was lost has no boxes to fit anything over.
-    if (!std::all_of(inputs.begin(), inputs.end(), [](const InputFit& input) {
+    if (!std::all_of(inputs.begin(), inputs.end(), [](const InputLinearisation& input) {
           return std::isfinite(input.mean) && std::isfinite(input.deviation);
         })) {
       return false;
     }
-    const StageFit fit = fit_stage(motion_, stage, law_, before_step, inputs, core_);
+    const StatisticalLinearisation fit =
+        linearise_stage(motion_, stage, law_, before_step, inputs, core_);
     before.transition = fit.transition;
     const StageError difference = residual_difference(before_step, fit, inputs);
     outside_ += fit.outside;
@@ -157,9 +159,9 @@ class SurrogateRecursion {
     if (residual_) residual_->add_stage(law_, fit.transition);
     StageError own = fit.residual;
     const ModelError* error = motion_.error_at(stage);
-    CutError cut;
+    TruncatedError cut;
     if (error != nullptr) {
-      cut = cut_error(*error, error_count(), core_.reach);
+      cut = truncate_error(*error, error_count(), core_.reach);
       own = added(own, cut.bound);
     }
     carry(fit.transition, added(own, difference));
@@ -192,7 +194,7 @@ class SurrogateRecursion {
 
   /// The state has `error` beside the belief at stage 0, and its offset less beside the surrogate.
   void start_from(const ModelError& error) {
-    const CutError cut = cut_error(error, error_count(), core_.reach);
+    const TruncatedError cut = truncate_error(error, error_count(), core_.reach);
     error_ = cut.bound;
     outside_ = cut.outside;
     past_.add(cut.bound);
@@ -201,8 +203,9 @@ class SurrogateRecursion {
 
   /// Bounds of r(x) − r(z) where x − z has the bounds `error`; over the region `largest` holds of
   /// r(x) itself.
-  [[nodiscard]] static StageError residual_difference(const StageError& error, const StageFit& fit,
-                                                      const std::vector<InputFit>& inputs) {
+  [[nodiscard]] static StageError residual_difference(
+      const StageError& error, const StatisticalLinearisation& fit,
+      const std::vector<InputLinearisation>& inputs) {
     StageError difference = moved(fit.stretch, error);
     difference.largest().setZero();
     for (std::size_t b = 0; b < inputs.size(); ++b) {

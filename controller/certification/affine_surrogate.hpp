@@ -9,8 +9,8 @@
 
 #include <Eigen/Core>
 
-#include "controller/certification/higher_norms.hpp"
-#include "controller/certification/stage_fit.hpp"
+#include "controller/certification/higher_order_norms.hpp"
+#include "controller/certification/statistical_linearisation.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"

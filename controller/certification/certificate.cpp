@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "controller/certification/affine_surrogate.hpp"
-#include "controller/certification/part_bound.hpp"
 #include "controller/certification/smoothed_bound.hpp"
+#include "controller/certification/unsafe_region_bound.hpp"
 #include "controller/certification/worst_case.hpp"
 
 namespace qsmpc {
@@ -29,28 +29,28 @@ struct SurrogateBounds {
 };
 
 SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
-                                 const std::vector<UnsafePart>& parts, Eigen::Index stage,
+                                 const std::vector<UnsafeRegion>& parts, Eigen::Index stage,
                                  const SurrogateStage& surrogate, CertificateEffort effort) {
   const double worthwhile = effort == CertificateEffort::kEvery ? kNegligible : kWorthwhile;
   if (surrogate.leaving >= 1.0) return {};
   SurrogateBounds bounds{.markov = surrogate.leaving, .smooth = surrogate.leaving};
-  for (const UnsafePart& part : parts) {
+  for (const UnsafeRegion& part : parts) {
     // One value of the highest order settles the parts that are far away.
     const std::size_t highest = kHigherOrders.size() - 1;
-    double markov = far_part_bound(surrogate.law, surrogate.higher[highest], kHigherOrders[highest],
-                                   part, kNegligible);
+    double markov = far_region_bound(surrogate.law, surrogate.higher[highest],
+                                     kHigherOrders[highest], part, kNegligible);
     double smooth = markov;
     if (markov > kNegligible) {
       const Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, part.axes);
       const PerturbedGaussian state{
           .law = surrogate.law, .error = surrogate.error, .smoothing = smoothing};
-      markov = std::min(markov, markov_part_bound(state, part));
-      smooth = std::min(markov, smooth_part_bound(state, part));
+      markov = std::min(markov, markov_region_bound(state, part));
+      smooth = std::min(markov, smooth_region_bound(state, part));
     }
     // Searches in two coordinates are dear: only where they can matter.
     for (std::size_t k = kHigherOrders.size(); k-- > 0 && smooth > worthwhile;) {
       markov = std::min(
-          markov, tail_part_bound(surrogate.law, surrogate.higher[k], kHigherOrders[k], part));
+          markov, tail_region_bound(surrogate.law, surrogate.higher[k], kHigherOrders[k], part));
       smooth = std::min(smooth, markov);
     }
     bounds.markov += markov;
@@ -65,7 +65,7 @@ std::vector<SurrogateBounds> surrogate_bounds_of_stages(const PredictedMotion& m
                                                         const SafeSet& safe_set,
                                                         CertificateEffort effort,
                                                         const Executor& run) {
-  const std::vector<UnsafePart> parts = unsafe_parts(safe_set);
+  const std::vector<UnsafeRegion> parts = unsafe_regions(safe_set);
   std::vector<SurrogateBounds> least(motion.policy.horizon());
   for (const double core : {kWideCore, kNarrowCore}) {
     const std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core);

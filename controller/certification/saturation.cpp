@@ -7,7 +7,7 @@
 
 #include <boost/math/quadrature/gauss.hpp>
 
-#include "controller/measure/normal_distribution.hpp"
+#include "controller/measure/normal/normal_distribution.hpp"
 
 namespace qsmpc {
 namespace {

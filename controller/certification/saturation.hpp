@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "controller/certification/higher_norms.hpp"
+#include "controller/certification/higher_order_norms.hpp"
 
 namespace qsmpc {
 

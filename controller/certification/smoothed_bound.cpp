@@ -8,7 +8,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "controller/measure/normal_distribution.hpp"
+#include "controller/measure/normal/normal_distribution.hpp"
 
 namespace qsmpc {
 namespace {

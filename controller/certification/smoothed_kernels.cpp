@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "controller/certification/smoothed_kernels.cpp"
 #include <hwy/foreach_target.h>
 
-#include "controller/measure/normal_cdf-inl.hpp"
+#include "controller/measure/normal/normal_cdf-inl.hpp"
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -22,7 +22,7 @@ struct HeadingNorms {
 };
 
 HeadingNorms heading_norms(double variance, std::size_t k) {
-  const NormalNorms& norms = normal_norms(k);
+  const HigherOrderNorms& norms = higher_order_norms(k);
   const double deviation = std::sqrt(variance);
   const double square = variance * variance;
   return {.along =
@@ -34,7 +34,7 @@ HeadingNorms heading_norms(double variance, std::size_t k) {
 
 /// The map, and what of its residual is known exactly.
 void fit_map(const UnicycleStructure& unicycle, const Gaussian& law,
-             const UnicycleFeedback& feedback, Eigen::Index inputs, StageFit& fit) {
+             const UnicycleFeedback& feedback, Eigen::Index inputs, StatisticalLinearisation& fit) {
   const Eigen::Index states = law.mean.size();
   const int heading = unicycle.heading;
   const double mean = law.mean[heading];
@@ -57,7 +57,7 @@ void fit_map(const UnicycleStructure& unicycle, const Gaussian& law,
 
 /// What is known of the residual and of the step's slopes over the region.
 void bound_residual(const UnicycleStructure& unicycle, const Gaussian& law,
-                    const UnicycleFeedback& feedback, StageFit& fit) {
+                    const UnicycleFeedback& feedback, StatisticalLinearisation& fit) {
   const Eigen::Index states = law.mean.size();
   const int heading = unicycle.heading;
   const double variance = law.covariance(heading, heading);
@@ -99,7 +99,8 @@ void bound_residual(const UnicycleStructure& unicycle, const Gaussian& law,
 }  // namespace
 
 void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
-                  const UnicycleFeedback& feedback, Eigen::Index inputs, StageFit& fit) {
+                  const UnicycleFeedback& feedback, Eigen::Index inputs,
+                  StatisticalLinearisation& fit) {
   fit_map(unicycle, law, feedback, inputs, fit);
   bound_residual(unicycle, law, feedback, fit);
 }

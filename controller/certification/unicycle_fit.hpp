@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "controller/certification/saturation.hpp"
-#include "controller/certification/stage_fit.hpp"
+#include "controller/certification/statistical_linearisation.hpp"
 #include "controller/measure/measures.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -21,6 +21,7 @@ struct UnicycleFeedback {
 /// Fills `fit` for the step of `unicycle` from `law`, but for what the clamp leaves: e^{iφ} by its
 /// best affine fit e^{im − v/2}(1 + i(φ − m)). The vectors of `fit` come zero, of size n.
 void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
-                  const UnicycleFeedback& feedback, Eigen::Index inputs, StageFit& fit);
+                  const UnicycleFeedback& feedback, Eigen::Index inputs,
+                  StatisticalLinearisation& fit);
 
 }  // namespace qsmpc

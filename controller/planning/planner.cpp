@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "controller/planning/angular_target.hpp"
+#include "controller/planning/cost/angular_target.hpp"
 
 namespace qsmpc {
 namespace {
@@ -92,7 +92,7 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
       guess_(settings_),
       constraints_(cost_, settings_.safe_set),
       gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
-  if (!settings_.safe_set.obstacles.empty()) valleys_.emplace(settings_, noise_free_);
+  if (!settings_.safe_set.obstacles.empty()) minima_.emplace(settings_, noise_free_);
   make_search(0, inputs_);
   if (settings_.closed_loop && settings_.optimise_gain) {
     gain_search_ = std::make_unique<Search>();
@@ -170,24 +170,24 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
     set_policy(belief, guess_.shifted(), *current_);
     if (maps_fit(*last_)) {
       last_->prediction.stages[0] = belief_.measure;
-      hold(last_->prediction, current_->policy);
+      freeze_assignments(last_->prediction, current_->policy);
     } else {
-      predict_and_price(*current_);
-      round.priced = true;
+      predict_and_evaluate(*current_);
+      round.evaluated = true;
     }
     warm = !constant_is_clearly_cheaper(belief, round);
   }
   start_solver(*inputs_.solver, warm);
   if (gain_search_) start_solver(*gain_search_->solver, warm);
-  if (!warm && valleys_) {
+  if (!warm && minima_) {
     start_in_deepest_valley(belief, round);
-  } else if (!warm && round.priced) {
+  } else if (!warm && round.evaluated) {
     std::swap(current_, candidate_);  // the constant inputs, which won
-    hold(current_->prediction, current_->policy);
+    freeze_assignments(current_->prediction, current_->policy);
   } else if (!warm) {
     set_policy(belief, guess_.constant(), *current_);
-    predict_and_price(*current_);
-    round.priced = true;
+    predict_and_evaluate(*current_);
+    round.evaluated = true;
   }
   stopwatch.add_to(round.timing.propagate);
   return warm;
@@ -200,29 +200,29 @@ bool Planner::constant_is_clearly_cheaper(const Gaussian& belief, Round& round) 
   // Without noise many a constant looks better than a plan that is careful because of it.
   if (!(guess_.advantage() > 0.0)) return false;
   set_policy(belief, guess_.constant(), *candidate_);
-  if (!round.priced) {
-    const double shifted = price_held(*current_);
-    hold(last_->prediction, candidate_->policy);
-    const bool possible = clearly_cheaper(price_held(*candidate_), shifted);
+  if (!round.evaluated) {
+    const double shifted = evaluate_frozen(*current_);
+    freeze_assignments(last_->prediction, candidate_->policy);
+    const bool possible = clearly_cheaper(evaluate_frozen(*candidate_), shifted);
     if (!possible || Clock::now() >= round.deadline) {
-      hold(last_->prediction, current_->policy);
+      freeze_assignments(last_->prediction, current_->policy);
       return false;
     }
   }
-  predict_and_price(*candidate_);
-  if (round.priced) {
-    hold(current_->prediction, current_->policy);
+  predict_and_evaluate(*candidate_);
+  if (round.evaluated) {
+    freeze_assignments(current_->prediction, current_->policy);
   } else {
-    predict_and_price(*current_);
-    round.priced = true;
+    predict_and_evaluate(*current_);
+    round.evaluated = true;
   }
   return clearly_cheaper(candidate_->cost.total(), current_->cost.total());
 }
 
 /// What the assignments that are held say of the plan's cost.
-double Planner::price_held(const Plan& plan) {
+double Planner::evaluate_frozen(const Plan& plan) {
   flatten(plan.policy, inputs_.z);
-  return cost_.price(inputs_.z);
+  return cost_.evaluate(inputs_.z);
 }
 
 /// Makes `plan` about `inputs`, with the gains that belong to them.
@@ -232,19 +232,19 @@ void Planner::set_policy(const Gaussian& belief, const Eigen::MatrixXd& inputs, 
 }
 
 /// Makes `current_` the best of the plans at the bottoms of the valleys, and of itself if it has
-/// been priced, as the prediction prices them, and holds its assignments.
+/// been evaluated, as the prediction prices them, and holds its assignments.
 void Planner::start_in_deepest_valley(const Gaussian& belief, Round& round) {
-  bool held = round.priced;
-  for (const Eigen::MatrixXd* const inputs : valleys_->search(policies_, round.deadline)) {
-    if (round.priced && Clock::now() >= round.deadline) break;
-    Plan& plan = round.priced ? *candidate_ : *current_;
+  bool held = round.evaluated;
+  for (const Eigen::MatrixXd* const inputs : minima_->search(policies_, round.deadline)) {
+    if (round.evaluated && Clock::now() >= round.deadline) break;
+    Plan& plan = round.evaluated ? *candidate_ : *current_;
     set_policy(belief, *inputs, plan);
-    predict_and_price(plan);
-    held = !round.priced || better(plan, *current_);
-    if (held && round.priced) std::swap(current_, candidate_);
-    round.priced = true;
+    predict_and_evaluate(plan);
+    held = !round.evaluated || better(plan, *current_);
+    if (held && round.evaluated) std::swap(current_, candidate_);
+    round.evaluated = true;
   }
-  if (!held) hold(current_->prediction, current_->policy);
+  if (!held) freeze_assignments(current_->prediction, current_->policy);
 }
 void Planner::start_solver(OcpSolver& solver, bool warm) const {
   if (warm) {
@@ -263,18 +263,18 @@ bool Planner::maps_fit(const Plan& plan) const {
                      [](const StageMap& map) { return std::isfinite(map.compression_w2); });
 }
 
-/// Leaves in `current_` the best plan, priced with assignments and gains of its own: first the
+/// Leaves in `current_` the best plan, evaluated with assignments and gains of its own: first the
 /// inputs are optimised, and then, if wanted, the gain with them, so that it never costs more.
 void Planner::optimise(const Gaussian& belief, Round& round) {
   constraints_.set_margin(0.0);
-  const int rounds = kAssignmentRounds + (round.priced ? 0 : 1);
+  const int rounds = kAssignmentRounds + (round.evaluated ? 0 : 1);
   // Constraints are met by rounds that are precise, or else by none; and gains are searched for
   // about inputs that have converged.
   const bool loose = !round.warm && !constrained_ && !gain_search_;
   round.tolerance = loose ? kColdTolerance : 0.0;
   if (optimise(belief, inputs_, rounds, round) && gain_search_) {
     // What was predicted last may be a candidate that was refused.
-    hold(current_->prediction, current_->policy);
+    freeze_assignments(current_->prediction, current_->policy);
     (void)optimise(belief, *gain_search_, kGainRounds, round);
   }
   if (round.stopped()) return;
@@ -309,10 +309,10 @@ bool Planner::optimise(const Gaussian& belief, Search& search, int rounds, Round
       round.tolerance = std::min(round.tolerance, kShareOfChange * change);
     }
     const double excess = candidate_->violation;
-    const bool accepted = !round.priced || better(*candidate_, *current_);
+    const bool accepted = !round.evaluated || better(*candidate_, *current_);
     if (accepted) {
       std::swap(current_, candidate_);
-      round.priced = true;
+      round.evaluated = true;
     }
     if (Clock::now() >= round.deadline) round.status = SolverStatus::kDeadline;
     if (excess > kConstraintTolerance && round.status != SolverStatus::kInfeasible) {
@@ -322,8 +322,8 @@ bool Planner::optimise(const Gaussian& belief, Search& search, int rounds, Round
       break;
     }
   }
-  if (!round.priced) predict_and_price(*current_);
-  round.priced = true;
+  if (!round.evaluated) predict_and_evaluate(*current_);
+  round.evaluated = true;
   stopwatch.add_to(round.timing.propagate);
   return may_go_on();
 }
@@ -339,7 +339,7 @@ void Planner::predict_candidate(const Gaussian& belief, const Eigen::VectorXd& z
   }
   policies_.make(belief.mean, z.head(inputs).reshaped(policy.inputs.rows(), settings_.horizon),
                  candidate_->gain_change, candidate_->policy);
-  predict_and_price(*candidate_);
+  predict_and_evaluate(*candidate_);
 }
 
 /// Optimises at the assignments that are held, from `current_`; the result is in search.z. Returns
@@ -362,11 +362,11 @@ bool Planner::run_solver(Search& search, Round& round) {
   if (!std::isfinite(result.value)) {
     // Without time for a single evaluation there is no value, and the plan stands as it is.
     const bool trouble = result.status == SolverStatus::kNumericalTrouble;
-    if (round.priced && trouble) current_->cost.state = result.value;
+    if (round.evaluated && trouble) current_->cost.state = result.value;
     return false;
   }
   search.z = result.z;
-  if (!round.priced) return true;
+  if (!round.evaluated) return true;
   if (Clock::now() >= round.deadline) return false;
   const double gain = current_->cost.total() - result.value;
   const double settled = round.warm ? kWarmSettled : kColdSettled;
@@ -389,11 +389,11 @@ void Planner::fall_back(const Gaussian& belief) {
   shift_inputs(last_->policy.inputs, inputs);
   current_->gain_change = last_->gain_change;
   policies_.make(belief.mean, inputs, current_->gain_change, current_->policy);
-  predict_and_price(*current_);
+  predict_and_evaluate(*current_);
 }
 
-void Planner::hold(const Prediction& prediction, const Policy& policy) {
-  cost_.hold(prediction, policy);
+void Planner::freeze_assignments(const Prediction& prediction, const Policy& policy) {
+  cost_.freeze_assignments(prediction, policy);
   if (!constrained_) return;
   constraints_.describe(prediction, *inputs_.problem.constraints);
   if (gain_search_) gain_search_->problem.constraints = inputs_.problem.constraints;
@@ -405,13 +405,13 @@ void Planner::flatten(const Policy& policy, Eigen::VectorXd& z) {
 }
 
 /// Predicts under plan.policy with assignments of its own, holds them, and prices them.
-void Planner::predict_and_price(Plan& plan) {
+void Planner::predict_and_evaluate(Plan& plan) {
   const auto start = Clock::now();
   predict(dynamics_, *propagator_, belief_.measure, plan.policy, settings_.run, scratch_,
           plan.prediction);
-  hold(plan.prediction, plan.policy);
+  freeze_assignments(plan.prediction, plan.policy);
   flatten(plan.policy, inputs_.z);
-  cost_.price(inputs_.z);
+  cost_.evaluate(inputs_.z);
   plan.cost = cost_.parts();
   plan.violation = 0.0;
   if (constrained_) {
@@ -438,7 +438,7 @@ const Plan& Planner::prescribe(const Gaussian& belief,
   stopwatch.add_to(prescribed_.timing.quantise);
   prescribed_.gain_change.setZero(gain_change_.rows(), gain_change_.cols());
   policies_.make(belief.mean, inputs, prescribed_.gain_change, prescribed_.policy);
-  predict_and_price(prescribed_);
+  predict_and_evaluate(prescribed_);
   stopwatch.add_to(prescribed_.timing.propagate);
   return prescribed_;
 }

@@ -19,15 +19,15 @@
 
 #include <Eigen/Core>
 
-#include "controller/measure/gaussian_quantiser.hpp"
-#include "controller/planning/first_guess.hpp"
-#include "controller/planning/horizon_cost.hpp"
-#include "controller/planning/noise_free_cost.hpp"
-#include "controller/planning/ocp_solver.hpp"
-#include "controller/planning/particle_constraints.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/cost/noise_free_cost.hpp"
+#include "controller/planning/cost/particle_constraints.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
-#include "controller/planning/valley_search.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
+#include "controller/planning/start/first_guess.hpp"
+#include "controller/planning/start/multi_start_search.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -73,7 +73,7 @@ class Planner {
   /// next plan is a cold start. The plan stays valid until the next call.
   const Plan& plan(const Gaussian& belief);
 
-  /// The plan whose nominal inputs are `inputs` (input_dim x horizon): predicted and priced for
+  /// The plan whose nominal inputs are `inputs` (input_dim x horizon): predicted and evaluated for
   /// `belief`, with the gains that belong to them, and not optimised. The plan stays valid until
   /// the next call, which does not start from it. Throws std::invalid_argument as `plan`, and if
   /// the inputs are of another size, not finite or not within the bounds.
@@ -99,8 +99,8 @@ class Planner {
   /// One plan in the making.
   struct Round {
     Clock::time_point deadline;
-    bool warm = false;    // whether it goes on from the last plan
-    bool priced = false;  // whether `current_` is a plan with a prediction of its own
+    bool warm = false;       // whether it goes on from the last plan
+    bool evaluated = false;  // whether `current_` is a plan with a prediction of its own
     SolverStatus status = SolverStatus::kConverged;
     int evaluations = 0;
     double tolerance = 0.0;  // that the solver's own is raised to
@@ -124,7 +124,7 @@ class Planner {
   void make_search(Eigen::Index entries, Search& out);
   void start_solver(OcpSolver& solver, bool warm) const;
   [[nodiscard]] bool constant_is_clearly_cheaper(const Gaussian& belief, Round& round);
-  [[nodiscard]] double price_held(const Plan& plan);
+  [[nodiscard]] double evaluate_frozen(const Plan& plan);
   void set_policy(const Gaussian& belief, const Eigen::MatrixXd& inputs, Plan& plan);
   void start_in_deepest_valley(const Gaussian& belief, Round& round);
   void optimise(const Gaussian& belief, Round& round);
@@ -133,8 +133,8 @@ class Planner {
   void predict_candidate(const Gaussian& belief, const Eigen::VectorXd& z);
   void fall_back(const Gaussian& belief);
   [[nodiscard]] bool maps_fit(const Plan& plan) const;
-  void predict_and_price(Plan& plan);
-  void hold(const Prediction& prediction, const Policy& policy);
+  void predict_and_evaluate(Plan& plan);
+  void freeze_assignments(const Prediction& prediction, const Policy& policy);
   static void flatten(const Policy& policy, Eigen::VectorXd& z);
   [[nodiscard]] bool better(const Plan& plan, const Plan& other) const;
 
@@ -151,7 +151,7 @@ class Planner {
   HorizonCost cost_;
   NoiseFreeCost noise_free_;
   FirstGuess guess_;
-  std::optional<ValleySearch> valleys_;  // where there are obstacles
+  std::optional<MultiStartSearch> minima_;  // where there are obstacles
   ParticleConstraints constraints_;
   Search inputs_;
   std::unique_ptr<Search> gain_search_;  // over inputs and gains, where these are optimised

@@ -7,10 +7,10 @@
 
 #include <Eigen/Core>
 
-#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/parallel.hpp"
-#include "controller/planning/horizon_cost.hpp"
-#include "controller/planning/penalty.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/cost/penalty.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/policy.hpp"
 

@@ -13,7 +13,7 @@
 
 #include <Eigen/Core>
 
-#include "controller/measure/norm_orders.hpp"
+#include "controller/measure/normal/norm_orders.hpp"
 
 namespace qsmpc {
 

@@ -1,10 +1,10 @@
 // The products of stepped points and noise points, and the maps to the means of their clusters.
 #pragma once
 
-#include "controller/measure/compression.hpp"
+#include "controller/measure/compression/compression.hpp"
+#include "controller/measure/compression/mixture_split.hpp"
+#include "controller/measure/compression/soft_compression.hpp"
 #include "controller/measure/measures.hpp"
-#include "controller/measure/mixture_split.hpp"
-#include "controller/measure/soft_compression.hpp"
 #include "controller/prediction/stage_map.hpp"
 
 namespace qsmpc {

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "controller/measure/compression.hpp"
-#include "controller/measure/mixture_split.hpp"
-#include "controller/measure/soft_compression.hpp"
+#include "controller/measure/compression/compression.hpp"
+#include "controller/measure/compression/mixture_split.hpp"
+#include "controller/measure/compression/soft_compression.hpp"
 #include "controller/prediction/moment_matching.hpp"
 #include "controller/prediction/product_map.hpp"
 

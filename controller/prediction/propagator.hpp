@@ -12,8 +12,8 @@
 
 #include <Eigen/Core>
 
-#include "controller/measure/gaussian_quantiser.hpp"
 #include "controller/measure/measures.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/parallel.hpp"
 #include "controller/prediction/stage_map.hpp"
 

@@ -12,12 +12,12 @@
 #include <utility>
 #include <vector>
 
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/episode/driver_pool.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/trace/trace_file.hpp"
 

@@ -8,14 +8,14 @@
 
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/progress.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/report/episode_page.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
-#include "render/gl_library.hpp"
+#include "render/gl/gl_library.hpp"
 
 namespace qsmpc {
 namespace {

@@ -11,7 +11,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/plan/campaign_file.hpp"
 #include "harness/campaign/plan/campaign_plan.hpp"
 #include "harness/campaign/runner.hpp"
@@ -23,7 +22,8 @@
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
 #include "harness/errors.hpp"
-#include "harness/scenario/text_file.hpp"
+#include "harness/files/atomic_file.hpp"
+#include "harness/files/text_file.hpp"
 
 namespace qsmpc {
 namespace {

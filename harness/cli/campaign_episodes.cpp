@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/statistics/worst_episodes.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/campaign/store/store_schema.hpp"
@@ -18,6 +17,7 @@
 #include "harness/cli/progress.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/hdf5_file.hpp"

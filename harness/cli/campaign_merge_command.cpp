@@ -6,12 +6,12 @@
 
 #include <CLI/CLI.hpp>
 
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/store/merge.hpp"
 #include "harness/cli/campaign_results.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
-#include "harness/scenario/text_file.hpp"
+#include "harness/files/atomic_file.hpp"
+#include "harness/files/text_file.hpp"
 
 namespace qsmpc {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/statistics/campaign_csv.hpp"
 #include "harness/campaign/statistics/campaign_json.hpp"
 #include "harness/campaign/statistics/campaign_table.hpp"
@@ -13,9 +12,10 @@
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/campaign_episodes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/figures/svg_figure.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/campaign_page.hpp"
-#include "harness/report/svg_figure.hpp"
 
 namespace qsmpc {
 namespace {

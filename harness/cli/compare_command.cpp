@@ -9,7 +9,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
@@ -17,6 +16,8 @@
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
 #include "harness/errors.hpp"
+#include "harness/figures/svg_figure.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/mismatch/comparison.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/mismatch/comparison_json.hpp"
@@ -24,7 +25,6 @@
 #include "harness/mismatch/measured_error.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_page.hpp"
-#include "harness/report/svg_figure.hpp"
 #include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/scenario_file.hpp"
 

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "controller/measure/gaussian_quantiser.hpp"
-#include "controller/planning/ocp_solver.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"

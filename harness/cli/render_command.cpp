@@ -16,7 +16,7 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
-#include "render/gl_library.hpp"
+#include "render/gl/gl_library.hpp"
 
 namespace qsmpc {
 namespace {

@@ -7,7 +7,6 @@
 
 #include <CLI/CLI.hpp>
 
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/campaign_episodes.hpp"
@@ -16,6 +15,7 @@
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/report/comparison_page.hpp"
 #include "harness/report/figure_files.hpp"

@@ -8,13 +8,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
-#include "harness/report/svg_figure.hpp"
+#include "harness/figures/svg_figure.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/reproduction/experiment.hpp"
 #include "harness/reproduction/results_page.hpp"
 #include "harness/reproduction/results_table.hpp"

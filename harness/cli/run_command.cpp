@@ -10,7 +10,6 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
@@ -19,10 +18,11 @@
 #include "harness/cli/progress.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
-#include "render/gl_library.hpp"
+#include "render/gl/gl_library.hpp"
 
 namespace qsmpc {
 namespace {

@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "controller/certification/certificate.hpp"
-#include "controller/planning/angular_target.hpp"
+#include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/planner.hpp"
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
-#include "harness/plant/disturbance.hpp"
 #include "harness/plant/plant_registry.hpp"
+#include "harness/random/random_numbers.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/version.hpp"

@@ -7,8 +7,8 @@
 
 #include "harness/episode/driver_pool.hpp"
 #include "harness/episode/episode.hpp"
-#include "harness/exceedance.hpp"
 #include "harness/mismatch/horizon_comparison.hpp"
+#include "harness/statistics/exceedance.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/summary.hpp"
 

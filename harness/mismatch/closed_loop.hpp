@@ -9,9 +9,9 @@
 #include <Eigen/Core>
 
 #include "controller/parallel.hpp"
-#include "harness/binomial_interval.hpp"
-#include "harness/mismatch/shared_work.hpp"
 #include "harness/scenario/scenario.hpp"
+#include "harness/statistics/binomial_interval.hpp"
+#include "harness/threads/shared_work.hpp"
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 

@@ -25,8 +25,8 @@
 #include "harness/mismatch/horizon_comparison.hpp"
 #include "harness/mismatch/path_ensemble.hpp"
 #include "harness/mismatch/residual_statistics.hpp"
-#include "harness/mismatch/shared_work.hpp"
 #include "harness/scenario/scenario.hpp"
+#include "harness/threads/shared_work.hpp"
 
 namespace qsmpc {
 

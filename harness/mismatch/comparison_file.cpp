@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/mismatch/comparison_json.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/coordinate_labels.hpp"

@@ -9,8 +9,8 @@
 #include "controller/measure/measures.hpp"
 #include "controller/parallel.hpp"
 #include "controller/planning/safe_set.hpp"
-#include "harness/binomial_interval.hpp"
 #include "harness/mismatch/path_ensemble.hpp"
+#include "harness/statistics/binomial_interval.hpp"
 
 namespace qsmpc {
 

@@ -15,8 +15,8 @@
 #include "controller/parallel.hpp"
 #include "controller/prediction/policy.hpp"
 #include "harness/mismatch/plant_pool.hpp"
-#include "harness/mismatch/shared_work.hpp"
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
+#include "harness/threads/shared_work.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {

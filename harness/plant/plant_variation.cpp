@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
 

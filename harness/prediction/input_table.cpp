@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/known_names.hpp"
-#include "harness/scenario/text_encoding.hpp"
-#include "harness/scenario/text_file.hpp"
 #include "harness/scenario/value_checks.hpp"
+#include "harness/text/text_encoding.hpp"
 
 namespace qsmpc {
 namespace {

@@ -5,7 +5,7 @@
 #include <future>
 #include <thread>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
 namespace {

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <memory>
 
-#include "harness/atomic_file.hpp"
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/prediction/prediction_json.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/certificate_fields.hpp"

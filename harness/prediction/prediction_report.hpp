@@ -15,12 +15,12 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
-#include "harness/binomial_interval.hpp"
 #include "harness/prediction/monte_carlo.hpp"
 #include "harness/scenario/scenario.hpp"
+#include "harness/statistics/binomial_interval.hpp"
 
 namespace qsmpc {
 

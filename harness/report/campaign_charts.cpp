@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/figures/palette.hpp"
 
 namespace qsmpc {
 namespace {

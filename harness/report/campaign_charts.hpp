@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/campaign/statistics/statistics.hpp"
-#include "harness/report/svg_chart.hpp"
+#include "harness/figures/svg_chart.hpp"
 
 namespace qsmpc {
 

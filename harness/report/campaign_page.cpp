@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "harness/figures/svg_figure.hpp"
 #include "harness/report/campaign_charts.hpp"
-#include "harness/report/html.hpp"
 #include "harness/report/page_frame.hpp"
-#include "harness/report/svg_figure.hpp"
 #include "harness/report/table_page.hpp"
+#include "harness/text/html.hpp"
 
 namespace qsmpc {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/report/svg_chart.hpp"
+#include "harness/figures/svg_chart.hpp"
 
 namespace qsmpc {
 

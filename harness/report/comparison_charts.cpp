@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "harness/episode/assembly.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/figures/palette.hpp"
 
 namespace qsmpc {
 namespace {

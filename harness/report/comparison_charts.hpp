@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "harness/figures/svg_chart.hpp"
 #include "harness/mismatch/comparison.hpp"
-#include "harness/report/svg_chart.hpp"
 
 namespace qsmpc {
 

@@ -9,13 +9,13 @@
 #include <fmt/format.h>
 
 #include "harness/episode/assembly.hpp"
+#include "harness/figures/svg_figure.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_verdict.hpp"
-#include "harness/report/html.hpp"
-#include "harness/report/numbers.hpp"
 #include "harness/report/page_frame.hpp"
-#include "harness/report/svg_figure.hpp"
 #include "harness/report/table_page.hpp"
+#include "harness/text/html.hpp"
+#include "harness/text/number_format.hpp"
 
 namespace qsmpc {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/figures/palette.hpp"
 #include "harness/trace/residuals.hpp"
 
 namespace qsmpc {

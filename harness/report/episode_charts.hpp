@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/report/svg_chart.hpp"
+#include "harness/figures/svg_chart.hpp"
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 

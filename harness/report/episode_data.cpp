@@ -10,8 +10,8 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
+#include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
-#include "harness/report/ground_map.hpp"
 #include "harness/report/packed_numbers.hpp"
 
 namespace qsmpc {

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
-#include "harness/report/ground_map.hpp"
-#include "harness/report/numbers.hpp"
-#include "harness/report/page_style.hpp"
-#include "harness/report/plane_map.hpp"
+#include "harness/figures/ground_map.hpp"
+#include "harness/figures/palette.hpp"
+#include "harness/figures/plane_map.hpp"
+#include "harness/text/number_format.hpp"
 
 namespace qsmpc {
 namespace {

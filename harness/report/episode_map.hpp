@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "harness/report/plane_map.hpp"
+#include "harness/figures/plane_map.hpp"
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 

@@ -6,15 +6,15 @@
 
 #include <fmt/format.h>
 
+#include "harness/figures/ground_map.hpp"
+#include "harness/figures/plane_map.hpp"
+#include "harness/figures/svg_chart.hpp"
 #include "harness/report/episode_charts.hpp"
 #include "harness/report/episode_data.hpp"
 #include "harness/report/episode_map.hpp"
-#include "harness/report/ground_map.hpp"
-#include "harness/report/html.hpp"
 #include "harness/report/key_figures.hpp"
 #include "harness/report/page_frame.hpp"
-#include "harness/report/plane_map.hpp"
-#include "harness/report/svg_chart.hpp"
+#include "harness/text/html.hpp"
 #include "harness/trace/summary.hpp"
 #include "models/dynamics/dynamics.hpp"
 

@@ -9,13 +9,13 @@
 
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/episode/assembly.hpp"
+#include "harness/figures/pdf_figure.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/episode_charts.hpp"
 #include "harness/report/episode_map.hpp"
-#include "harness/report/pdf_figure.hpp"
 
 namespace qsmpc {
 namespace {

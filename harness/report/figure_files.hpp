@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "harness/campaign/statistics/statistics.hpp"
+#include "harness/figures/svg_figure.hpp"
 #include "harness/mismatch/comparison.hpp"
-#include "harness/report/svg_figure.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace qsmpc {

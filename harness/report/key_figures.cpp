@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "harness/report/episode_charts.hpp"
-#include "harness/report/html.hpp"
-#include "harness/report/numbers.hpp"
+#include "harness/text/html.hpp"
+#include "harness/text/number_format.hpp"
 
 namespace qsmpc {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "harness/report/base64.hpp"
+#include "harness/text/base64.hpp"
 
 namespace qsmpc {
 namespace {

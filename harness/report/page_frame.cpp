@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/report/base64.hpp"
-#include "harness/report/html.hpp"
 #include "harness/report/page_assets.hpp"
+#include "harness/text/base64.hpp"
+#include "harness/text/html.hpp"
 
 namespace qsmpc {
 namespace {

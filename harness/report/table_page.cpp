@@ -6,9 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/report/html.hpp"
-#include "harness/report/numbers.hpp"
 #include "harness/report/page_frame.hpp"
+#include "harness/text/html.hpp"
+#include "harness/text/number_format.hpp"
 
 namespace qsmpc {
 namespace {

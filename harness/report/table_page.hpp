@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/binomial_interval.hpp"
+#include "harness/statistics/binomial_interval.hpp"
 
 namespace qsmpc {
 

@@ -9,7 +9,7 @@
 #include "harness/reproduction/drive_figures.hpp"
 #include "harness/reproduction/drive_rows.hpp"
 #include "harness/reproduction/experiments.hpp"
-#include "harness/sample_statistics.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {
 namespace {

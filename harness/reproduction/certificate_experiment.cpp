@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "controller/certification/worst_case.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/figures/palette.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
 

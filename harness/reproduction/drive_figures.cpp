@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 
 #include "harness/episode/assembly.hpp"
-#include "harness/report/ground_map.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/figures/ground_map.hpp"
+#include "harness/figures/palette.hpp"
 #include "harness/reproduction/published_way.hpp"
 
 namespace qsmpc {

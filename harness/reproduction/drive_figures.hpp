@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "harness/report/plane_map.hpp"
-#include "harness/report/svg_chart.hpp"
+#include "harness/figures/plane_map.hpp"
+#include "harness/figures/svg_chart.hpp"
 #include "harness/reproduction/laboratory.hpp"
 
 namespace qsmpc {

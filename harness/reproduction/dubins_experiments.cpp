@@ -10,7 +10,7 @@
 #include "harness/reproduction/drive_rows.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/plans_at_beliefs.hpp"
-#include "harness/sample_statistics.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {
 namespace {

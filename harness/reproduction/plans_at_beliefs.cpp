@@ -9,7 +9,7 @@
 #include "controller/planning/planner.hpp"
 #include "harness/episode/assembly.hpp"
 #include "harness/prediction/monte_carlo.hpp"
-#include "harness/sample_statistics.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {
 namespace {

@@ -11,9 +11,9 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
-#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "harness/episode/assembly.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/figures/palette.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
 

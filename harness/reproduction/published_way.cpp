@@ -6,7 +6,7 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 #include "controller/certification/worst_case.hpp"
-#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/planner.hpp"
 #include "harness/episode/assembly.hpp"
 

@@ -11,8 +11,8 @@
 #include <fmt/format.h>
 
 #include "controller/measure/wasserstein.hpp"
-#include "harness/report/density.hpp"
-#include "harness/report/page_style.hpp"
+#include "harness/figures/density.hpp"
+#include "harness/figures/palette.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/report/svg_figure.hpp"
+#include "harness/figures/svg_figure.hpp"
 
 namespace qsmpc {
 

@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/report/html.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/reproduction/results_table.hpp"
+#include "harness/text/html.hpp"
 
 namespace qsmpc {
 namespace {

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
-#include "harness/report/numbers.hpp"
+#include "harness/text/number_format.hpp"
 
 namespace qsmpc {
 namespace {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "controller/measure/gaussian_quantiser.hpp"
-#include "controller/planning/ocp_solver.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 
 namespace qsmpc {

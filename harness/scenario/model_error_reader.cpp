@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
-#include "harness/scenario/text_file.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/value_checks.hpp"
 #include "harness/scenario/yaml_text.hpp"
 #include "harness/scenario/yaml_tree.hpp"

@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/overrides.hpp"
-#include "harness/scenario/text_encoding.hpp"
-#include "harness/scenario/text_file.hpp"
+#include "harness/text/text_encoding.hpp"
 
 namespace qsmpc {
 namespace {

@@ -11,7 +11,7 @@
 #include <yaml-cpp/parser.h>
 
 #include "harness/errors.hpp"
-#include "harness/scenario/text_encoding.hpp"
+#include "harness/text/text_encoding.hpp"
 
 namespace qsmpc {
 namespace {

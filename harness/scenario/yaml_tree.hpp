@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "harness/scenario/text_file.hpp"
+#include "harness/files/text_file.hpp"
 
 namespace qsmpc {
 

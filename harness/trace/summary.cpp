@@ -7,9 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "controller/planning/angular_target.hpp"
-#include "controller/planning/ocp_solver.hpp"
+#include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/safe_set.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/trace/json_values.hpp"
 #include "harness/trace/residuals.hpp"
 #include "models/dynamics/dynamics.hpp"

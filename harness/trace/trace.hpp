@@ -11,7 +11,7 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 #include "controller/measure/measures.hpp"
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/scenario/scenario.hpp"
 

@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "harness/video/belief_shape.hpp"
-#include "render/scene_painter.hpp"
-#include "render/thinning.hpp"
+#include "render/scene/scene_painter.hpp"
+#include "render/scene/thinning.hpp"
 
 namespace qsmpc {
 namespace {

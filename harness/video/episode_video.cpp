@@ -11,9 +11,9 @@
 
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/ordered_drawing.hpp"
-#include "render/gl_library.hpp"
-#include "render/png_file.hpp"
-#include "render/video_writer.hpp"
+#include "render/gl/gl_library.hpp"
+#include "render/media/png_file.hpp"
+#include "render/media/video_writer.hpp"
 
 namespace qsmpc {
 namespace {

@@ -11,7 +11,7 @@
 #include "harness/video/overlays.hpp"
 #include "harness/video/video_timings.hpp"
 #include "render/frame.hpp"
-#include "render/video_format.hpp"
+#include "render/media/video_format.hpp"
 
 namespace qsmpc {
 

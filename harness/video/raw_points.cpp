@@ -1,6 +1,6 @@
 #include "harness/video/raw_points.hpp"
 
-#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/policy_maker.hpp"
 #include "harness/episode/assembly.hpp"
 

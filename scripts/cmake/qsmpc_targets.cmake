@@ -23,10 +23,13 @@ if(QSMPC_SANITIZE)
   target_link_options(qsmpc_options INTERFACE -fsanitize=${QSMPC_SANITIZE})
 endif()
 
-# qsmpc_library(NAME SOURCES… LINK libraries…): one room as a static library.
+# qsmpc_library(NAME SOURCES… [ALONE sources…] LINK libraries…): one room as a static library.
+# ALONE: sources that no batch can hold, such as SIMD kernels, which Highway compiles once for every
+# instruction set; or that are edited so often that they should not wait for others.
 function(qsmpc_library name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;LINK" ${ARGN})
-  add_library(${name} STATIC ${ARG_SOURCES})
+  cmake_parse_arguments(ARG "" "" "SOURCES;ALONE;LINK" ${ARGN})
+  add_library(${name} STATIC ${ARG_SOURCES} ${ARG_ALONE})
+  set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_link_libraries(${name} PUBLIC qsmpc_options ${ARG_LINK})
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
 endfunction()

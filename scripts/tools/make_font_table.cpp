@@ -1,8 +1,8 @@
-// Writes render/font_table.cpp: the printable ASCII glyphs of a TrueType font as one-bit rasters.
-// Needed only to change the font of the head-up display:
+// Writes render/hud/font_table.cpp: the printable ASCII glyphs of a TrueType font as one-bit
+// rasters. Needed only to change the font of the head-up display:
 //   g++ -std=c++20 scripts/tools/make_font_table.cpp $(pkg-config --cflags --libs freetype2) -o
 //   make
-//   ./make DejaVuSans.ttf > render/font_table.cpp
+//   ./make DejaVuSans.ttf > render/hud/font_table.cpp
 #include <ft2build.h>
 #include FT_FREETYPE_H
 
@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr int kEm = 64;  // must agree with kFontEm in render/font_table.hpp
+constexpr int kEm = 64;  // must agree with kFontEm in render/hud/font_table.hpp
 
 std::string base64(const std::vector<bool>& bits) {
   static const char* const kDigits =
@@ -61,7 +61,7 @@ int main(int argc, char** argv) {
       "// is a trademark of Bitstream, Inc. DejaVu changes are in public domain. The font's "
       "licence\n"
       "// allows to use, copy, embed and change it, under another name, with this notice.\n"
-      "#include \"render/font_table.hpp\"\n\nnamespace qsmpc {\n\n// clang-format off\n"
+      "#include \"render/hud/font_table.hpp\"\n\nnamespace qsmpc {\n\n// clang-format off\n"
       "const std::array<GlyphMetrics, 95> glyph_metrics{{\n%s}};\n\n"
       "const char* const glyph_bits =\n",
       glyphs.c_str());

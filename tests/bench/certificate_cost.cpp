@@ -11,7 +11,7 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
-#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/planner.hpp"
 #include "models/dynamics/dynamics.hpp"
 

@@ -24,7 +24,7 @@
 #include <Eigen/QR>
 #include <fmt/format.h>
 
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
 #include "controller/prediction/prediction.hpp"
@@ -108,14 +108,14 @@ class Problem {
       const auto propagator = make_propagator("noise_free", propagation());
       predict_with(*propagator);
       HorizonCost cost(terms(none_), run);
-      cost.hold(prediction, policy_);
+      cost.freeze_assignments(prediction, policy_);
       result.without_noise =
           0.5 * median_time(repetitions, [&] { result.value_without_noise = evaluate_with(cost); });
     }
     const auto propagator = make_propagator("mixture", propagation());
     result.predict = median_time(repetitions, [&] { predict_with(*propagator); });
     HorizonCost cost(terms(settings_.noise_covariance), run);
-    cost.hold(prediction, policy_);
+    cost.freeze_assignments(prediction, policy_);
     result.evaluate = 0.5 * median_time(repetitions, [&] { result.value = evaluate_with(cost); });
     result.last_stage = prediction.stages.back().locations;
     for (std::size_t k = 0; k < prediction.maps.size(); ++k) {

@@ -21,8 +21,8 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
-#include "controller/measure/compression.hpp"
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/measure/compression/compression.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/planning/planner.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "harness/episode/assembly.hpp"

@@ -3,14 +3,14 @@
 //   planning_quality [--paths N] [--starts N] [--horizon N…] [--inputs]
 //                    [--points N] [--propagator NAME] [--evaluations N]
 //
-// Open loop without obstacles, plans and optima are priced exactly (dubins_closed_form.hpp): a plan
-// may cost 0.1 more than the optimum at 8 stages and 0.5 at 18. Closed loop among the blocks of
-// dubins_obstacles they are priced on 20,000 simulated paths, the best policy is what descents on
-// N paths (default 2,000) from the plan, constant inputs and N random starts (default 8) find, and
-// a plan may cost 0.2 % more. The last three options are the planner's. --inputs: prints both input
-// sequences. "pred. best" is how much more the planner predicts for the best policy than for its
-// own: above 0 the prediction misleads, below 0 the solver ended too early or in another valley.
-// Exits with 1 where a plan costs more than promised.
+// Open loop without obstacles, plans and optima are evaluated exactly (dubins_closed_form.hpp): a
+// plan may cost 0.1 more than the optimum at 8 stages and 0.5 at 18. Closed loop among the blocks
+// of dubins_obstacles they are evaluated on 20,000 simulated paths, the best policy is what
+// descents on N paths (default 2,000) from the plan, constant inputs and N random starts (default
+// 8) find, and a plan may cost 0.2 % more. The last three options are the planner's. --inputs:
+// prints both input sequences. "pred. best" is how much more the planner predicts for the best
+// policy than for its own: above 0 the prediction misleads, below 0 the solver ended too early or
+// in another valley. Exits with 1 where a plan costs more than promised.
 #include "tests/support/planning_quality.hpp"
 
 #include <cstdlib>
@@ -78,7 +78,7 @@ void print_header(const std::string& title) {
 }
 
 bool report_open_loop(const Options& options) {
-  print_header("Open loop without obstacles, priced exactly");
+  print_header("Open loop without obstacles, evaluated exactly");
   bool good = true;
   for (const int horizon : options.horizons) {
     const PlannerSettings settings = with(options, free_settings(horizon, /*closed_loop=*/false));
@@ -98,7 +98,7 @@ bool report_open_loop(const Options& options) {
 }
 
 bool report_closed_loop(const Options& options) {
-  print_header("Closed loop among blocks, priced on simulated paths");
+  print_header("Closed loop among blocks, evaluated on simulated paths");
   const std::unique_ptr<const Dynamics> car = default_car();
   const SamplingSettings sampling{
       .search = {.draws = {.paths = options.paths, .seed = 1}, .random_starts = options.starts}};

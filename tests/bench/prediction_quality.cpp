@@ -21,7 +21,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "controller/measure/compression.hpp"
+#include "controller/measure/compression/compression.hpp"
 
 namespace qsmpc::testing {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "controller/planning/penalty.hpp"
+#include "controller/planning/cost/penalty.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/planning_quality.hpp"
 #include "tests/support/simulated_truth.hpp"

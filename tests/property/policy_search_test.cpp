@@ -21,15 +21,15 @@ Eigen::MatrixXd wavy_inputs(int rows, int horizon) {
 void expect_slope(SampledProblem& problem, const Eigen::MatrixXd& inputs) {
   constexpr double kStep = 1e-5;
   Eigen::MatrixXd gradient(inputs.rows(), inputs.cols());
-  const double price = problem.price(inputs, gradient);
-  EXPECT_EQ(price, problem.price(inputs));
+  const double price = problem.evaluate(inputs, gradient);
+  EXPECT_EQ(price, problem.evaluate(inputs));
   Eigen::MatrixXd differences = gradient;
   Eigen::MatrixXd moved = inputs;
   for (Eigen::Index i = 0; i < inputs.size(); ++i) {
     moved.data()[i] = inputs.data()[i] + kStep;
-    const double above = problem.price(moved);
+    const double above = problem.evaluate(moved);
     moved.data()[i] = inputs.data()[i] - kStep;
-    differences.data()[i] = (above - problem.price(moved)) / (2.0 * kStep);
+    differences.data()[i] = (above - problem.evaluate(moved)) / (2.0 * kStep);
     moved.data()[i] = inputs.data()[i];
   }
   // Paths that reach a kink of clamp or penalty within the step: few, and it is short.
@@ -75,7 +75,7 @@ TEST(SampledProblem, prices_an_open_loop_as_the_closed_form_does) {
   const Eigen::MatrixXd inputs = wavy_inputs(1, 12);
   const double exact = dubins_cost(closed_form_of(settings, belief), inputs).total();
   // 15 % of standard deviation over 200,000 paths: four standard errors.
-  EXPECT_NEAR(problem.price(inputs), exact, 1.3e-3 * exact);
+  EXPECT_NEAR(problem.evaluate(inputs), exact, 1.3e-3 * exact);
 }
 
 TEST(SampledProblem, descends_to_the_optimum_of_the_closed_form) {

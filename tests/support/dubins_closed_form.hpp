@@ -13,7 +13,7 @@
 #include <Eigen/Core>
 
 #include "controller/measure/measures.hpp"
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/prediction/policy.hpp"
 
 namespace qsmpc::testing {

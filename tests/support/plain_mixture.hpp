@@ -1,6 +1,6 @@
-// The mixture split of controller/measure/mixture_split.hpp, written as plainly as it can be: one
-// struct a piece of a source, one loop over the pieces a sum, the standard library's erfc and exp.
-// Tests hold the fast one against it.
+// The mixture split of controller/measure/compression/mixture_split.hpp, written as plainly as it
+// can be: one struct a piece of a source, one loop over the pieces a sum, the standard library's
+// erfc and exp. Tests hold the fast one against it.
 #pragma once
 
 #include <vector>

@@ -321,7 +321,7 @@ class PlainHorizon {
       Stage& stage = stages_[k];
       for (std::size_t i = 0; i < stage.states.size(); ++i) act(k, i);
       price_states(k + 1, stage.stepped, terms_.noise_covariance, k);
-      price_bounds(k, penalty);
+      evaluate_bounds(k, penalty);
       Stage& next = stages_[k + 1];
       next.states = moved(prediction_.maps[k], stage.stepped);
       for (std::size_t n = 0; n < next.states.size(); ++n) {
@@ -336,7 +336,7 @@ class PlainHorizon {
 
   /// Of what the stepped particles stand for: m + θ (f_i − m), and a normal law of the variance
   /// σ² + (1 − θ²) v (expected_bounds.hpp).
-  void price_bounds(Eigen::Index k, const PlainPenalty& penalty) {
+  void evaluate_bounds(Eigen::Index k, const PlainPenalty& penalty) {
     Stage& stage = stages_[k];
     const auto count = static_cast<Eigen::Index>(stage.stepped.size());
     const double smoothing = prediction_.compressed ? smoothing_of(count, dim_) : 0.0;

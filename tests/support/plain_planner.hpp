@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "controller/planning/horizon_cost.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/prediction/policy.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "tests/support/plain_mixture.hpp"

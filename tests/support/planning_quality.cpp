@@ -94,11 +94,11 @@ Shortfall sampled_shortfall(const Dynamics& dynamics, const PlannerSettings& set
   result.plan = planner.plan(belief);
   result.predicted = result.plan.cost.total();
   SampledProblem fresh(dynamics, settings, belief, sampling.price);
-  result.planned = fresh.price(result.plan.policy);
+  result.planned = fresh.evaluate(result.plan.policy);
   result.best = std::numeric_limits<double>::infinity();
   for (const Eigen::MatrixXd& inputs :
        deepest_inputs(dynamics, settings, belief, sampling.search, {result.plan.policy.inputs})) {
-    const double price = fresh.price(inputs);
+    const double price = fresh.evaluate(inputs);
     if (price < result.best) {
       result.best = price;
       result.best_inputs = inputs;

@@ -16,7 +16,7 @@ namespace qsmpc::testing {
 namespace {
 
 // Relative difference of prices below which two descents are taken to have ended in one valley.
-constexpr double kSameValley = 5e-4;
+constexpr double kSameMinimum = 5e-4;
 
 /// Draws of N(0, covariance), positive definite, one a column.
 StateBatch normal_draws(const Eigen::MatrixXd& covariance, int count, std::mt19937_64& generator) {
@@ -64,11 +64,11 @@ struct Descent {
   Eigen::MatrixXd best;
   double least = std::numeric_limits<double>::infinity();
 
-  double price(const std::vector<double>& inputs, std::vector<double>& gradient) {
+  double evaluate(const std::vector<double>& inputs, std::vector<double>& gradient) {
     const Eigen::MatrixXd point =
         Eigen::Map<const Eigen::MatrixXd>(inputs.data(), best.rows(), best.cols());
     Eigen::MatrixXd slope(point.rows(), point.cols());
-    const double value = problem.price(point, slope);
+    const double value = problem.evaluate(point, slope);
     if (!gradient.empty()) std::copy(slope.data(), slope.data() + slope.size(), gradient.begin());
     if (value < least) {
       least = value;
@@ -281,8 +281,9 @@ Eigen::MatrixXd SampledProblem::descend(const Eigen::MatrixXd& start) {
   };
   Descent descent{.problem = *this, .best = start};
   const SlsqpSearch settings{
-      .cost = [&descent](const std::vector<double>& inputs,
-                         std::vector<double>& gradient) { return descent.price(inputs, gradient); },
+      .cost = [&descent](
+                  const std::vector<double>& inputs,
+                  std::vector<double>& gradient) { return descent.evaluate(inputs, gradient); },
       .lower = as_vector(lower),
       .upper = as_vector(upper),
       .relative_tolerance = kTolerance,
@@ -306,14 +307,14 @@ std::vector<Eigen::MatrixXd> deepest_inputs(const Dynamics& dynamics,
   std::vector<std::pair<double, Eigen::MatrixXd>> valleys;
   for (const Eigen::MatrixXd& start : search_starts(settings, search)) {
     const Eigen::MatrixXd found = coarse.descend(start);
-    valleys.emplace_back(fine.price(found), found);
+    valleys.emplace_back(fine.evaluate(found), found);
   }
   std::sort(valleys.begin(), valleys.end(),
             [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Eigen::MatrixXd> starts = also;
   double last = 0.0;
   for (const auto& [price, inputs] : valleys) {
-    if (price - last <= kSameValley * price) continue;
+    if (price - last <= kSameMinimum * price) continue;
     if (starts.size() == also.size() + search.kept) break;
     last = price;
     starts.push_back(inputs);

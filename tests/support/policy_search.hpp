@@ -2,7 +2,7 @@
 // docs/theory/planning.md with its expectations taken over simulated paths instead of particles.
 //
 //   SampledProblem problem(*car, settings, belief, {.paths = 20000, .seed = 1});
-//   double price = problem.price(plan.policy);
+//   double price = problem.evaluate(plan.policy);
 //
 // The draws are frozen, so that two policies meet the same noise, and the price is a piecewise
 // smooth function of the nominal inputs whose gradient, that of the gains included, is known. It
@@ -32,12 +32,12 @@ class SampledProblem {
                  Draws draws);
 
   /// The mean cost of the paths under `policy`, with whatever gains.
-  [[nodiscard]] double price(const Policy& policy);
+  [[nodiscard]] double evaluate(const Policy& policy);
   /// The mean cost of the paths under the policy with these nominal inputs (input_dim x horizon)
   /// and the gains that belong to them.
-  [[nodiscard]] double price(const Eigen::MatrixXd& inputs);
+  [[nodiscard]] double evaluate(const Eigen::MatrixXd& inputs);
   /// The same and its gradient (overwritten).
-  double price(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient);
+  double evaluate(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient);
 
   /// A local minimum within the input bounds from `start`, to the last digits that kinks permit.
   [[nodiscard]] Eigen::MatrixXd descend(const Eigen::MatrixXd& start);

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "controller/measure/gaussian_quantiser.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/measure/wasserstein.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"

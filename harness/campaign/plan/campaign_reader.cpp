@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
-#include "harness/scenario/text_encoding.hpp"
 #include "harness/scenario/yaml_text.hpp"
+#include "harness/text/text_encoding.hpp"
 
 namespace qsmpc {
 namespace {

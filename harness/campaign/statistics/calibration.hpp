@@ -5,8 +5,8 @@
 #include <limits>
 #include <vector>
 
-#include "harness/binomial_interval.hpp"
-#include "harness/exceedance.hpp"
+#include "harness/statistics/binomial_interval.hpp"
+#include "harness/statistics/exceedance.hpp"
 
 namespace qsmpc {
 

@@ -1,5 +1,5 @@
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/statistics/campaign_csv.hpp"
+#include "harness/files/atomic_file.hpp"
 
 namespace qsmpc {
 namespace {

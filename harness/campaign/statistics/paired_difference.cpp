@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
 namespace {

@@ -16,8 +16,8 @@
 
 #include <Eigen/Core>
 
-#include "harness/binomial_interval.hpp"
 #include "harness/campaign/store/episode_row.hpp"
+#include "harness/statistics/binomial_interval.hpp"
 
 namespace qsmpc {
 

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "harness/binomial_interval.hpp"
 #include "harness/campaign/statistics/calibration.hpp"
-#include "harness/campaign/statistics/quantiles.hpp"
 #include "harness/campaign/store/episode_row.hpp"
+#include "harness/statistics/binomial_interval.hpp"
+#include "harness/statistics/quantiles.hpp"
 #include "harness/trace/summary.hpp"
 
 namespace qsmpc {

@@ -10,13 +10,13 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/campaign/campaign.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 #include "harness/campaign/store/store_rows.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/trace/trace_file.hpp"
 
 namespace qsmpc {

@@ -7,7 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <gtest/gtest.h>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
 namespace {

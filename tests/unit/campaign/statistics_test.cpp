@@ -12,7 +12,7 @@
 #include "harness/campaign/statistics/campaign_json.hpp"
 #include "harness/campaign/statistics/campaign_table.hpp"
 #include "harness/campaign/store/store.hpp"
-#include "harness/scenario/text_file.hpp"
+#include "harness/files/text_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "controller/planning/ocp_solver.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/scenario/scenario_file.hpp"
 

@@ -1,5 +1,5 @@
 // One OpenGL library a process: each drawing happens in a child, which is this program again.
-#include "render/gl_library.hpp"
+#include "render/gl/gl_library.hpp"
 
 #include <array>
 #include <cstdio>
@@ -14,7 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "render/png_file.hpp"
+#include "render/media/png_file.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 

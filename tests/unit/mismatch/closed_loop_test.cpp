@@ -7,7 +7,7 @@
 
 #include "harness/episode/assembly.hpp"
 #include "harness/episode/episode.hpp"
-#include "harness/exceedance.hpp"
+#include "harness/statistics/exceedance.hpp"
 #include "tests/support/executors.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "harness/atomic_file.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc {

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 

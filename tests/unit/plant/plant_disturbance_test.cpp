@@ -8,7 +8,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <gtest/gtest.h>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 

@@ -9,7 +9,7 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-#include "harness/plant/disturbance.hpp"
+#include "harness/random/random_numbers.hpp"
 #include "models/dynamics/bicycle.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 

@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "controller/measure/normal_distribution.hpp"
+#include "controller/measure/normal/normal_distribution.hpp"
 #include "tests/unit/prediction/prediction_fixture.hpp"
 
 namespace qsmpc {

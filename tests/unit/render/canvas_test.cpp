@@ -1,11 +1,11 @@
-#include "render/canvas.hpp"
+#include "render/hud/canvas.hpp"
 
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "render/hud.hpp"
+#include "render/hud/hud.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {

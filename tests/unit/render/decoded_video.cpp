@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "render/libav.hpp"
+#include "render/media/libav.hpp"
 
 namespace qsmpc {
 namespace {

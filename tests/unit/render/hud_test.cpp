@@ -1,9 +1,9 @@
-#include "render/hud.hpp"
+#include "render/hud/hud.hpp"
 
 #include <gtest/gtest.h>
 
-#include "render/legend.hpp"
-#include "render/strip_chart.hpp"
+#include "render/hud/legend.hpp"
+#include "render/hud/strip_chart.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {

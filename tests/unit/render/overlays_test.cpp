@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "render/belief_painter.hpp"
 #include "render/palette.hpp"
 #include "render/picture_layout.hpp"
+#include "render/scene/belief_painter.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {

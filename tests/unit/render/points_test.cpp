@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "render/thinning.hpp"
+#include "render/scene/thinning.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "render/canvas.hpp"
 #include "render/colour.hpp"
 #include "render/frame.hpp"
+#include "render/hud/canvas.hpp"
 #include "render/renderer.hpp"
 
 namespace qsmpc {

@@ -10,8 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "render/gif_palette.hpp"
-#include "render/video_writer.hpp"
+#include "render/media/gif_palette.hpp"
+#include "render/media/video_writer.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 

@@ -1,4 +1,4 @@
-#include "render/video_writer.hpp"
+#include "render/media/video_writer.hpp"
 
 #include <csignal>
 #include <fstream>
@@ -10,7 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "render/png_file.hpp"
+#include "render/media/png_file.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 

@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/figures/svg_figure.hpp"
 #include "harness/report/campaign_page.hpp"
-#include "harness/report/svg_figure.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {

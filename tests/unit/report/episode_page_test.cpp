@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/report/numbers.hpp"
+#include "harness/text/number_format.hpp"
 #include "harness/trace/summary.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/unit/report/page_checks.hpp"

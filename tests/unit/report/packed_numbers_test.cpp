@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/report/base64.hpp"
+#include "harness/text/base64.hpp"
 
 namespace qsmpc {
 namespace {

@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/sample_statistics.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc::testing {
 namespace {

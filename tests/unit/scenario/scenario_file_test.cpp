@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "controller/measure/gaussian_quantiser.hpp"
-#include "controller/planning/ocp_solver.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"

@@ -9,7 +9,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
-#include "render/belief_painter.hpp"
+#include "render/scene/belief_painter.hpp"
 #include "tests/unit/video/straight_episode.hpp"
 
 namespace qsmpc {

@@ -1,0 +1,383 @@
+#include "controller/certification/unsafe_region_bound.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <Eigen/LU>
+
+#include "controller/certification/smoothed_bound.hpp"
+#include "controller/measure/normal/bivariate_normal.hpp"
+#include "controller/measure/normal/normal_distribution.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// ½ · max over sets A of ∫_A ∂²p for a standard normal density p: a quarter of E|Z² − 1|, which is
+// 4φ(1); rounded up.
+constexpr double kCurvature = 0.24198;
+// Octaves over which t is searched, from the error's root mean square on; every t gives a bound.
+constexpr int kOctaves = 24;
+// Steps to an octave about the best of these, and to a step about the best of those: 1 % in t.
+constexpr int kFineSteps = 8;
+constexpr int kFinestSteps = 56;
+// Golden sections for τ of the norms of higher order; beyond 30, no less than 1e-6 is left.
+constexpr double kLargestTailRatio = 30.0;
+constexpr int kTailSteps = 7;
+// A probability that no certificate needs to be told from zero.
+constexpr double kZeroProbability = 1e-9;
+// An estimate from which on a part is not far away.
+constexpr double kNotFar = 0.05;
+// Of n's covariance, relative to the product of the variances: below it rounding decides.
+constexpr double kLeastDeterminant = 1e-12;
+
+/// Mean square of the density of n at the distance to `edge`, E φ_s(edge − y)², with
+/// y ~ N(mean, rest): the square of a normal density is one of half the variance.
+double mean_square_density(double edge, double mean, double smooth, double rest) {
+  if (std::isinf(edge)) return 0.0;
+  const double variance = rest + 0.5 * smooth;
+  const double height = 0.5 * std::numbers::inv_sqrtpi / std::sqrt(smooth);
+  return height * normal_density((edge - mean) / std::sqrt(variance)) / std::sqrt(variance);
+}
+
+/// P(z ∈ slab of the box in `axis`).
+double slab_probability(const Gaussian& law, const Box& box, Eigen::Index axis) {
+  const double mean = law.mean[axis];
+  const double lower = box.lower[axis];
+  const double upper = box.upper[axis];
+  const double deviation = std::sqrt(std::max(0.0, law.covariance(axis, axis)));
+  if (deviation > 0.0) {
+    return normal_probability((lower - mean) / deviation, (upper - mean) / deviation);
+  }
+  return mean >= lower && mean <= upper ? 1.0 : 0.0;
+}
+
+/// C4 on one coordinate: the slab of the part.
+double smooth_slab(const PerturbedGaussian& state, const UnsafeRegion& part, Eigen::Index axis) {
+  const double mean = state.law.mean[axis];
+  const double variance = state.law.covariance(axis, axis);
+  const double lower = part.box.lower[axis];
+  const double upper = part.box.upper[axis];
+  const double error = state.error[axis];
+  if (!std::isfinite(error) || !std::isfinite(mean)) return 1.0;
+  const double inside = slab_probability(state.law, part.box, axis);
+  if (error == 0.0) return inside;
+  const double smooth = state.smoothing(axis, axis);
+  if (!(smooth > 0.0)) return 1.0;
+  const double rest = std::max(0.0, variance - smooth);
+  const double slope = std::sqrt(mean_square_density(lower, mean, smooth, rest) +
+                                 mean_square_density(upper, mean, smooth, rest));
+  // One wall: the second derivative is that of Φ alone, half of what two can reach together.
+  const double curvature = std::isinf(lower) || std::isinf(upper) ? 0.5 * kCurvature : kCurvature;
+  return inside + error * slope + curvature * error * error / smooth;
+}
+
+/// E (∂_a h)² for the rectangle of axes a (first) and b (second): at each edge the density of n_a,
+/// squared, with the probability of being beside it, which is at most 1 and so serves unsquared.
+/// n_b given n_a is βn_a + ν, so (y_a + n', y_b + βn' + ν) with n' of half the variance of n_a is
+/// Gaussian and only has to be taken at the edge.
+double mean_square_slope(const Eigen::Vector2d& mean, const Eigen::Matrix2d& rest,
+                         const Eigen::Matrix2d& smooth, const Eigen::Vector2d& lower,
+                         const Eigen::Vector2d& upper, int a) {
+  const int b = 1 - a;
+  const double beta = smooth(0, 1) / smooth(a, a);
+  const double variance = rest(a, a) + 0.5 * smooth(a, a);
+  const double cross = rest(0, 1) + 0.5 * beta * smooth(a, a);
+  const double other = rest(b, b) + smooth(b, b) - 0.5 * beta * beta * smooth(a, a);
+  const double deviation = std::sqrt(std::max(0.0, other - cross * cross / variance));
+  double sum = 0.0;
+  for (const double edge : {lower[a], upper[a]}) {
+    if (std::isinf(edge)) continue;
+    const double centre = mean[b] + cross / variance * (edge - mean[a]);
+    const double beside = deviation > 0.0 ? normal_probability((lower[b] - centre) / deviation,
+                                                               (upper[b] - centre) / deviation)
+                                          : 1.0;
+    sum += beside * mean_square_density(edge, mean[a], smooth(a, a), rest(a, a));
+  }
+  return sum;
+}
+
+/// C4 on two coordinates: the part's rectangle.
+double smooth_rectangle(const PerturbedGaussian& state, const UnsafeRegion& part,
+                        Eigen::Index first, Eigen::Index second) {
+  const std::vector<Eigen::Index> pair = {first, second};
+  const Eigen::Vector2d mean = state.law.mean(pair);
+  const Eigen::Matrix2d covariance = state.law.covariance(pair, pair);
+  const Eigen::Vector2d lower = part.box.lower(pair);
+  const Eigen::Vector2d upper = part.box.upper(pair);
+  const Eigen::Vector2d error = state.error(pair);
+  if (!error.allFinite() || !mean.allFinite() || !covariance.allFinite()) return 1.0;
+  const double inside =
+      rectangle_probability(mean, covariance, lower, upper) + rectangle_error(covariance);
+  if (error.isZero(0.0)) return inside;
+  const Eigen::Matrix2d smooth = state.smoothing(pair, pair);
+  // Rounding of the two covariances can leave this a hair below zero; the diagonal is what counts.
+  Eigen::Matrix2d rest = covariance - smooth;
+  rest.diagonal() = rest.diagonal().cwiseMax(0.0);
+  double bound = inside;
+  const double product = smooth(0, 0) * smooth(1, 1);
+  const double determinant = product - smooth(0, 1) * smooth(0, 1);
+  const bool regular = determinant > kLeastDeterminant * product;
+  for (int a = 0; a < 2; ++a) {
+    if (error[a] == 0.0) continue;
+    if (!(smooth(a, a) > 0.0)) return 1.0;
+    bound += error[a] * std::sqrt(mean_square_slope(mean, rest, smooth, lower, upper, a));
+  }
+  if (error[0] > 0.0 && error[1] > 0.0) {
+    if (!regular) return 1.0;
+    const double form = smooth(1, 1) * error[0] * error[0] + smooth(0, 0) * error[1] * error[1] +
+                        2.0 * std::abs(smooth(0, 1)) * error[0] * error[1];
+    return bound + kCurvature * form / determinant;
+  }
+  // Along one axis only: what counts is how n spreads there once its other coordinate is known,
+  // which decides whether it is beside.
+  const int moved = error[0] > 0.0 ? 0 : 1;
+  const double other = smooth(1 - moved, 1 - moved);
+  if (other > 0.0 && !regular) return 1.0;
+  const double spread = other > 0.0 ? determinant / other : smooth(moved, moved);
+  return bound + kCurvature * error[moved] * error[moved] / spread;
+}
+
+/// A part of the unsafe set that is moved outwards by τ norms, in units of a law's deviations.
+class WidenedPart {
+ public:
+  WidenedPart(const Gaussian& law, const Eigen::VectorXd& norms, const UnsafeRegion& part)
+      : law_(law), norms_(norms), axes_(part.axes), part_(part.box), box_(part.box) {}
+
+  /// What may be outside of the widened part of e, |axes| τ^−p.
+  [[nodiscard]] double tails(double ratio, int order) const {
+    double power = static_cast<double>(axes_.size());
+    for (int k = 0; k < order; ++k) power /= ratio;
+    return power;
+  }
+
+  /// At least P(z ∈ part widened by τ norms): the least over its coordinates and, unless one of
+  /// these is small enough by itself, its pairs of coordinates.
+  double probability(double ratio) {
+    widen(ratio);
+    const double slab = least_slab();
+    if (slab <= kZeroProbability) return slab;
+    const double rectangle = least_over_pairs([&](Eigen::Index a, Eigen::Index b) {
+      const Eigen::Matrix2d covariance = pair_covariance(a, b);
+      const double inside =
+          rectangle_probability({law_.mean[a], law_.mean[b]}, covariance,
+                                {box_.lower[a], box_.lower[b]}, {box_.upper[a], box_.upper[b]});
+      return inside + rectangle_error(covariance);
+    });
+    return std::min(slab, rectangle);
+  }
+
+  /// About the same, for searches; a pair's rectangle is never more than its slabs.
+  double estimate(double ratio) {
+    widen(ratio);
+    if (axes_.size() == 1) return least_slab();
+    return least_over_pairs([&](Eigen::Index a, Eigen::Index b) {
+      const double first = std::sqrt(law_.covariance(a, a));
+      const double second = std::sqrt(law_.covariance(b, b));
+      const double correlation = law_.covariance(a, b) / (first * second);
+      if (!(std::abs(correlation) < 1.0)) return least_slab();
+      return rectangle_estimate(
+          {.low = {(box_.lower[a] - law_.mean[a]) / first, (box_.lower[b] - law_.mean[b]) / second},
+           .high = {(box_.upper[a] - law_.mean[a]) / first,
+                    (box_.upper[b] - law_.mean[b]) / second}},
+          correlation);
+    });
+  }
+
+ private:
+  void widen(double ratio) {
+    for (const Eigen::Index axis : axes_) {
+      box_.lower[axis] = part_.lower[axis] - ratio * norms_[axis];
+      box_.upper[axis] = part_.upper[axis] + ratio * norms_[axis];
+    }
+  }
+
+  [[nodiscard]] double least_slab() const {
+    double least = 1.0;
+    for (const Eigen::Index axis : axes_) {
+      least = std::min(least, slab_probability(law_, box_, axis));
+    }
+    return least;
+  }
+
+  template <class Rectangle>
+  [[nodiscard]] double least_over_pairs(const Rectangle& rectangle) const {
+    double least = 1.0;
+    for (std::size_t i = 0; i < axes_.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) least = std::min(least, rectangle(axes_[j], axes_[i]));
+    }
+    return least;
+  }
+
+  [[nodiscard]] Eigen::Matrix2d pair_covariance(Eigen::Index a, Eigen::Index b) const {
+    Eigen::Matrix2d covariance;
+    covariance << law_.covariance(a, a), law_.covariance(a, b), law_.covariance(b, a),
+        law_.covariance(b, b);
+    return covariance;
+  }
+
+  const Gaussian& law_;
+  const Eigen::VectorXd& norms_;
+  const std::vector<Eigen::Index>& axes_;
+  const Box& part_;
+  Box box_;  ///< widened
+};
+
+bool usable(const Gaussian& law, const Eigen::VectorXd& norms, const UnsafeRegion& part) {
+  const bool known = std::all_of(part.axes.begin(), part.axes.end(),
+                                 [&](Eigen::Index axis) { return std::isfinite(norms[axis]); });
+  return known && !part.axes.empty() && law.mean.allFinite() && law.covariance.allFinite();
+}
+
+/// A t at which square/t² + E(1 − d(z, part)²/t²)₊ is near its least.
+class ReachSearch {
+ public:
+  ReachSearch(const SoftPart& part, double square) : part_(part), square_(square) {}
+
+  [[nodiscard]] double best() {
+    const double least = 1.02 * std::sqrt(square_);
+    constexpr int kCount = kSoftReaches;
+    for (int octave = 0; octave < kOctaves; octave += kCount) {
+      // What is near grows with t, so that no larger t can be better.
+      if (try_about(std::ldexp(least, octave), 1.0, 0.0) >= least_value_) break;
+    }
+    const double coarse = best_;
+    try_about(coarse, 1.0 / kFineSteps, kCount);
+    try_about(coarse, 1.0 / kFineSteps, -1.0);
+    try_about(best_, 1.0 / kFinestSteps, 0.5 * (kCount - 1));
+    return best_;
+  }
+
+ private:
+  /// Tries centre · 2^{step (k − before)}, k = 0, 1, …; returns the last one's expectation.
+  double try_about(double centre, double step, double before) {
+    std::array<double, kSoftReaches> reaches;
+    std::array<double, kSoftReaches> near;
+    const double ratio = std::exp2(step);
+    reaches[0] = centre * std::exp2(-step * before);
+    for (std::size_t k = 1; k < kSoftReaches; ++k) reaches[k] = reaches[k - 1] * ratio;
+    soft_part_by_reach(part_, reaches.data(), near.data());
+    for (std::size_t k = 0; k < kSoftReaches; ++k) {
+      const double value = square_ / (reaches[k] * reaches[k]) + near[k];
+      if (value >= least_value_) continue;
+      least_value_ = value;
+      best_ = reaches[k];
+    }
+    return near.back();
+  }
+
+  const SoftPart& part_;
+  double square_;
+  double best_ = 1.02 * std::sqrt(square_);
+  double least_value_ = kInfinity;
+};
+
+/// Where `value` is least by golden sections over [first, first · ratio], in the logarithm. One
+/// valley is expected; where there are more, what is found is the bottom of one.
+template <class Value>
+double least_on_logarithmic_scale(const Value& value, double first, double ratio, int steps) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1.0);
+  double low = std::log(first);
+  double high = low + std::log(ratio);
+  double inner = high - golden * (high - low);
+  double outer = low + golden * (high - low);
+  double at_inner = value(std::exp(inner));
+  double at_outer = value(std::exp(outer));
+  for (int step = 0; step < steps; ++step) {
+    if (at_inner < at_outer) {
+      high = outer;
+      outer = inner;
+      at_outer = at_inner;
+      inner = high - golden * (high - low);
+      at_inner = value(std::exp(inner));
+    } else {
+      low = inner;
+      inner = outer;
+      at_inner = at_outer;
+      outer = low + golden * (high - low);
+      at_outer = value(std::exp(outer));
+    }
+  }
+  return std::exp(at_inner < at_outer ? inner : outer);
+}
+
+}  // namespace
+
+std::vector<UnsafeRegion> unsafe_regions(const SafeSet& safe_set) {
+  std::vector<UnsafeRegion> parts;
+  const Eigen::Index dim = safe_set.dim();
+  const UnsafeRegion everything{.box = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
+                                        .upper = Eigen::VectorXd::Constant(dim, kInfinity)},
+                                .axes = {}};
+  for (Eigen::Index axis = 0; axis < dim; ++axis) {
+    UnsafeRegion part = everything;
+    part.axes = {axis};
+    if (std::isfinite(safe_set.bounds.lower[axis])) {
+      part.box.upper[axis] = safe_set.bounds.lower[axis];
+      parts.push_back(part);
+      part.box.upper[axis] = kInfinity;
+    }
+    if (std::isfinite(safe_set.bounds.upper[axis])) {
+      part.box.lower[axis] = safe_set.bounds.upper[axis];
+      parts.push_back(part);
+    }
+  }
+  for (const Box& obstacle : safe_set.obstacles) {
+    UnsafeRegion part{.box = obstacle, .axes = {}};
+    for (Eigen::Index axis = 0; axis < dim; ++axis) {
+      if (std::isfinite(obstacle.lower[axis]) || std::isfinite(obstacle.upper[axis])) {
+        part.axes.push_back(axis);
+      }
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
+double markov_region_bound(const PerturbedGaussian& state, const UnsafeRegion& part) {
+  double square = 0.0;
+  for (const Eigen::Index axis : part.axes) square += state.error[axis] * state.error[axis];
+  if (!std::isfinite(square) || !state.law.mean.allFinite() || !state.law.covariance.allFinite()) {
+    return 1.0;
+  }
+  const SoftPart soft = soft_part(state.law.mean, state.law.covariance, part.box);
+  // The search is by vectors; what it finds is worked out with the smaller allowances.
+  const double t = square == 0.0 ? kSmallestReach : ReachSearch(soft, square).best();
+  return std::min(1.0, square / (t * t) + soft_part_probability(soft, t));
+}
+
+double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
+                         const UnsafeRegion& part) {
+  if (!usable(law, norms, part)) return 1.0;
+  WidenedPart widened(law, norms, part);
+  const double ratio = least_on_logarithmic_scale(
+      [&](double tau) { return widened.tails(tau, order) + widened.estimate(tau); }, 1.0,
+      kLargestTailRatio, kTailSteps);
+  return std::min(1.0, widened.tails(ratio, order) + widened.probability(ratio));
+}
+
+double far_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
+                        const UnsafeRegion& part, double enough) {
+  if (!usable(law, norms, part)) return 1.0;
+  const double axes = static_cast<double>(part.axes.size());
+  const double ratio = std::pow(2.0 * axes / enough, 1.0 / order);
+  WidenedPart widened(law, norms, part);
+  if (widened.estimate(ratio) > kNotFar) return 1.0;
+  return std::min(1.0, widened.tails(ratio, order) + widened.probability(ratio));
+}
+
+double smooth_region_bound(const PerturbedGaussian& state, const UnsafeRegion& part) {
+  double best = 1.0;
+  for (std::size_t i = 0; i < part.axes.size(); ++i) {
+    best = std::min(best, smooth_slab(state, part, part.axes[i]));
+    for (std::size_t j = 0; j < i; ++j) {
+      best = std::min(best, smooth_rectangle(state, part, part.axes[j], part.axes[i]));
+    }
+  }
+  return best;
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,57 @@
+// The loops of ExpectedBounds over one coordinate of some particles, for the processor's widest
+// vectors.
+#pragma once
+
+#include <cstddef>
+
+#include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/cost/stage_kernels.hpp"
+
+namespace qsmpc {
+
+/// Standard deviations from a hinge beyond which nothing is left of it in these loops.
+inline constexpr double kFarDeviations = 8.3;
+
+/// Σ ρ (x − r), Σ ρ (x − r)² and the range of x − r, with 0, for a reference r.
+struct CoordinateMoments {
+  double first = 0.0;
+  double second = 0.0;
+  double least = 0.0;
+  double most = 0.0;
+};
+
+/// What particles x_i stand for: share · x_i + offset + deviation · z, z ~ N(0, 1).
+struct SmoothedCoordinate {
+  double share = 1.0;
+  double offset = 0.0;
+  double deviation = 0.0;  ///< > 0
+};
+
+/// Σ ρ E h over both faces, times the penalty's weight; its derivatives by an offset of all
+/// particles and by the square of the deviation, this one times two.
+struct FaceCost {
+  double value = 0.0;
+  double by_offset = 0.0;
+  double by_variance = 0.0;
+};
+
+/// A gradient's part ρ_i (constant + linear x_i).
+struct FaceCorrection {
+  double constant = 0.0;
+  double linear = 0.0;
+};
+
+/// Of `size` particles.
+[[nodiscard]] CoordinateMoments coordinate_moments(const double* x, const double* weights,
+                                                   std::size_t size, double reference);
+
+/// Adds the derivatives by the x_i, at fixed share, offset and deviation, to `gradient`.
+FaceCost evaluate_faces(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law,
+                        const Penalty& penalty, const double* x, const double* weights,
+                        std::size_t size, double* gradient);
+
+/// Adds the correction to `gradient`.
+void correct_gradient(const FaceCorrection& correction, const double* x, const double* weights,
+                      std::size_t size, double* gradient);
+
+}  // namespace qsmpc

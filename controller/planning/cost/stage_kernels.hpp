@@ -1,0 +1,75 @@
+// The loops over the particles of one stage that are not the system's: policy, quadratic costs and
+// penalties, forwards and backwards, for the processor's widest vectors. Each works on the
+// particles begin … end − 1 only, so that several threads can share a stage.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/parallel.hpp"
+#include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/safe_set.hpp"
+
+namespace qsmpc {
+
+/// One stage of a policy as the loops want it: u = clamp(constant + K x).
+struct StagePolicy {
+  const double* constant = nullptr;  ///< v − K x̄, input_dim
+  const double* gain = nullptr;      ///< K, input_dim x state_dim, column by column
+  const double* lower = nullptr;     ///< input_dim
+  const double* upper = nullptr;     ///< input_dim
+  bool closed_loop = false;          ///< whether K has an entry that is not zero
+};
+
+/// inputs = clamp(constant + K x). states: state_dim x n; inputs: input_dim x n.
+void apply_policy(const StagePolicy& policy, const Points& states, ParticleRange range,
+                  Points& inputs);
+
+/// Reverse mode: adds Kᵀ a to `state_adjoint`, a being the input's adjoint where the clamp is not
+/// active and 0 where it is (everywhere `a` in open loop, where the clamp never is). Adds Σ a to
+/// `sum` (input_dim) and, unless null, Σ a xᵀ to `outer` (input_dim x state_dim, column by column).
+void pullback_policy(const StagePolicy& policy, const Points& states, const Points& inputs,
+                     const Points& input_adjoint, ParticleRange range, Points& state_adjoint,
+                     double* sum, double* outer);
+
+/// A quadratic form about a centre, as the loops want it.
+struct QuadraticForm {
+  /// Symmetric matrix (d x d) and centre (d).
+  QuadraticForm(const Eigen::MatrixXd& symmetric, const Eigen::VectorXd& about);
+
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd centre;
+  bool diagonal = false;
+};
+
+/// factor · Σ ρ_i (x_i − r)ᵀW(x_i − r); its gradient 2 factor ρ_i W (x_i − r) overwrites `gradient`
+/// (d x n).
+double weighted_quadratic(const QuadraticForm& form, double factor, const Points& points,
+                          const Eigen::VectorXd& weights, ParticleRange range, Points& gradient);
+
+/// a += b in the range.
+void add_points(const Points& b, ParticleRange range, Points& a);
+
+/// A penalty with the faces that it acts on.
+class PenaltyTable {
+ public:
+  PenaltyTable(const SafeSet& safe_set, const Penalty& penalty);
+
+  struct Face {
+    int axis;
+    double lower;
+    double upper;
+  };
+
+  Penalty penalty;
+  std::vector<Face> bounds;                  ///< axes that are bounded
+  std::vector<std::vector<Face>> obstacles;  ///< the axes that each is bounded in
+};
+
+/// As add_penalty (penalty.hpp), but the gradient overwrites `adjoint` in the range.
+PenaltyValue penalise(const PenaltyTable& table, const Points& locations,
+                      const Eigen::VectorXd& weights, ParticleRange range, Points& adjoint);
+
+}  // namespace qsmpc

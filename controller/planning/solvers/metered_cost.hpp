@@ -1,0 +1,50 @@
+// The cost as a solver meets it: counted, within the limits, and checked for finite numbers.
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "controller/planning/solvers/ocp_solver.hpp"
+
+namespace qsmpc {
+
+class MeteredCost {
+ public:
+  /// Refers to both.
+  MeteredCost(const OcpProblem& problem, const SolverOptions& options)
+      : problem_(problem), options_(options) {}
+
+  /// Value and gradient at `z`. False, and every time from then on, if the evaluations are used up,
+  /// the time is, or the answer is not finite; `stopped` says which. Allocates nothing.
+  bool evaluate(const Eigen::VectorXd& z, double& value, Eigen::VectorXd& gradient) {
+    if (!stopped_ && evaluations_ >= options_.max_evaluations) {
+      stopped_ = SolverStatus::kIterationLimit;
+    }
+    if (!stopped_ && late()) stopped_ = SolverStatus::kDeadline;
+    if (stopped_) return false;
+    value = problem_.cost(z, gradient);
+    ++evaluations_;
+    if (!std::isfinite(value) || !gradient.allFinite()) stopped_ = SolverStatus::kNumericalTrouble;
+    return !stopped_;
+  }
+
+  [[nodiscard]] int evaluations() const { return evaluations_; }
+  [[nodiscard]] const std::optional<SolverStatus>& stopped() const { return stopped_; }
+
+ private:
+  [[nodiscard]] bool late() const {
+    // Without a deadline the clock is left alone.
+    return options_.deadline != std::chrono::steady_clock::time_point::max() &&
+           std::chrono::steady_clock::now() >= options_.deadline;
+  }
+
+  const OcpProblem& problem_;
+  const SolverOptions& options_;
+  int evaluations_ = 0;
+  std::optional<SolverStatus> stopped_;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,92 @@
+#include "controller/planning/solvers/ocp_solver.hpp"
+
+#include <stdexcept>
+
+#include "controller/planning/solvers/lbfgs_solver.hpp"
+#include "controller/planning/solvers/projected_bfgs_solver.hpp"
+#include "controller/planning/solvers/slsqp_solver.hpp"
+
+namespace qsmpc {
+namespace {
+
+void require(bool holds, const char* message) {
+  if (!holds) throw std::invalid_argument(std::string("solver: ") + message);
+}
+
+std::string known_names(const std::vector<SolverEntry>& table) {
+  std::string known;
+  for (const SolverEntry& entry : table) known += (known.empty() ? "" : ", ") + entry.name;
+  return known;
+}
+
+std::unique_ptr<OcpSolver> make_lbfgs(const std::string& bounding) {
+  if (bounding == "bounded") return std::make_unique<ProjectedBfgsSolver>();
+  if (bounding == "sigmoid") return std::make_unique<LbfgsSolver>(InputBounding::kSigmoid);
+  if (bounding == "tanh") return std::make_unique<LbfgsSolver>(InputBounding::kTanh);
+  if (bounding == "penalty") return std::make_unique<LbfgsSolver>(InputBounding::kPenalty);
+  throw std::invalid_argument("no bounding '" + bounding +
+                              "' of inputs; known are: " + known_names(input_boundings()));
+}
+
+}  // namespace
+
+const char* solver_status_name(SolverStatus status) {
+  switch (status) {
+    case SolverStatus::kConverged:
+      return "converged";
+    case SolverStatus::kIterationLimit:
+      return "iteration_limit";
+    case SolverStatus::kStalled:
+      return "stalled";
+    case SolverStatus::kDeadline:
+      return "deadline";
+    case SolverStatus::kInfeasible:
+      return "infeasible";
+    case SolverStatus::kNumericalTrouble:
+      return "numerical_trouble";
+  }
+  return "unknown";
+}
+
+const std::vector<SolverEntry>& solvers() {
+  static const std::vector<SolverEntry> table = {
+      {"lbfgs", "quasi-Newton; bounds of the inputs kept as its bounding says"},
+      {"slsqp", "NLopt's sequential quadratic programming; takes inequality constraints"},
+  };
+  return table;
+}
+
+const std::vector<SolverEntry>& input_boundings() {
+  static const std::vector<SolverEntry> table = {
+      {"bounded", "inputs held at their bounds: dense BFGS whose steps keep the box (own)"},
+      {"sigmoid", "inputs through a sigmoid (Eq. 5-3), NLopt's limited-memory BFGS"},
+      {"tanh", "inputs through a hyperbolic tangent, NLopt's limited-memory BFGS"},
+      {"penalty",
+       "excess over the bounds evaluated, the result clamped, NLopt's limited-memory BFGS"},
+  };
+  return table;
+}
+
+std::unique_ptr<OcpSolver> make_solver(std::string_view name, const SolverSettings& settings) {
+  if (name == "lbfgs") return make_lbfgs(settings.bounding);
+  if (name == "slsqp") return std::make_unique<SlsqpSolver>();
+  throw std::invalid_argument("no solver '" + std::string(name) +
+                              "'; known are: " + known_names(solvers()));
+}
+
+void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
+                   const SolverOptions& options, ConstraintsTaken taken) {
+  require(start.size() >= 1, "there is nothing to decide");
+  require(problem.lower.size() == start.size() && problem.upper.size() == start.size(),
+          "bounds and start must be of one size");
+  // A comparison with NaN is false, so these are refused as well.
+  require((problem.lower.array() <= problem.upper.array()).all(), "the bounds are crossed");
+  require(options.max_evaluations >= 1, "at least one evaluation of the cost is needed");
+  if (!problem.constraints) return;
+  require(taken == ConstraintsTaken::kInequalities, "this solver takes no constraints");
+  const ConstraintSet& set = *problem.constraints;
+  require(set.count >= 0 && (set.group.empty() || std::ssize(set.group) == set.count),
+          "each constraint must be in a group, or none");
+}
+
+}  // namespace qsmpc

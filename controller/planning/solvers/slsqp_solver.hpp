@@ -1,0 +1,59 @@
+// NLopt's sequential quadratic programming, for problems with many inequality constraints: it works
+// on the few that matter, and on others once they turn out to be violated.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/solvers/metered_cost.hpp"
+#include "controller/planning/solvers/nlopt_run.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
+
+namespace qsmpc {
+
+class SlsqpSolver final : public OcpSolver {
+ public:
+  const SolverResult& minimise(const OcpProblem& problem, const Eigen::VectorXd& start,
+                               const SolverOptions& options) override;
+
+ private:
+  // A point with its cost and the largest violation of the constraints that were looked at.
+  struct Point {
+    Eigen::VectorXd z;
+    double value = 0.0;
+    double violation = 0.0;
+    Eigen::VectorXd gradient;
+  };
+  // What NLopt was told last, so that asking again costs nothing.
+  struct Answer {
+    Point point;
+    bool evaluated = false;  // whether cost and gradient are known
+    bool complete = false;   // whether the working set is, too
+    Eigen::VectorXd constraints;
+    Eigen::MatrixXd constraint_gradients;  // n x working set
+  };
+
+  bool assess(const OcpProblem& problem, const Eigen::VectorXd& z, MeteredCost& cost);
+  [[nodiscard]] bool begin(const OcpProblem& problem, MeteredCost& cost);
+  NloptEnd run(const OcpProblem& problem, const SolverOptions& options, MeteredCost& cost);
+  [[nodiscard]] bool check_all(const OcpProblem& problem, Point& point);
+  std::size_t enlarge(const OcpProblem& problem, double threshold);
+  void drop_inactive();
+  void thin();
+  [[nodiscard]] SolverStatus stopped_as(const MeteredCost& cost) const;
+  SolverStatus rounds(const OcpProblem& problem, const SolverOptions& options, MeteredCost& cost);
+
+  SolverResult result_;
+  Point best_;     // of those at which all constraints were looked at
+  Point reached_;  // the best of a run, as far as the working set tells
+  Answer answer_;
+  bool trouble_ = false;  // a constraint was not finite
+  double tolerance_ = 0.0;
+  Eigen::VectorXd scale_;  // of the decisions: the bounds' ranges
+  std::vector<int> working_;
+  std::vector<int> candidates_;
+  Eigen::VectorXd all_;  // values of all constraints where they were looked at last
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,49 @@
+// Where the optimisation of a plan starts.
+//
+// The cost has a valley for each way round each obstacle. The shifted previous plan is the first
+// choice; constant inputs, evaluated without noise, show whether another valley may be clearly
+// deeper.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/cost/noise_free_cost.hpp"
+#include "controller/planning/planner_settings.hpp"
+#include "controller/planning/policy_maker.hpp"
+
+namespace qsmpc {
+
+class FirstGuess {
+ public:
+  explicit FirstGuess(const PlannerSettings& settings);
+
+  /// Compares them by `cost`, which has been placed at the belief. previous: the inputs of the
+  /// previous plan, or null. Returns whether these are there and have a finite cost. Allocates only
+  /// in the first call.
+  [[nodiscard]] bool compare(const Eigen::MatrixXd* previous, const Eigen::MatrixXd& gain_change,
+                             NoiseFreeCost& cost, PolicyMaker& policies);
+
+  /// The previous inputs one stage later, and the cheapest of the constants; input_dim x horizon.
+  [[nodiscard]] const Eigen::MatrixXd& shifted() const { return shifted_; }
+  [[nodiscard]] const Eigen::MatrixXd& constant() const { return constants_[constant_]; }
+  /// How much less than the shifted previous inputs the constant ones cost, without noise.
+  [[nodiscard]] double advantage() const { return advantage_; }
+
+ private:
+  std::vector<Eigen::MatrixXd> constants_;
+  std::size_t constant_ = 0;
+  double advantage_ = 0.0;
+  Eigen::MatrixXd shifted_;
+};
+
+/// Whether `cost` is so much less than that of the shifted previous plan that it is worth to leave
+/// that: switching sides of an obstacle for less makes the vehicle waver.
+[[nodiscard]] bool clearly_cheaper(double cost, double than);
+
+/// The inputs of a plan, one stage later; the last is held.
+void shift_inputs(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& out);
+
+}  // namespace qsmpc

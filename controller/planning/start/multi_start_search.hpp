@@ -1,0 +1,55 @@
+// Cold starts among obstacles.
+//
+// The cost has a valley for each way round each obstacle, and a descent ends in the one in which it
+// starts. Inputs that are constant over each half of the horizon are evaluated in all combinations;
+// the best of each first half descends a little; the bottoms of different valleys are what a plan
+// may start from. All of this without noise: it is to find valleys, not to tell which of two like
+// ones is the deeper.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/cost/noise_free_cost.hpp"
+#include "controller/planning/planner_settings.hpp"
+#include "controller/planning/policy_maker.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
+
+namespace qsmpc {
+
+class MultiStartSearch {
+ public:
+  /// `cost` must stay alive.
+  MultiStartSearch(const PlannerSettings& settings, NoiseFreeCost& cost);
+
+  /// Inputs (input_dim x horizon, within the bounds) in different valleys of the cost for the
+  /// belief at which it has been placed, the cheapest first; at least one set of inputs, even after
+  /// `deadline`. Valid until the next search.
+  const std::vector<const Eigen::MatrixXd*>& search(PolicyMaker& policies,
+                                                    std::chrono::steady_clock::time_point deadline);
+
+ private:
+  struct Start {
+    Eigen::MatrixXd inputs;
+    int group = 0;  // starts of one group differ in the second half alone
+    double cost = 0.0;
+  };
+
+  void descend(PolicyMaker& policies, Start& start);
+
+  NoiseFreeCost& cost_;
+  OcpProblem problem_;
+  std::unique_ptr<OcpSolver> solver_;
+  Eigen::MatrixXd no_gain_change_;
+  std::vector<Eigen::MatrixXd> candidates_;
+  std::vector<int> candidate_groups_;
+  std::vector<Start> starts_;  // the best of each group
+  std::vector<Start*> order_;
+  std::vector<const Eigen::MatrixXd*> minima_;
+  Eigen::VectorXd z_;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,53 @@
+#include "harness/figures/chart_marks.hpp"
+
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/figures/palette.hpp"
+
+namespace qsmpc {
+namespace {
+
+struct Corner {
+  double x;
+  double y;
+};
+
+/// The strokes of a sign about (0, 0), each through its corners; all signs are of about the same
+/// area to the eye.
+std::vector<std::vector<Corner>> strokes_of(int colour) {
+  switch (colour) {
+    case kOrange:
+      return {{{-3, -3}, {3, -3}, {3, 3}, {-3, 3}, {-3, -3}}};
+    case kGreen:
+      return {{{0, -4.2}, {4, 2.8}, {-4, 2.8}, {0, -4.2}}};
+    case kPurple:
+      return {{{0, -4.4}, {4.4, 0}, {0, 4.4}, {-4.4, 0}, {0, -4.4}}};
+    case kVermilion:
+      return {{{-3.4, -3.4}, {3.4, 3.4}}, {{3.4, -3.4}, {-3.4, 3.4}}};
+    default:
+      return {{{-4.2, 0}, {4.2, 0}}, {{0, -4.2}, {0, 4.2}}};
+  }
+}
+
+}  // namespace
+
+std::string mark_data(int colour, double x, double y) {
+  if (colour == kBlue) return fmt::format("M{:.1f} {:.1f}h0", x, y);  // as wide as the stroke
+  std::string data;
+  for (const std::vector<Corner>& stroke : strokes_of(colour)) {
+    char command = 'M';
+    for (const Corner& corner : stroke) {
+      data += fmt::format("{}{:.1f} {:.1f}", command, x + corner.x, y + corner.y);
+      command = 'L';
+    }
+  }
+  return data;
+}
+
+std::string mark_classes(int colour) {
+  return fmt::format("{} c{}", colour == kBlue ? "points" : "line", colour);
+}
+
+}  // namespace qsmpc

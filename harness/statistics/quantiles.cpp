@@ -1,0 +1,65 @@
+#include "harness/statistics/quantiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace qsmpc {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+}  // namespace
+
+SortedQuantiles::SortedQuantiles(std::int64_t count, const std::vector<double>& shares)
+    : values_(shares.size(), kNone) {
+  const bool in_range = std::ranges::all_of(shares, [](double q) { return q >= 0.0 && q <= 1.0; });
+  if (count < 0 || !in_range || !std::ranges::is_sorted(shares)) {
+    throw std::invalid_argument("quantiles: a count or shares that cannot be");
+  }
+  for (const double share : shares) {
+    const auto rank = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count)));
+    ranks_.push_back(std::max<std::int64_t>(rank, 1));
+  }
+}
+
+void SortedQuantiles::add(double value, std::int64_t times) {
+  added_ += times;
+  for (; next_ < ranks_.size() && ranks_[next_] <= added_; ++next_) values_[next_] = value;
+}
+
+SortedDistribution::SortedDistribution(std::int64_t count)
+    : quantiles_(count, {0.5, 0.95, 0.99, 1.0}) {}
+
+void SortedDistribution::add(double value) {
+  quantiles_.add(value);
+  ++added_;
+  sum_ += value;
+}
+
+Distribution SortedDistribution::result() const {
+  const std::vector<double>& values = quantiles_.values();
+  return {.median = values[0],
+          .p95 = values[1],
+          .p99 = values[2],
+          .max = values[3],
+          .mean = added_ == 0 ? kNone : sum_ / static_cast<double>(added_)};
+}
+
+void RunningMean::add(double value) {
+  ++count_;
+  const double before = value - mean_;
+  mean_ += before / static_cast<double>(count_);
+  squares_ += before * (value - mean_);
+}
+
+double RunningMean::mean() const { return count_ == 0 ? kNone : mean_; }
+
+double RunningMean::standard_error() const {
+  if (count_ < 2) return kNone;
+  const auto count = static_cast<double>(count_);
+  return std::sqrt(squares_ / (count - 1.0) / count);
+}
+
+}  // namespace qsmpc

@@ -1,0 +1,125 @@
+#include "render/hud/strip_chart.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace qsmpc {
+namespace {
+
+constexpr double kInset = 3.0;        // pixels between the ground's edge and the curve
+constexpr double kDash = 6.0;         // pixels
+constexpr double kLeastGround = 2.2;  // letters high
+
+double title_height(const HudStyle& style) { return 1.6 * style.small.size(); }
+
+struct Plot {
+  PixelRectangle ground;
+  double curve_width;  // pixels; the rest is for the range's labels
+  std::string upper;
+  std::string lower;
+};
+
+Plot plot_of(const StripChart& chart, const PixelRectangle& area, const HudStyle& style) {
+  Plot plot{.ground = {area.x, area.y + title_height(style), area.width,
+                       area.height - title_height(style)},
+            .curve_width = 0.0,
+            .upper = fmt::format("{:.3g}", chart.upper),
+            .lower = fmt::format("{:.3g}", chart.lower)};
+  // The same for all charts, so that their time axes are in line.
+  const double labels = style.small.width("-0.785");
+  plot.curve_width = area.width - labels - 3.0 * kInset;
+  return plot;
+}
+
+// Where `value` is between the chart's lower (0) and upper (1) edge; NaN stays NaN.
+double chart_share(const StripChart& chart, double value) {
+  const auto measure = [&chart](double v) {
+    constexpr double kLeastPositive = 1e-300;
+    return chart.logarithmic ? std::log10(std::max(v, kLeastPositive)) : v;
+  };
+  if (std::isnan(value)) {
+    return value;
+  }
+  const double lower = measure(chart.lower);
+  const double upper = measure(chart.upper);
+  return std::clamp((measure(value) - lower) / (upper - lower), 0.0, 1.0);
+}
+
+PixelPoint point_in(const Plot& plot, const StripChart& chart, std::size_t slot, double value) {
+  const std::size_t slots = std::max({chart.slots, chart.values.size(), std::size_t{2}});
+  const double step = (plot.curve_width - 2.0 * kInset) / static_cast<double>(slots - 1);
+  const double share = chart_share(chart, value);
+  return {plot.ground.x + kInset + static_cast<double>(slot) * step,
+          plot.ground.y + kInset + (1.0 - share) * (plot.ground.height - 2.0 * kInset)};
+}
+
+void draw_limit(const StripChart& chart, const Plot& plot, const HudStyle& style, Image& image) {
+  const double y = point_in(plot, chart, 0, chart.limit->value).y;
+  const double end = plot.ground.x + plot.curve_width;
+  const int dashes = static_cast<int>(std::ceil(plot.curve_width / (2.0 * kDash)));
+  for (int dash = 0; dash < dashes; ++dash) {
+    const double x = plot.ground.x + 2.0 * kDash * dash;
+    fill_rectangle(image, {x, y - 0.5, std::min(kDash, end - x), 1.0}, hud_colour::kLimit);
+  }
+  // At the end of the time axis, where the curve is last, and on a ground of its own.
+  const double letters = style.small.size();
+  const double width = style.small.width(chart.limit->label) + 2.0 * kInset;
+  const bool above = y - 1.2 * letters > plot.ground.y;
+  const double top = above ? y - 1.2 * letters - 1.0 : y + 2.0;
+  fill_rectangle(image, {end - width, top, width, 1.2 * letters},
+                 hud_colour::kBand.with_alpha(0.7F));
+  draw_text(image, style.small, chart.limit->label, {end - width + kInset, top + letters},
+            hud_colour::kLimit);
+}
+
+}  // namespace
+
+double least_chart_height(const HudStyle& style) {
+  return title_height(style) + kLeastGround * style.small.size();
+}
+
+PixelPoint chart_point(const StripChart& chart, const PixelRectangle& area, const HudStyle& style,
+                       std::size_t slot, double value) {
+  return point_in(plot_of(chart, area, style), chart, slot, value);
+}
+
+void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const Colour& colour,
+                      const HudStyle& style, Image& image) {
+  const Plot plot = plot_of(chart, area, style);
+  const PixelRectangle& ground = plot.ground;
+  const double baseline = area.y + 1.1 * style.small.size();
+  const std::string value = fitting(style.small, chart.value, 0.6 * area.width);
+  const double value_left = area.x + area.width - style.small.width(value);
+  draw_text(image, style.small,
+            fitting(style.small, chart.label, value_left - area.x - style.gap()),
+            {area.x, baseline}, colour);
+  draw_text(image, style.small, value, {value_left, baseline}, hud_colour::kText);
+  fill_rectangle(image, ground, hud_colour::kChartGround, kInset);
+  fill_rectangle(image, {ground.x, ground.y + 0.5 * ground.height, plot.curve_width, 1.0},
+                 hud_colour::kChartLine);
+  const double right = ground.x + ground.width - kInset;
+  draw_text(image, style.small, plot.upper,
+            {right - style.small.width(plot.upper), ground.y + style.small.size()},
+            hud_colour::kFaintText);
+  draw_text(image, style.small, plot.lower,
+            {right - style.small.width(plot.lower), ground.y + ground.height - kInset},
+            hud_colour::kFaintText);
+  std::vector<PixelPoint> points;
+  for (std::size_t i = 0; i < chart.values.size(); ++i) {
+    points.push_back(point_in(plot, chart, i, chart.values[i]));
+  }
+  draw_graph(image, points, std::max(1.8 * style.scale, 1.2), colour);
+  if (!points.empty() && std::isfinite(points.back().y)) {
+    fill_circle(image, points.back(), std::max(3.0 * style.scale, 2.0), colour);
+  }
+  if (chart.limit) {
+    draw_limit(chart, plot, style, image);
+  }
+}
+
+}  // namespace qsmpc

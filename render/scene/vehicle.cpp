@@ -1,0 +1,333 @@
+#include "render/scene/vehicle.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <mutex>
+#include <stdexcept>
+
+#include <mujoco/mujoco.h>
+
+#include "render/gl/shadow.hpp"
+#include "render/gl/solid_mesh.hpp"
+#include "render/scene/mujoco_guard.hpp"
+
+namespace qsmpc {
+namespace {
+
+constexpr int kSpareGeoms = 64;  // MuJoCo's own decorations
+constexpr int kHiddenGroup = 5;  // mjvOption draws groups 0 to 2 unless told otherwise
+constexpr int kLastVisibleGroup = 2;
+constexpr double kAxisTolerance = 1e-6;
+
+struct ModelDeleter {
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+};
+struct DataDeleter {
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using ModelPointer = std::unique_ptr<mjModel, ModelDeleter>;
+using DataPointer = std::unique_ptr<mjData, DataDeleter>;
+
+ModelPointer load_model(const std::string& path) {
+  // MuJoCo's XML reader keeps state of its own in the process.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
+  std::array<char, 1000> words{};
+  ModelPointer model(
+      mj_loadXML(path.c_str(), nullptr, words.data(), static_cast<int>(words.size())));
+  if (!model) {
+    throw std::runtime_error("vehicle \"" + path + "\": " + words.data());
+  }
+  return model;
+}
+
+// The ground and the sky are drawn by ScenePainter: MuJoCo's textured ones take most of a frame.
+void prepare_model(mjModel& model, int width, int height) {
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (model.geom_type[geom] == mjGEOM_PLANE && model.geom_bodyid[geom] == 0) {
+      model.geom_group[geom] = kHiddenGroup;
+    }
+  }
+  model.vis.global.offwidth = width;
+  model.vis.global.offheight = height;
+  model.vis.quality.offsamples = 0;  // smooth_edges instead
+  model.vis.quality.shadowsize = 0;
+}
+
+bool is_visible(const mjModel& model, int geom) {
+  return model.geom_group[geom] <= kLastVisibleGroup && model.geom_type[geom] != mjGEOM_PLANE;
+}
+
+// Half sides of the box about a geom, in its own axes.
+SpacePoint half_sides(const mjModel& model, int geom) {
+  const mjtNum* const size = model.geom_size + static_cast<std::ptrdiff_t>(3) * geom;
+  switch (model.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+      return {size[0], size[0], size[0]};
+    case mjGEOM_CAPSULE:
+      return {size[0], size[0], size[1] + size[0]};
+    case mjGEOM_CYLINDER:
+      return {size[0], size[0], size[1]};
+    default:
+      return {size[0], size[1], size[2]};
+  }
+}
+
+SolidShape solid_shape(const mjModel& model, int geom) {
+  switch (model.geom_type[geom]) {
+    case mjGEOM_SPHERE:
+    case mjGEOM_ELLIPSOID:
+      return SolidShape::kEllipsoid;
+    case mjGEOM_CAPSULE:
+    case mjGEOM_CYLINDER:
+      return SolidShape::kCylinder;
+    default:
+      return SolidShape::kBox;
+  }
+}
+
+SolidPlace solid_place(const mjModel& model, const mjData& data, int geom) {
+  SolidPlace place;
+  place.half_sides = half_sides(model, geom);
+  std::copy_n(data.geom_xpos + static_cast<std::ptrdiff_t>(3) * geom, 3, place.centre.begin());
+  std::copy_n(data.geom_xmat + static_cast<std::ptrdiff_t>(9) * geom, 9, place.axes.begin());
+  return place;
+}
+
+std::vector<SpacePoint> box_corners(const mjModel& model, const mjData& data, int geom) {
+  const SpacePoint half = half_sides(model, geom);
+  const mjtNum* const centre = data.geom_xpos + static_cast<std::ptrdiff_t>(3) * geom;
+  const mjtNum* const axes = data.geom_xmat + static_cast<std::ptrdiff_t>(9) * geom;
+  std::vector<SpacePoint> corners(8);
+  for (unsigned corner = 0; corner < 8; ++corner) {
+    for (std::size_t row = 0; row < 3; ++row) {
+      double value = centre[row];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double sign = ((corner >> axis) & 1U) != 0U ? 1.0 : -1.0;
+        value += sign * axes[3 * row + axis] * half[axis];
+      }
+      corners[corner][row] = value;
+    }
+  }
+  return corners;
+}
+
+// Address in qpos of the first joint of `type` about or along `axis`, or -1.
+int joint_address(const mjModel& model, int type, std::size_t axis) {
+  for (int joint = 0; joint < model.njnt; ++joint) {
+    const mjtNum* const direction = model.jnt_axis + static_cast<std::ptrdiff_t>(3) * joint;
+    if (model.jnt_type[joint] == type && std::abs(direction[axis] - 1.0) < kAxisTolerance) {
+      return model.jnt_qposadr[joint];
+    }
+  }
+  return -1;
+}
+
+void set_pose(const mjModel& model, const PlanarPose& pose, mjtNum* qpos) {
+  for (int joint = 0; joint < model.njnt; ++joint) {
+    if (model.jnt_type[joint] == mjJNT_FREE) {
+      mjtNum* const free = qpos + model.jnt_qposadr[joint];
+      free[0] = pose.x;
+      free[1] = pose.y;
+      free[3] = std::cos(0.5 * pose.heading);
+      free[4] = 0.0;
+      free[5] = 0.0;
+      free[6] = std::sin(0.5 * pose.heading);
+      return;
+    }
+  }
+  const std::array<std::pair<int, double>, 3> values{
+      std::pair{joint_address(model, mjJNT_SLIDE, 0), pose.x},
+      std::pair{joint_address(model, mjJNT_SLIDE, 1), pose.y},
+      std::pair{joint_address(model, mjJNT_HINGE, 2), pose.heading}};
+  for (const auto& [address, value] : values) {
+    if (address >= 0) {
+      qpos[address] = value;
+    }
+  }
+}
+
+}  // namespace
+
+struct Vehicle::Simulator {
+  ModelPointer model;
+  DataPointer data;
+  DataPointer ghost_data;
+  mjvOption option{};
+  mjvCamera camera{};
+  mjvScene scene{};
+  mjrContext context{};
+  mjrRect viewport{};
+  double length = 0.0;
+  std::vector<unsigned char> bottom_up;  // the picture as OpenGL has it, rows from the bottom
+
+  Simulator(const std::string& path, int width, int height)
+      : model(load_model(path)), viewport{0, 0, width, height} {
+    prepare_model(*model, width, height);
+    data.reset(mj_makeData(model.get()));
+    ghost_data.reset(mj_makeData(model.get()));
+    if (!data || !ghost_data) {
+      throw std::runtime_error("vehicle \"" + path + "\": MuJoCo cannot allocate its data");
+    }
+    mjv_defaultOption(&option);
+    mjv_defaultCamera(&camera);
+    mjv_defaultScene(&scene);
+    mjr_defaultContext(&context);
+    update_positions();
+    measure_length();
+    try {
+      make_drawing_resources(path);
+    } catch (...) {
+      free_drawing_resources();
+      throw;
+    }
+  }
+
+  ~Simulator() { free_drawing_resources(); }
+  Simulator(const Simulator&) = delete;
+  Simulator& operator=(const Simulator&) = delete;
+
+  void make_drawing_resources(const std::string& path) {
+    mjv_makeScene(model.get(), &scene, model->ngeom + kSpareGeoms);
+    for (const int flag : {mjRND_SHADOW, mjRND_REFLECTION, mjRND_SKYBOX, mjRND_FOG, mjRND_HAZE}) {
+      scene.flags[flag] = 0;
+    }
+    mjr_makeContext(model.get(), &context, mjFONTSCALE_50);
+    mjr_setBuffer(mjFB_OFFSCREEN, &context);
+    if (context.currentBuffer != mjFB_OFFSCREEN || context.offWidth < viewport.width ||
+        context.offHeight < viewport.height) {
+      throw std::runtime_error("vehicle \"" + path + "\": no off-screen buffer of " +
+                               std::to_string(viewport.width) + "x" +
+                               std::to_string(viewport.height) + " pixels");
+    }
+  }
+
+  void free_drawing_resources() {
+    mjr_freeContext(&context);
+    mjv_freeScene(&scene);
+  }
+
+  // What drawing needs of a forward pass, without contacts and dynamics.
+  void update_positions() {
+    mj_kinematics(model.get(), data.get());
+    mj_comPos(model.get(), data.get());
+    mj_camlight(model.get(), data.get());
+    mj_tendon(model.get(), data.get());
+  }
+
+  void measure_length() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    std::array<double, 2> lower{kInfinity, kInfinity};
+    std::array<double, 2> upper{-kInfinity, -kInfinity};
+    for (int geom = 0; geom < model->ngeom; ++geom) {
+      if (!is_visible(*model, geom)) {
+        continue;
+      }
+      for (const SpacePoint& corner : box_corners(*model, *data, geom)) {
+        for (std::size_t i = 0; i < 2; ++i) {
+          lower[i] = std::min(lower[i], corner[i]);
+          upper[i] = std::max(upper[i], corner[i]);
+        }
+      }
+    }
+    length = std::max({upper[0] - lower[0], upper[1] - lower[1], 0.0});
+  }
+};
+
+Vehicle::Vehicle(const std::string& mjcf_path, int width, int height) {
+  install_mujoco_guard();
+  simulator_ = std::make_unique<Simulator>(mjcf_path, width, height);
+}
+
+Vehicle::~Vehicle() = default;
+
+void Vehicle::place(const Frame& frame) {
+  const mjModel& model = *simulator_->model;
+  std::vector<double> qpos = frame.qpos;
+  if (qpos.empty()) {
+    qpos.assign(model.qpos0, model.qpos0 + model.nq);
+    set_pose(model, frame.pose, qpos.data());
+  }
+  if (qpos.size() != static_cast<std::size_t>(model.nq)) {
+    throw std::invalid_argument("frame: qpos has " + std::to_string(qpos.size()) +
+                                " values, the vehicle has " + std::to_string(model.nq));
+  }
+  for (const double value : qpos) {
+    if (!std::isfinite(value)) {
+      throw std::invalid_argument("frame: the vehicle's position is not finite");
+    }
+  }
+  std::copy(qpos.begin(), qpos.end(), simulator_->data->qpos);
+  simulator_->update_positions();
+}
+
+void Vehicle::draw(const View& view) {
+  Simulator& s = *simulator_;
+  mjr_setBuffer(mjFB_OFFSCREEN, &s.context);  // another vehicle may have drawn to its own
+  mjv_updateScene(s.model.get(), s.data.get(), &s.option, nullptr, &s.camera, mjCAT_ALL, &s.scene);
+  // Our own lens instead of MuJoCo's, whose picture cannot be shifted aside of the head-up display.
+  for (mjvGLCamera& eye : s.scene.camera) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      eye.pos[i] = static_cast<float>(view.position[i]);
+      eye.forward[i] = static_cast<float>(view.forward[i]);
+      eye.up[i] = static_cast<float>(view.up[i]);
+    }
+    eye.frustum_center = static_cast<float>(view.centre);
+    eye.frustum_top = static_cast<float>(view.half_height);
+    eye.frustum_bottom = static_cast<float>(-view.half_height);
+    eye.frustum_near = static_cast<float>(view.near_plane);
+    eye.frustum_far = static_cast<float>(view.far_plane);
+  }
+  mjr_render(s.viewport, &s.scene, &s.context);
+}
+
+void Vehicle::read_picture(Image& out) {
+  Simulator& s = *simulator_;
+  const auto row = 3 * static_cast<std::size_t>(s.viewport.width);
+  const auto rows = static_cast<std::size_t>(s.viewport.height);
+  s.bottom_up.resize(row * rows);
+  out.width = s.viewport.width;
+  out.height = s.viewport.height;
+  out.rgb.resize(row * rows);
+  mjr_readPixels(s.bottom_up.data(), nullptr, s.viewport, &s.context);
+  for (std::size_t y = 0; y < rows; ++y) {
+    std::copy_n(s.bottom_up.data() + (rows - 1 - y) * row, row, out.rgb.data() + y * row);
+  }
+}
+
+std::vector<std::vector<PlanarPoint>> Vehicle::shadows() const {
+  const mjModel& model = *simulator_->model;
+  std::vector<std::vector<PlanarPoint>> outlines;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (is_visible(model, geom) && model.geom_bodyid[geom] != 0) {
+      outlines.push_back(cast_shadow(box_corners(model, *simulator_->data, geom)));
+    }
+  }
+  return outlines;
+}
+
+std::vector<ColouredPoint> Vehicle::ghost(const PlanarPose& pose, const Colour& colour) {
+  if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.heading)) {
+    throw std::invalid_argument("frame: the ghost's pose is not finite");
+  }
+  const mjModel& model = *simulator_->model;
+  mjData& data = *simulator_->ghost_data;
+  std::copy_n(simulator_->data->qpos, model.nq, data.qpos);
+  set_pose(model, pose, data.qpos);
+  mj_kinematics(&model, &data);
+  std::vector<ColouredPoint> corners;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (is_visible(model, geom) && model.geom_bodyid[geom] != 0) {
+      append_solid(solid_shape(model, geom), solid_place(model, data, geom), colour, corners);
+    }
+  }
+  return corners;
+}
+
+double Vehicle::length() const { return simulator_->length; }
+
+}  // namespace qsmpc

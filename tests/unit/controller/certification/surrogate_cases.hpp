@@ -1,0 +1,184 @@
+// Plans of every system with all that their motions refer to, and pairs of simulated states and
+// surrogates, for tests of the Gaussian surrogate.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "controller/certification/affine_surrogate.hpp"
+#include "tests/unit/controller/measure/random_measures.hpp"
+#include "tests/unit/controller/planning/planner_fixture.hpp"
+
+namespace qsmpc::testing {
+
+constexpr int kSamples = 10000;
+
+/// A prescribed plan with all that its motion refers to.
+struct Case {
+  std::string name;
+  std::shared_ptr<const Dynamics> dynamics;
+  Gaussian belief;
+  PlannerSettings settings;
+  std::shared_ptr<Planner> planner;
+  Plan plan;
+
+  [[nodiscard]] PredictedMotion motion() const { return motion_of(*planner, belief, plan); }
+};
+
+/// How a case's inputs are fed back: not at all, by LQR, or by this gain.
+struct Feedback {
+  bool closed_loop = false;
+  std::optional<Eigen::MatrixXd> gain = std::nullopt;
+};
+
+inline Case make_case(const std::string& name, std::shared_ptr<const Dynamics> dynamics,
+                      const Gaussian& belief, const Eigen::MatrixXd& noise,
+                      const Eigen::VectorXd& input, const Feedback& feedback, int horizon = 8) {
+  const int dim = dynamics->state_dim();
+  PlannerSettings settings;
+  settings.horizon = horizon;
+  settings.closed_loop = feedback.closed_loop;
+  settings.feedback_gain = feedback.gain;
+  settings.state_points = 8;  // the surrogates do not depend on the particles
+  settings.noise_points = 4;
+  settings.compressed_points = 8;
+  settings.noise_covariance = noise;
+  settings.cost = {.state = Eigen::MatrixXd::Identity(dim, dim),
+                   .input = 0.1 * Eigen::MatrixXd::Identity(input.size(), input.size()),
+                   .terminal = Eigen::MatrixXd::Identity(dim, dim),
+                   .target = Eigen::VectorXd::Zero(dim)};
+  settings.safe_set = unbounded_safe_set(dim);
+  settings.bounds = {.lower = dynamics->description().input_lower,
+                     .upper = dynamics->description().input_upper};
+  Case result{.name = name,
+              .dynamics = dynamics,
+              .belief = belief,
+              .settings = settings,
+              .planner = std::make_shared<Planner>(*dynamics, settings),
+              .plan = {}};
+  result.plan = result.planner->prescribe(belief, input.replicate(1, horizon));
+  return result;
+}
+
+inline Gaussian around(const Eigen::VectorXd& mean, const Eigen::VectorXd& deviation) {
+  return {.mean = mean, .covariance = deviation.cwiseAbs2().asDiagonal()};
+}
+
+inline Case dubins(const Feedback& feedback, double input = 0.3, double width = 0.1) {
+  return make_case("dubins", dubins_car(),
+                   around(Eigen::Vector3d::Zero(), Eigen::Vector3d::Constant(width)),
+                   Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal(),
+                   Eigen::VectorXd::Constant(1, input), feedback);
+}
+
+/// Everything correlated with everything.
+inline Case skewed_dubins(const Feedback& feedback, Generator& generator) {
+  return make_case(
+      "skewed dubins", dubins_car(),
+      {.mean = Eigen::Vector3d(1.0, 2.0, 0.7), .covariance = random_spd(generator, 3, 0.02)},
+      random_spd(generator, 3, 0.01), Eigen::VectorXd::Constant(1, 0.4), feedback);
+}
+
+inline Case double_integrator(const Feedback& feedback, double input = 0.5, double width = 0.1) {
+  return make_case("double integrator", make_dynamics("double_integrator", {}, 0.1),
+                   around(Eigen::Vector2d(1.0, 0.2), Eigen::Vector2d(width, width)),
+                   Eigen::Vector2d(1e-4, 1e-3).asDiagonal(), Eigen::VectorXd::Constant(1, input),
+                   feedback);
+}
+
+inline Case bicycle(const Feedback& feedback, double speed = 10.0, double width = 1.0) {
+  Eigen::VectorXd mean = Eigen::VectorXd::Zero(6);
+  mean[3] = speed;
+  Eigen::VectorXd deviation(6);
+  deviation << 0.1, 0.1, 0.03, 0.2, 0.1, 0.05;
+  Eigen::VectorXd noise(6);
+  noise << 0.03, 0.03, 0.01, 0.05, 0.03, 0.02;
+  return make_case("bicycle", make_dynamics("bicycle", {}, 0.1), around(mean, width * deviation),
+                   noise.cwiseAbs2().asDiagonal(), Eigen::Vector2d(0.2, 0.03), feedback);
+}
+
+inline Case cart_pole(const Feedback& feedback, double width = 1.0) {
+  Eigen::Vector4d deviation(0.05, 0.05, 0.02, 0.05);
+  return make_case("cart-pole", make_dynamics("cart_pole", {}, 0.05),
+                   around(Eigen::Vector4d(0.0, 0.1, 0.05, 0.0), width * deviation),
+                   (0.02 * Eigen::Vector4d::Ones()).cwiseAbs2().asDiagonal(),
+                   Eigen::VectorXd::Constant(1, 1.0), feedback);
+}
+
+/// Paths of the state and of its surrogate under the same draws; stages 0 … horizon.
+struct Pairs {
+  std::vector<Points> state;
+  std::vector<Points> surrogate;
+  std::vector<Points> noise;  ///< of the step that leads to the stage; at 0 what the belief drew
+};
+
+inline Pairs simulate_pairs(const PredictedMotion& motion,
+                            const std::vector<SurrogateStage>& stages, Generator& generator) {
+  NormalSampler belief(motion.belief.covariance);
+  NormalSampler noise(motion.noise_covariance);
+  const Eigen::Index dim = motion.belief.mean.size();
+  const auto draws = [&](NormalSampler& sampler) {
+    Points result(dim, kSamples);
+    for (int i = 0; i < kSamples; ++i) result.col(i) = sampler(generator);
+    return result;
+  };
+  Pairs pairs;
+  pairs.noise.push_back(draws(belief));
+  pairs.state.push_back(pairs.noise[0].colwise() + motion.belief.mean);
+  pairs.surrogate.push_back(pairs.state[0]);
+  for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
+    pairs.noise.push_back(draws(noise));
+    Points inputs(motion.policy.inputs.rows(), kSamples);
+    Points next(dim, kSamples);
+    policy_inputs(motion.policy, k, pairs.state[k], inputs);
+    motion.dynamics.step(pairs.state[k], inputs, next);
+    pairs.state.push_back(next + pairs.noise.back());
+    const Points offset = pairs.surrogate[k].colwise() - stages[k].law.mean;
+    pairs.surrogate.push_back(((stages[k].transition * offset).colwise() + stages[k + 1].law.mean) +
+                              pairs.noise.back());
+  }
+  return pairs;
+}
+
+inline Eigen::VectorXd root_mean_squares(const Points& values) {
+  return (values.rowwise().squaredNorm() / static_cast<double>(values.cols())).cwiseSqrt();
+}
+
+inline Eigen::MatrixXd sample_covariance(const Points& first, const Points& second) {
+  const Points a = first.colwise() - first.rowwise().mean();
+  const Points b = second.colwise() - second.rowwise().mean();
+  return a * b.transpose() / static_cast<double>(a.cols());
+}
+
+/// All systems, open loop, regulated, and with gains that nobody would choose; some of them
+/// saturated more often than not.
+inline std::vector<Case> all_cases(Generator& generator) {
+  const Feedback lqr{.closed_loop = true};
+  const auto gain = [](const Eigen::MatrixXd& matrix) {
+    return Feedback{.closed_loop = true, .gain = matrix};
+  };
+  return {dubins({}),
+          skewed_dubins({}, generator),
+          dubins(lqr),
+          skewed_dubins(lqr, generator),
+          dubins(gain(Eigen::RowVector3d(4.0, -6.0, -8.0)), 1.5, 0.3),
+          double_integrator({}),
+          double_integrator(lqr),
+          double_integrator(lqr, 1.9, 0.5),
+          double_integrator(gain(random_matrix(generator, 1, 2, 10.0))),
+          bicycle({}),
+          bicycle(lqr),
+          bicycle(gain(random_matrix(generator, 2, 6, 0.05))),
+          cart_pole({}),
+          cart_pole(lqr),
+          cart_pole(gain(Eigen::RowVector4d(3.0, 4.0, 40.0, 8.0)))};
+}
+
+}  // namespace qsmpc::testing

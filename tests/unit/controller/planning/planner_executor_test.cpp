@@ -1,0 +1,53 @@
+// No plan depends on how its loops are run.
+
+#include <cstddef>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/executors.hpp"
+#include "tests/unit/controller/planning/planner_fixture.hpp"
+
+namespace qsmpc::testing {
+namespace {
+
+void expect_same_plan(const Plan& one, const Plan& other) {
+  EXPECT_EQ(one.policy.inputs, other.policy.inputs);
+  EXPECT_EQ(one.policy.gains, other.policy.gains);
+  EXPECT_EQ(one.gain_change, other.gain_change);
+  EXPECT_EQ(one.cost.total(), other.cost.total());
+  EXPECT_EQ(one.evaluations, other.evaluations);
+  for (std::size_t k = 0; k < one.prediction.stages.size(); ++k) {
+    EXPECT_EQ(one.prediction.stages[k].locations, other.prediction.stages[k].locations) << k;
+    EXPECT_EQ(one.prediction.stages[k].weights, other.prediction.stages[k].weights) << k;
+  }
+}
+
+TEST(PlannerExecutor, plans_are_equal_bit_for_bit_however_tasks_are_run) {
+  const auto car = dubins_car();
+  for (const bool optimise_gain : {false, true}) {
+    PlannerSettings settings = dubins_settings();
+    settings.state_points = 3000;
+    settings.compressed_points = 3000;
+    settings.horizon = 3;
+    settings.max_evaluations = 15;
+    settings.optimise_gain = optimise_gain;
+    settings.safe_set.obstacles.push_back(
+        {.lower = Eigen::Vector3d(0.2, 0.1, -1e9), .upper = Eigen::Vector3d(0.4, 0.5, 1e9)});
+    Planner in_turn(*car, settings);
+    settings.run = run_backwards;
+    Planner backwards(*car, settings);
+    settings.run = run_on_threads;
+    Planner on_threads(*car, settings);
+    Gaussian belief = dubins_belief();
+    for (int step = 0; step < 2; ++step) {
+      const Plan& expected = in_turn.plan(belief);
+      ASSERT_GT(expected.prediction.stages[1].size(), 2048);  // several tasks
+      expect_same_plan(backwards.plan(belief), expected);
+      expect_same_plan(on_threads.plan(belief), expected);
+      belief.mean = expected.policy.states.col(1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace qsmpc::testing

@@ -1,0 +1,123 @@
+#include "harness/figures/svg_chart.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/report/page_checks.hpp"
+
+namespace qsmpc {
+namespace {
+
+using testing::contains;
+using testing::occurrences;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(Axis, ticks_are_at_round_numbers_and_span_the_values) {
+  const Axis axis = rounded_axis({0.13, 9.2}, 5);
+  EXPECT_DOUBLE_EQ(axis.lower, 0.0);
+  EXPECT_DOUBLE_EQ(axis.upper, 10.0);
+  const auto ticks = ticks_of(axis, 5);
+  ASSERT_EQ(ticks.size(), 6U);
+  EXPECT_EQ(ticks.front().label, "0");
+  EXPECT_EQ(ticks[1].label, "2");
+  EXPECT_EQ(ticks.back().label, "10");
+}
+
+TEST(Axis, equal_values_still_have_an_axis_about_them) {
+  for (const double value : {0.0, -3.0, 1e17, 1e-30}) {
+    const Axis axis = rounded_axis({value, value}, 5);
+    EXPECT_LT(axis.lower, axis.upper) << value;
+    const double position = position_on(axis, value);
+    EXPECT_GE(position, 0.0) << value;
+    EXPECT_LE(position, 1.0) << value;
+    EXPECT_LT(ticks_of(axis, 5).size(), 20U) << value;
+  }
+}
+
+TEST(Axis, values_that_are_not_finite_do_not_count) {
+  const Axis axis = tight_axis({kNan, 1.0, kInfinity, 2.0, -kInfinity, 1e300});
+  EXPECT_DOUBLE_EQ(axis.lower, 1.0);
+  EXPECT_DOUBLE_EQ(axis.upper, 2.0);
+}
+
+TEST(Axis, a_logarithmic_axis_has_whole_decades_and_a_foot) {
+  const Axis axis = log_axis({0.0, 3e-5, 0.2, 1e-40}, 1e-12);
+  EXPECT_NEAR(std::log10(axis.lower), -12.0, 1e-9);  // rounding of pow and log10
+  EXPECT_NEAR(std::log10(axis.upper), 0.0, 1e-9);
+  EXPECT_DOUBLE_EQ(position_on(axis, 0.0), 0.0);
+  EXPECT_NEAR(position_on(axis, 1e-6), 0.5, 1e-9);
+}
+
+TEST(Axis, a_logarithmic_axis_without_positive_values_exists) {
+  const Axis axis = log_axis({0.0, -1.0, kNan}, 1e-3);
+  EXPECT_GT(axis.lower, 0.0);
+  EXPECT_LT(axis.lower, axis.upper);
+}
+
+Chart example_chart() {
+  return {.title = "Clearance",
+          .x_label = "time (s)",
+          .y_label = "clearance (m)",
+          .series = {{.name = "true state", .x = {0, 1, 2, 3}, .y = {1, 3, 2, 4}}},
+          .rules = {{"limit", 0.5}}};
+}
+
+TEST(ChartFigure, has_title_labels_and_legend) {
+  const std::string html = chart_figure(example_chart());
+  for (const char* text : {"Clearance", "time (s)", "clearance (m)", "true state", "limit"}) {
+    EXPECT_TRUE(contains(html, text));
+  }
+}
+
+TEST(ChartFigure, a_gap_interrupts_the_line_and_is_said) {
+  Chart chart = example_chart();
+  chart.series[0].y[1] = kNan;
+  const std::string html = chart_figure(chart);
+  EXPECT_FALSE(contains(html, "nan"));
+  EXPECT_TRUE(contains(html, "1 value is not finite and not drawn"));
+  // The first point stands alone, as a dot; the last two are a line.
+  EXPECT_EQ(occurrences(html, "<path class=\"points c0\" d=\"M78.0 "), 1);
+  const std::size_t line = html.rfind("<path class=\"line c0\" d=\"M");
+  const std::string data = html.substr(line, html.find('>', line) - line);
+  EXPECT_EQ(occurrences(data, "M"), 1);
+  EXPECT_EQ(occurrences(data, "L"), 1);
+}
+
+TEST(ChartFigure, without_any_finite_value_it_says_so) {
+  Chart chart = example_chart();
+  chart.series[0].y = {kNan, kInfinity, -kInfinity, kNan};
+  const std::string html = chart_figure(chart);
+  EXPECT_TRUE(contains(html, "No finite values to draw"));
+  EXPECT_TRUE(contains(html, "4 values are not finite"));
+  EXPECT_FALSE(contains(html, "viewBox=\"0 0 480"));
+}
+
+TEST(ChartFigure, texts_are_escaped) {
+  Chart chart = example_chart();
+  chart.title = chart.x_label = chart.y_label = chart.note = "<b>";
+  chart.series[0].name = chart.rules[0].name = "<i>";
+  const std::string html = chart_figure(chart);
+  EXPECT_FALSE(contains(html, "<b>"));
+  EXPECT_FALSE(contains(html, "<i>"));
+}
+
+TEST(ChartFigure, a_long_line_is_thinned_but_keeps_its_extremes) {
+  Chart chart = example_chart();
+  Series& series = chart.series[0];
+  series.x.clear();
+  series.y.clear();
+  for (int i = 0; i < 200000; ++i) {
+    series.x.push_back(i);
+    series.y.push_back(i == 77777 ? 1000.0 : 0.5);
+  }
+  const std::string html = chart_figure(chart);
+  EXPECT_LT(html.size(), 100000U);
+  EXPECT_TRUE(contains(html, " 10.0"));  // the peak reaches the top of the frame
+}
+
+}  // namespace
+}  // namespace qsmpc

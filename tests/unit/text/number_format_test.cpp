@@ -1,0 +1,62 @@
+#include "harness/text/number_format.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+namespace qsmpc {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+TEST(FormatNumber, ordinary_numbers_are_plain_decimals) {
+  EXPECT_EQ(format_number(0.0), "0");
+  EXPECT_EQ(format_number(12.345), "12.3");
+  EXPECT_EQ(format_number(-0.0456), "−0.0456");
+  EXPECT_EQ(format_number(9.999), "10.0");
+  EXPECT_EQ(format_number(123456.0), "123456");
+}
+
+TEST(FormatNumber, others_have_a_power_of_ten) {
+  EXPECT_EQ(format_number(1.234e-5), "1.23 × 10⁻⁵");
+  EXPECT_EQ(format_number(-4.0e12, 2), "−4.0 × 10¹²");
+}
+
+TEST(FormatNumber, what_is_not_finite_is_said) {
+  EXPECT_EQ(format_number(kInfinity), "∞");
+  EXPECT_EQ(format_number(-kInfinity), "−∞");
+  EXPECT_EQ(format_number(std::numeric_limits<double>::quiet_NaN()), "not a number");
+}
+
+TEST(FormatShort, zeros_at_the_end_of_the_decimals_are_left_out) {
+  EXPECT_EQ(format_short(10.9, 4), "10.9");
+  EXPECT_EQ(format_short(100.0, 4), "100");
+  EXPECT_EQ(format_short(0.1 + 0.2), "0.3");
+  EXPECT_EQ(format_short(2.0e-7), "2 × 10⁻⁷");
+  EXPECT_EQ(format_short(-0.25), "−0.25");
+}
+
+TEST(FormatBound, is_rounded_up) {
+  EXPECT_EQ(format_bound(0.012301), "0.0124");
+  EXPECT_EQ(format_bound(1.2301e-9), "1.24 × 10⁻⁹");
+  EXPECT_EQ(format_bound(0.9991), "1");
+}
+
+TEST(FormatBound, a_short_decimal_is_kept) {
+  EXPECT_EQ(format_bound(0.25), "0.25");
+  EXPECT_EQ(format_bound(0.0), "0");
+  EXPECT_EQ(format_bound(1.0), "1");
+}
+
+TEST(FormatBound, the_smallest_numbers_do_not_break_it) {
+  EXPECT_FALSE(format_bound(std::numeric_limits<double>::denorm_min()).empty());
+  EXPECT_EQ(format_bound(kInfinity), "∞");
+}
+
+TEST(FormatFixed, zero_has_no_sign) {
+  EXPECT_EQ(format_fixed(-0.001, 1), "0.0");
+  EXPECT_EQ(format_fixed(-2.5, 1), "−2.5");
+}
+
+}  // namespace
+}  // namespace qsmpc
