@@ -19,7 +19,7 @@ constexpr double kDescent = 2.0;  // of letters below their line
 constexpr double kNear = 9.0;     // of a text to its point
 constexpr double kBold = 1.2;     // how much wider bold letters are
 
-struct Box {
+struct TextBox {
   double left = 0.0;
   double right = 0.0;
   double top = 0.0;
@@ -27,18 +27,18 @@ struct Box {
 };
 
 /// Area that two boxes share.
-double overlap(const Box& a, const Box& b) {
+double overlap(const TextBox& a, const TextBox& b) {
   const double across = std::min(a.right, b.right) - std::max(a.left, b.left);
   const double down = std::min(a.bottom, b.bottom) - std::max(a.top, b.top);
   return across > 0.0 && down > 0.0 ? across * down : 0.0;
 }
 
 struct Place {
-  Box box;
+  TextBox box;
   double away = 0.0;  ///< how much farther from its point than need be
 };
 
-Box box_at(double left, double top, double width) {
+TextBox box_at(double left, double top, double width) {
   return {.left = left, .right = left + width, .top = top, .bottom = top + kTextSize};
 }
 
@@ -52,10 +52,11 @@ std::vector<Place> places_beside(const MapPoint& at, double width) {
     const double left = at.x - away - width;
     const double middle = at.x - width / 2.0;
     const double level = at.y - kTextSize / 2.0;
-    for (const Box& box : {box_at(right, below, width), box_at(right, above, width),
-                           box_at(left, below, width), box_at(left, above, width),
-                           box_at(middle, below + 3.0, width), box_at(middle, above - 3.0, width),
-                           box_at(right, level, width), box_at(left, level, width)}) {
+    for (const TextBox& box :
+         {box_at(right, below, width), box_at(right, above, width), box_at(left, below, width),
+          box_at(left, above, width), box_at(middle, below + 3.0, width),
+          box_at(middle, above - 3.0, width), box_at(right, level, width),
+          box_at(left, level, width)}) {
       places.push_back({.box = box, .away = away - kNear});
     }
   }
@@ -81,14 +82,14 @@ std::vector<Place> places_outside(const MapCanvas& canvas, const PlacedText& tex
 }
 
 /// How bad a place is, in units of area.
-double cost_of(const Place& place, const Box& map, const std::vector<Box>& taken,
+double cost_of(const Place& place, const TextBox& map, const std::vector<TextBox>& taken,
                const std::vector<MapPoint>& ink) {
   constexpr double kAreaOfInk = 8.0;   // what a covered point counts for
   constexpr double kAreaOfAway = 1.0;  // what a unit of distance counts for
   constexpr double kOutside = 10.0;    // how much worse a text is that is cut off or on another one
-  const Box& box = place.box;
+  const TextBox& box = place.box;
   double hidden = (box.right - box.left) * (box.bottom - box.top) - overlap(box, map);
-  for (const Box& other : taken) hidden += overlap(box, other);
+  for (const TextBox& other : taken) hidden += overlap(box, other);
   const auto covered = std::count_if(ink.begin(), ink.end(), [&](const MapPoint& point) {
     return point.x > box.left && point.x < box.right && point.y > box.top && point.y < box.bottom;
   });
@@ -99,11 +100,11 @@ double cost_of(const Place& place, const Box& map, const std::vector<Box>& taken
 
 std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& texts,
                       const std::vector<MapPoint>& ink) {
-  const Box map{.right = canvas.inner_size().width, .bottom = canvas.inner_size().height};
+  const TextBox map{.right = canvas.inner_size().width, .bottom = canvas.inner_size().height};
   std::vector<MapPoint> covered;
   covered.reserve(ink.size());
   for (const MapPoint& point : ink) covered.push_back(canvas.place(point));
-  std::vector<Box> taken;
+  std::vector<TextBox> taken;
   std::string grounds;
   std::string svg;
   for (const PlacedText& text : texts) {

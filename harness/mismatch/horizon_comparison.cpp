@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "controller/measure/wasserstein.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 /// The first `most` columns of `points` that are finite, each of the same weight.
 DiscreteMeasure empirical_measure(const Points& points, std::int64_t most) {

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <limits>
 #include <memory>
+
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Points> unknown_points(Eigen::Index stages, Eigen::Index dim, Eigen::Index count) {
   return std::vector<Points>(static_cast<std::size_t>(stages),

@@ -6,10 +6,10 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "models/constants.hpp"
+
 namespace qsmpc {
 namespace {
-
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 // x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit each; with a margin.
 constexpr double kRoundings = 4.0;
 

@@ -19,13 +19,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostParticles = 400'000;  // of a page: some 3 MB as text
 constexpr std::uint16_t kNowhere = 65'535;       // outside of the map, or not finite
 constexpr double kLastPlace = 65'534.0;
 
 double entry(const Eigen::VectorXd& values, Eigen::Index index) {
-  return index >= 0 && index < values.size() ? values[index] : kMissing;
+  return index >= 0 && index < values.size() ? values[index] : kNotANumber;
 }
 
 class EpisodeData {
@@ -85,7 +84,7 @@ class EpisodeData {
     const SafeSet& safe_set = trace_.scenario.safe_set;
     std::vector<double> values;
     for (const Eigen::VectorXd& state : states()) {
-      values.push_back(state.size() == safe_set.dim() ? clearance(state, safe_set) : kMissing);
+      values.push_back(state.size() == safe_set.dim() ? clearance(state, safe_set) : kNotANumber);
     }
     return packed_floats(values);
   }
@@ -119,7 +118,7 @@ class EpisodeData {
     for (const StepRecord& step : trace_.steps) {
       for (std::size_t stage = 0; stage + 1 < stages(); ++stage) {
         const bool known = stage < step.certificates.size();
-        values.push_back(known ? step.certificates[stage].*member : kMissing);
+        values.push_back(known ? step.certificates[stage].*member : kNotANumber);
       }
     }
     return packed_floats(values);
@@ -129,7 +128,7 @@ class EpisodeData {
     return {{"value", of_stages(&StageCertificate::value)},
             {"thesis", of_stages(&StageCertificate::thesis)},
             {"plan", of_steps([](const StepRecord& step) {
-               return step.certificates.empty() ? kMissing : horizon_bound(step.certificates);
+               return step.certificates.empty() ? kNotANumber : horizon_bound(step.certificates);
              })}};
   }
 
@@ -137,7 +136,7 @@ class EpisodeData {
     std::vector<double> values;
     for (const StepRecord& step : trace_.steps) {
       for (std::size_t stage = 0; stage < stages(); ++stage) {
-        values.push_back(stage < step.budgets.size() ? step.budgets[stage].*member : kMissing);
+        values.push_back(stage < step.budgets.size() ? step.budgets[stage].*member : kNotANumber);
       }
     }
     return packed_floats(values);
@@ -154,7 +153,7 @@ class EpisodeData {
   void add_pose(const Eigen::VectorXd& state, std::vector<double>& values) const {
     values.push_back(entry(state, system_.position_x));
     values.push_back(entry(state, system_.position_y));
-    values.push_back(system_.heading < 0 ? kMissing : entry(state, system_.heading));
+    values.push_back(system_.heading < 0 ? kNotANumber : entry(state, system_.heading));
   }
 
   [[nodiscard]] std::string poses() const {
@@ -192,7 +191,7 @@ class EpisodeData {
   [[nodiscard]] std::array<double, 5> planar_moments(const StageParticles& stage) const {
     const double weight = stage.weights.sum();
     if (stage.size() == 0 || !(weight > 0.0)) {
-      return {kMissing, kMissing, kMissing, kMissing, kMissing};
+      return {kNotANumber, kMissing, kMissing, kMissing, kMissing};
     }
     const Eigen::ArrayXd x = stage.locations.row(system_.position_x).transpose();
     const Eigen::ArrayXd y = stage.locations.row(system_.position_y).transpose();

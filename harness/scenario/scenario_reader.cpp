@@ -20,9 +20,7 @@
 namespace qsmpc {
 namespace {
 
-constexpr std::size_t kLongestName = 100;         // bytes; a title, and part of file names
 constexpr std::size_t kLongestDescription = 500;  // bytes; one line
-constexpr std::size_t kLongestPath = 1024;        // bytes
 constexpr std::size_t kMostObstacles = 1000;      // every particle is held against each of them
 constexpr double kShortestPeriod = 1e-4;          // s, a simulator's step at its finest
 constexpr double kLongestPeriod = 10.0;           // s
@@ -36,7 +34,6 @@ constexpr WholeRange kStepsRange{1, 1000000};
 constexpr WholeRange kFpsRange{1, 240};
 constexpr NumberRange kNotNegative{.least = 0.0};
 constexpr NumberRange kDeviationRange{.least = 0.0, .most = 0.5};  // of a logarithm
-constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
 constexpr NumberRange kDeadlineRange{.least = 0.0, .most = kLongestDeadline, .above_least = true};
 
 // The vehicle that drives, or is drawn for, a system unless the scenario names another. One that

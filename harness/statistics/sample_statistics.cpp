@@ -2,34 +2,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
+#include "models/constants.hpp"
+
 namespace qsmpc {
-namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
-
 double mean_of(const std::vector<double>& sample) {
-  if (sample.empty()) return kNone;
+  if (sample.empty()) return kNotANumber;
   return std::accumulate(sample.begin(), sample.end(), 0.0) / static_cast<double>(sample.size());
 }
 
 double median_of(std::vector<double> sample) {
-  if (sample.empty()) return kNone;
+  if (sample.empty()) return kNotANumber;
   std::ranges::sort(sample);
   const std::size_t middle = sample.size() / 2;
   return sample.size() % 2 == 1 ? sample[middle] : 0.5 * (sample[middle - 1] + sample[middle]);
 }
 
 double largest_of(const std::vector<double>& sample) {
-  return sample.empty() ? kNone : *std::ranges::max_element(sample);
+  return sample.empty() ? kNotANumber : *std::ranges::max_element(sample);
 }
 
 double standard_error_of(const std::vector<double>& sample) {
-  if (sample.size() < 2) return kNone;
+  if (sample.size() < 2) return kNotANumber;
   const double mean = mean_of(sample);
   double squares = 0.0;
   for (const double value : sample) squares += (value - mean) * (value - mean);

@@ -12,6 +12,7 @@
 #include "harness/statistics/binomial_interval.hpp"
 #include "harness/statistics/quantiles.hpp"
 #include "harness/trace/summary.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 
@@ -120,7 +121,6 @@ class VariantTally {
 
 template <class EachSorted>
 Spread SpreadTally::result(const EachSorted& each_sorted) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::int64_t ranked = worst_is_ == WorstIs::kNotCounted ? 0 : worst_;
   SortedQuantiles quantiles(mean_.count() + ranked, spread_shares());
   if (worst_is_ == WorstIs::kLowest && ranked > 0) quantiles.add(-kInfinity, ranked);

@@ -19,7 +19,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace gl_library_test {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -163,7 +163,7 @@ TEST(gl_library, unknown_names_are_refused_with_the_known_ones) {
   }
 }
 
-}  // namespace
+}  // namespace gl_library_test
 
 int child_main(const std::string& what, const std::string& first, const std::string& second) {
   try {

@@ -9,7 +9,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace canvas_test {
 
 constexpr Colour kWhite{1.0F, 1.0F, 1.0F};
 
@@ -100,5 +100,5 @@ TEST(colour, stages_get_brighter_along_the_horizon) {
   }
 }
 
-}  // namespace
+}  // namespace canvas_test
 }  // namespace qsmpc

@@ -7,7 +7,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace hud_test {
 
 Image black_image(int width, int height) {
   return {width, height, std::vector<unsigned char>(static_cast<std::size_t>(3 * width * height))};
@@ -102,5 +102,5 @@ TEST(legend, keeps_to_its_width_and_lines) {
   EXPECT_NEAR(narrow.height(), 2.0 * style.row_height(), 1e-9);
 }
 
-}  // namespace
+}  // namespace hud_test
 }  // namespace qsmpc

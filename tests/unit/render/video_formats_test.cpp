@@ -16,7 +16,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace video_formats_test {
 
 using testing::HasSubstr;
 
@@ -270,5 +270,5 @@ TEST(gif_palette, a_colour_that_is_missing_is_mixed_from_its_neighbours) {
   EXPECT_NEAR(sum / 256.0, 0.5, 0.2);
 }
 
-}  // namespace
+}  // namespace video_formats_test
 }  // namespace qsmpc

@@ -15,7 +15,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace video_writer_test {
 
 using testing::HasSubstr;
 
@@ -190,5 +190,5 @@ TEST(png_file, errors_name_the_path) {
   EXPECT_THROW(write_png(path, Image{}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace video_writer_test
 }  // namespace qsmpc

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
-namespace {
+#include "models/constants.hpp"
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace qsmpc {
+namespace number_format_test {
 
 TEST(FormatNumber, ordinary_numbers_are_plain_decimals) {
   EXPECT_EQ(format_number(0.0), "0");
@@ -58,5 +58,5 @@ TEST(FormatFixed, zero_has_no_sign) {
   EXPECT_EQ(format_fixed(-2.5, 1), "−2.5");
 }
 
-}  // namespace
+}  // namespace number_format_test
 }  // namespace qsmpc
