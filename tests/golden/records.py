@@ -8,6 +8,7 @@ magnitude of those that are finite. JSON holds every double exactly.
 import csv
 import hashlib
 import json
+import math
 import re
 import subprocess
 import zlib
@@ -20,8 +21,8 @@ SAMPLES = 64  # elements kept of an array
 BLOCKS = 16  # blocks of rows with a checksum of their own
 
 # Components of keys that are left out: the clock, the program's version, and prose.
-LEFT_OUT = {"comment", "deadline_misses", "description", "finished_at", "ocp_ms", "speed", "timing",
-            "version", "wall_ms"}
+LEFT_OUT = {"comment", "deadline_misses", "description", "finished_at", "ocp_ms", "times_real_time",
+            "timing", "version", "wall_ms"}
 
 
 def sample_positions(size):
@@ -117,9 +118,10 @@ def plain_number(text):
     except ValueError:
         pass
     try:
-        return float(text.replace(".inf", "inf"))
+        number = float(text.replace(".inf", "inf"))
     except ValueError:
         return text
+    return int(number) if number.is_integer() and abs(number) < 2**53 else number
 
 
 def add_scenario(records, key, text):
@@ -136,7 +138,7 @@ def add_scenario(records, key, text):
 def add_attributes(records, key, item):
     for name, value in item.attrs.items():
         if name == "scenario":
-            add_scenario(records, f"{key}@scenario.", text_of(value))
+            add_scenario(records, f"{key}@scenario/", text_of(value))
         elif isinstance(value, (numpy.ndarray, numpy.generic)):
             add(records, f"{key}@{name}", record_array(numpy.asarray(value)))
         else:
@@ -166,8 +168,10 @@ def add_csv(records, path):
         rows = list(csv.reader(file))
     for column, name in enumerate(rows[0]):
         cells = [plain_number(row[column]) for row in rows[1:]]
-        # A column of mixed numbers and texts, as where a value is missing, stays text.
-        if len({isinstance(cell, str) for cell in cells}) > 1:
+        # A missing number is NaN, so that the others stay numbers.
+        if not any(isinstance(cell, str) and cell for cell in cells) and any(cells):
+            cells = [math.nan if cell == "" else cell for cell in cells]
+        elif any(isinstance(cell, str) for cell in cells):
             cells = [row[column] for row in rows[1:]]
         add_tree(records, f"{path.name}/{name}", cells)
 
