@@ -7,9 +7,10 @@ import numpy
 
 import records
 
-# Within the tolerance, two numbers differ by at most RELATIVE times the largest magnitude of their
-# array (of the larger one, for single numbers) plus ABSOLUTE. Another variant of the C library's
-# functions moves inputs of a plan by up to 1 % of their range: the last bits decide when a search stops.
+# Within the tolerance, two floating-point numbers differ by at most RELATIVE times the largest magnitude
+# in their array (the larger of the two, for single numbers) plus ABSOLUTE; whole numbers and texts
+# do not differ. Another variant of the C library's functions moves inputs of a plan by up to 1 % of
+# their range: the last bits decide when a search stops.
 RELATIVE = 0.05
 ABSOLUTE = 1e-9
 # What may be different altogether then: how a search went, and which of two near bounds was less.
@@ -43,8 +44,8 @@ def same(a, b):
 
 
 def near(a, b, scale, absolute=ABSOLUTE):
-    if not (is_number(a) and is_number(b)):
-        return a == b
+    if not (is_number(a) and is_number(b)) or isinstance(a, int) and isinstance(b, int):
+        return a == b  # texts, and counts
     if math.isnan(a) or math.isnan(b):
         return math.isnan(a) and math.isnan(b)
     return a == b or abs(a - b) <= RELATIVE * scale + absolute
@@ -63,21 +64,24 @@ def shape_of(value):
         (0,) if isinstance(value, list) else ()
 
 
+def full_shape(entry):
+    return entry["shape"] if isinstance(entry, dict) else list(shape_of(entry))
+
+
 def where_differs(golden, now):
     """Of two large arrays of one shape: the rows of the blocks that differ."""
     bounds = records.block_bounds(golden["shape"][0])
     blocks = [(int(a), int(b)) for a, b, old, new
               in zip(bounds[:-1], bounds[1:], golden["blocks"], now["blocks"]) if old != new]
     if not blocks:
-        return "nowhere that the blocks' checksums tell"
+        return "stored values alone differ: the golden data were edited"
     return (f"in {len(blocks)} of {len(golden['blocks'])} blocks of rows, "
             f"first in rows {blocks[0][0]} to {blocks[0][1] - 1} of {golden['shape'][0]}")
 
 
 def first_values(golden, now, positions, shape):
     """The first of the elements that differ, up to three of them."""
-    pairs = [(p, a, b) for p, a, b in zip(positions, golden, now)
-             if not same(a, b)]
+    pairs = [(p, a, b) for p, a, b in zip(positions, golden, now) if not same(a, b)]
     lines = []
     for position, a, b in pairs[:3]:
         place = ", ".join(str(i) for i in numpy.unravel_index(int(position), shape)) if shape else ""
@@ -91,43 +95,40 @@ def first_values(golden, now, positions, shape):
 
 def difference(golden, now):
     """What differs between two entries, in words; None if they agree bit for bit."""
-    if isinstance(golden, dict) != isinstance(now, dict):
-        return f"golden {shown(golden)}, now {shown(now)}"
+    if full_shape(golden) != full_shape(now):
+        return f"shape {full_shape(golden)} became {full_shape(now)}"
     if not isinstance(golden, dict):
-        if shape_of(golden) != shape_of(now):
-            return (f"shape {list(shape_of(golden))} became {list(shape_of(now))}: "
-                    f"golden {shown(golden)}, now {shown(now)}")
         values = flat(golden)
         return first_values(values, flat(now), range(len(values)), shape_of(golden)) or None
-    for part in ("type", "shape"):
-        if golden[part] != now[part]:
-            return f"{part} {golden[part]} became {now[part]}"
-    if golden["sha256"] == now["sha256"] and golden["values"] == now["values"]:
-        return None  # the means are sums, whose order is NumPy's
+    if golden["type"] != now["type"]:
+        return f"type {golden['type']} became {now['type']}"
     positions = records.sample_positions(math.prod(golden["shape"]))
     values = first_values(golden["values"], now["values"], positions, golden["shape"])
+    if golden["sha256"] == now["sha256"] and not values:
+        return None
     return f"{where_differs(golden, now)}; {values or 'none of the stored values differs'}"
 
 
 def within_tolerance(key, golden, now):
     """Whether two entries that differ agree within the tolerance."""
-    if DISCRETE.search(key):
-        return True
-    if isinstance(golden, dict):
-        if not isinstance(now, dict) or any(golden[p] != now[p] for p in ("type", "shape")):
+    if isinstance(golden, dict) and isinstance(now, dict):
+        if any(golden[part] != now[part] for part in ("type", "shape")):
             return False
-        scale = scale_of(golden["values"])
+        if DISCRETE.search(key):
+            return True
         # The means of few huge elements follow these, which may not be among the stored ones.
         spread = golden.get("mean_magnitude") or 0.0
-        if any(not near(golden.get(p), now.get(p), spread) for p in ("mean", "mean_magnitude")):
+        if golden.get("nan") != now.get("nan") or any(
+                not near(golden.get(p), now.get(p), spread) for p in ("mean", "mean_magnitude")):
             return False
+        scale = scale_of(golden["values"])
         return bool(UNORDERED.search(key)) or all(
             near(a, b, scale) for a, b in zip(golden["values"], now["values"]))
-    if isinstance(now, dict) or shape_of(golden) != shape_of(now):
+    if full_shape(golden) != full_shape(now):
         return False
     a, b = flat(golden), flat(now)
     scale = scale_of(a + b)
-    return all(near(x, y, scale) for x, y in zip(a, b))
+    return bool(DISCRETE.search(key)) or all(near(x, y, scale) for x, y in zip(a, b))
 
 
 class Result:

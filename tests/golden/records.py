@@ -2,8 +2,8 @@
 
 An entry is a number, a text, null, a list of at most 64 numbers or texts (nested as the array is),
 or, for a larger array, a mapping of its type, its shape, the SHA-256 of its bytes, the CRC-32 of up
-to 16 blocks of its rows, up to 64 of its elements, and for floating-point numbers the mean and mean
-magnitude of those that are finite. JSON holds every double exactly.
+to 16 blocks of its rows, up to 64 of its elements, and for floating-point numbers how many are NaN,
+and the mean and mean magnitude of those that are finite. JSON holds every double exactly.
 """
 import csv
 import hashlib
@@ -65,6 +65,7 @@ def record_array(array):
     }
     if array.dtype.kind == "f":
         finite = array[numpy.isfinite(array)]
+        entry["nan"] = int(numpy.isnan(array).sum())
         entry["mean"] = float(finite.mean()) if finite.size else None
         entry["mean_magnitude"] = float(abs(finite).mean()) if finite.size else None
     return entry
