@@ -13,6 +13,7 @@
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/report/episode_page.hpp"
+#include "harness/text/printable.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "render/gl/gl_library.hpp"

@@ -1,10 +1,8 @@
-#include <charconv>
 #include <cstdint>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -24,6 +22,7 @@
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/files/text_file.hpp"
+#include "harness/text/number_parse.hpp"
 
 namespace qsmpc {
 namespace {
@@ -56,15 +55,13 @@ struct CampaignArguments {
 /// "I/N", 1 ≤ I ≤ N. Throws InputError on something else.
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = text.find('/');
-  const auto number = [](std::string_view digits, std::int64_t& value) {
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    return error == std::errc{} && end == digits.data() + digits.size();
-  };
-  Shard shard;
-  if (slash != std::string::npos && number(std::string_view(text).substr(0, slash), shard.index) &&
-      number(std::string_view(text).substr(slash + 1), shard.count) && shard.index >= 1 &&
-      shard.index <= shard.count && shard.count <= kMostShards) {
-    return shard;
+  if (slash != std::string::npos) {
+    const auto index = parse_integer<std::int64_t>(std::string_view(text).substr(0, slash));
+    const auto count = parse_integer<std::int64_t>(std::string_view(text).substr(slash + 1));
+    const bool both = index && count;
+    if (both && *index >= 1 && *index <= *count && *count <= kMostShards) {
+      return {.index = *index, .count = *count};
+    }
   }
   throw InputError({.key = "--shard",
                     .found = text,

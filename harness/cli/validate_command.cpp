@@ -14,6 +14,7 @@
 #include "harness/cli/output.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/text/json_text.hpp"
 
 namespace qsmpc {
 namespace {
@@ -81,8 +82,7 @@ int validate(const std::vector<std::string>& files, bool json) {
   }
   // One file is one object, as documented; several are an array of them.
   const auto& value = results.size() == 1 ? results.front() : results;
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  print_result(json ? value.dump(2, ' ', false, replace) + "\n" : text);
+  print_result(json ? json_text(value) : text);
   return all_valid ? kDone : kBadInput;
 }
 

@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

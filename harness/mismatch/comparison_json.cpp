@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "harness/episode/assembly.hpp"
+#include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
 namespace qsmpc {
@@ -135,8 +136,7 @@ std::string comparison_json(const Comparison& comparison) {
     json["plants"][plant.name] = plant_json(comparison, plant);
   }
   if (comparison.measured_error) json["model_error"] = error_json(comparison);
-  // Names come from files: what is no UTF-8 is replaced, not thrown about.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

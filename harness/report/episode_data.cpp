@@ -13,6 +13,7 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
+#include "harness/text/json_text.hpp"
 
 namespace qsmpc {
 namespace {
@@ -274,7 +275,7 @@ class EpisodeData {
 
 /// Nothing in it can end the element that it stands in.
 std::string for_script(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = compact_json_text(json);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {

@@ -10,6 +10,7 @@
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
+#include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 #include "harness/trace/residuals.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -185,8 +186,7 @@ std::string summary_json(const Trace& trace, const SummaryOptions& options) {
                         {"covariance", rows_json(summary.mismatch_covariance)}}}};
   json["video"] = nullptr;
   if (!options.video_file.empty()) json["video"] = options.video_file;
-  // Names come from files: what is no UTF-8 is replaced, not thrown about.
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

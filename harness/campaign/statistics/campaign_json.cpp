@@ -5,6 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/text/json_text.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -120,8 +122,7 @@ std::string campaign_json(const CampaignStatistics& statistics) {
   }
   json["exceedance_p_value"] = statistics.p_value;
   json["calibration"] = calibration_json(statistics.calibration, statistics.published);
-  // Names come from files: what is no UTF-8 is replaced, not thrown about.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc
