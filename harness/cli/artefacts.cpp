@@ -149,7 +149,7 @@ std::string summary_table(const Trace& trace, const std::string& folder, bool wi
 
 Trace read_folder(const std::string& folder) {
   const std::string path = in_folder(folder, kTraceFile);
-  const std::string partial = path + ".partial";
+  const std::string partial = partial_path_of(path);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(partial, ignored)) {
     return read_trace(partial);

@@ -8,7 +8,7 @@
 
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
-#include "harness/files/atomic_file.hpp"
+#include "harness/files/file_group.hpp"
 #include "harness/mismatch/comparison_json.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/coordinate_labels.hpp"
@@ -356,23 +356,14 @@ std::vector<DatasetSpec> comparison_layout(const Comparison& comparison) {
 
 void write_comparison(const Comparison& comparison, const std::vector<TextFile>& more,
                       const std::string& folder) {
-  std::vector<std::unique_ptr<PendingFile>> others;
-  for (const TextFile& file : more) {
-    others.push_back(std::make_unique<PendingFile>(file.path));
-    others.back()->write(file.text);
-  }
-  PendingFile data(folder + "/" + kComparisonFile);
-  PendingFile scenario(folder + "/" + kScenarioFile);
-  PendingFile numbers(folder + "/" + kComparisonNumbersFile);
+  FileGroup files;
+  const PendingFile& data = files.add(folder + "/" + kComparisonFile);
+  files.add(folder + "/" + kScenarioFile).write(comparison.scenario_text);
+  for (const TextFile& file : more) files.add(file.path).write(file.text);
+  files.add(folder + "/" + kComparisonNumbersFile).write(comparison_json(comparison));
   write_hdf5(comparison, data.partial_path());
-  scenario.write(comparison.scenario_text);
-  numbers.write(comparison_json(comparison));
-  // Killed from here on, there is no comparison.json of an older one beside a new comparison.h5.
-  remove_file(numbers.path());
-  data.commit();
-  scenario.commit();
-  for (const std::unique_ptr<PendingFile>& file : others) file->commit();
-  numbers.commit();
+  // There is never a comparison.json of an older comparison beside a new comparison.h5.
+  files.commit_sealed();
 }
 
 }  // namespace qsmpc
