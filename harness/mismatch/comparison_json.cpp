@@ -12,8 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json interval_json(const RateInterval& interval) { return {interval.lower, interval.upper}; }
-
 double rate_of(std::int64_t events, std::int64_t trials) {
   return static_cast<double>(events) / static_cast<double>(trials);
 }

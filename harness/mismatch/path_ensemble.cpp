@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <limits>
 #include <memory>
+
+#include "harness/statistics/not_a_number.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<Points> unknown_points(Eigen::Index stages, Eigen::Index dim, Eigen::Index count) {
   return std::vector<Points>(static_cast<std::size_t>(stages),
@@ -125,9 +125,7 @@ double simulation_speed(Plant& plant, const PathSource& source, double time_step
     const double wall = std::chrono::duration<double>(Clock::now() - start).count();
     speeds.push_back(static_cast<double>(done) * time_step / wall);
   }
-  const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
-  std::nth_element(speeds.begin(), middle, speeds.end());
-  return *middle;
+  return median_of(std::move(speeds));
 }
 
 }  // namespace qsmpc

@@ -6,10 +6,11 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
+#include "harness/statistics/not_a_number.hpp"
+
 namespace qsmpc {
 namespace {
 
-constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 // x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit each; with a margin.
 constexpr double kRoundings = 4.0;
 

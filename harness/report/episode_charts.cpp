@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,13 +11,13 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/figures/palette.hpp"
+#include "harness/statistics/not_a_number.hpp"
 #include "harness/trace/residuals.hpp"
 
 namespace qsmpc {
 namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();  // interrupts a line
 constexpr const char* kTimeLabel = "time (s)";
 
 std::vector<double> times_of(const Trace& trace) {
@@ -41,7 +40,7 @@ Chart input_chart(const Trace& trace, const SystemDescription& system, Eigen::In
   const Coordinate& coordinate = system.inputs[static_cast<std::size_t>(input)];
   const Scenario::Controller& controller = trace.scenario.controller;
   Series series = series_of(trace, "applied", kBlue, [input](const StepRecord& step) {
-    return input < step.input.size() ? step.input[input] : kMissing;
+    return input < step.input.size() ? step.input[input] : kNotANumber;
   });
   series.mark = Mark::kSteps;
   if (!series.x.empty()) {  // held to the end of the last period
@@ -74,13 +73,13 @@ Series unsafe_periods(const Trace& trace) {
 
 Chart certificate_chart(const Trace& trace) {
   const auto next_step = [](const StepRecord& step) {
-    return step.certificates.empty() ? kMissing : step.certificates.front().value;
+    return step.certificates.empty() ? kNotANumber : step.certificates.front().value;
   };
   const auto plan = [](const StepRecord& step) {
-    return step.certificates.empty() ? kMissing : horizon_bound(step.certificates);
+    return step.certificates.empty() ? kNotANumber : horizon_bound(step.certificates);
   };
   const auto thesis = [](const StepRecord& step) {
-    double largest = kMissing;
+    double largest = kNotANumber;
     for (const StageCertificate& stage : step.certificates) {
       largest = std::fmax(largest, stage.thesis);
     }
@@ -107,7 +106,7 @@ Chart certificate_chart(const Trace& trace) {
 Chart clearance_chart(const Trace& trace, const SystemDescription& system) {
   const SafeSet& safe_set = trace.scenario.safe_set;
   const auto of = [&safe_set](const Eigen::VectorXd& state) {
-    return state.size() == safe_set.dim() ? clearance(state, safe_set) : kMissing;
+    return state.size() == safe_set.dim() ? clearance(state, safe_set) : kNotANumber;
   };
   Series series = series_of(trace, "true state", kBlue,
                             [&of](const StepRecord& step) { return of(step.state); });
@@ -125,7 +124,7 @@ Chart clearance_chart(const Trace& trace, const SystemDescription& system) {
 Chart budget_chart(const Trace& trace) {
   const auto last = [](auto part) {
     return [part](const StepRecord& step) {
-      return step.budgets.empty() ? kMissing : step.budgets.back().*part;
+      return step.budgets.empty() ? kNotANumber : step.budgets.back().*part;
     };
   };
   Chart chart{

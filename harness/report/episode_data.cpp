@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -13,6 +12,7 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
+#include "harness/statistics/not_a_number.hpp"
 #include "harness/text/json_text.hpp"
 
 namespace qsmpc {
@@ -20,13 +20,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kMostParticles = 400'000;  // of a page: some 3 MB as text
 constexpr std::uint16_t kNowhere = 65'535;       // outside of the map, or not finite
 constexpr double kLastPlace = 65'534.0;
 
 double entry(const Eigen::VectorXd& values, Eigen::Index index) {
-  return index >= 0 && index < values.size() ? values[index] : kMissing;
+  return index >= 0 && index < values.size() ? values[index] : kNotANumber;
 }
 
 class EpisodeData {
@@ -86,7 +85,7 @@ class EpisodeData {
     const SafeSet& safe_set = trace_.scenario.safe_set;
     std::vector<double> values;
     for (const Eigen::VectorXd& state : states()) {
-      values.push_back(state.size() == safe_set.dim() ? clearance(state, safe_set) : kMissing);
+      values.push_back(state.size() == safe_set.dim() ? clearance(state, safe_set) : kNotANumber);
     }
     return packed_floats(values);
   }
@@ -120,7 +119,7 @@ class EpisodeData {
     for (const StepRecord& step : trace_.steps) {
       for (std::size_t stage = 0; stage + 1 < stages(); ++stage) {
         const bool known = stage < step.certificates.size();
-        values.push_back(known ? step.certificates[stage].*member : kMissing);
+        values.push_back(known ? step.certificates[stage].*member : kNotANumber);
       }
     }
     return packed_floats(values);
@@ -130,7 +129,7 @@ class EpisodeData {
     return {{"value", of_stages(&StageCertificate::value)},
             {"thesis", of_stages(&StageCertificate::thesis)},
             {"plan", of_steps([](const StepRecord& step) {
-               return step.certificates.empty() ? kMissing : horizon_bound(step.certificates);
+               return step.certificates.empty() ? kNotANumber : horizon_bound(step.certificates);
              })}};
   }
 
@@ -138,7 +137,7 @@ class EpisodeData {
     std::vector<double> values;
     for (const StepRecord& step : trace_.steps) {
       for (std::size_t stage = 0; stage < stages(); ++stage) {
-        values.push_back(stage < step.budgets.size() ? step.budgets[stage].*member : kMissing);
+        values.push_back(stage < step.budgets.size() ? step.budgets[stage].*member : kNotANumber);
       }
     }
     return packed_floats(values);
@@ -155,7 +154,7 @@ class EpisodeData {
   void add_pose(const Eigen::VectorXd& state, std::vector<double>& values) const {
     values.push_back(entry(state, system_.position_x));
     values.push_back(entry(state, system_.position_y));
-    values.push_back(system_.heading < 0 ? kMissing : entry(state, system_.heading));
+    values.push_back(system_.heading < 0 ? kNotANumber : entry(state, system_.heading));
   }
 
   [[nodiscard]] std::string poses() const {
@@ -193,7 +192,7 @@ class EpisodeData {
   [[nodiscard]] std::array<double, 5> planar_moments(const StageParticles& stage) const {
     const double weight = stage.weights.sum();
     if (stage.size() == 0 || !(weight > 0.0)) {
-      return {kMissing, kMissing, kMissing, kMissing, kMissing};
+      return {kNotANumber, kNotANumber, kNotANumber, kNotANumber, kNotANumber};
     }
     const Eigen::ArrayXd x = stage.locations.row(system_.position_x).transpose();
     const Eigen::ArrayXd y = stage.locations.row(system_.position_y).transpose();

@@ -2,18 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <stdexcept>
 
+#include "harness/statistics/not_a_number.hpp"
+
 namespace qsmpc {
-namespace {
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-}  // namespace
 
 SortedQuantiles::SortedQuantiles(std::int64_t count, const std::vector<double>& shares)
-    : values_(shares.size(), kNone) {
+    : values_(shares.size(), kNotANumber) {
   const bool in_range = std::ranges::all_of(shares, [](double q) { return q >= 0.0 && q <= 1.0; });
   if (count < 0 || !in_range || !std::ranges::is_sorted(shares)) {
     throw std::invalid_argument("quantiles: a count or shares that cannot be");
@@ -44,7 +41,15 @@ Distribution SortedDistribution::result() const {
           .p95 = values[1],
           .p99 = values[2],
           .max = values[3],
-          .mean = added_ == 0 ? kNone : sum_ / static_cast<double>(added_)};
+          .mean = added_ == 0 ? kNotANumber : sum_ / static_cast<double>(added_)};
+}
+
+Distribution distribution_or_zeros(std::vector<double> sample) {
+  if (sample.empty()) return {};
+  std::ranges::sort(sample);
+  SortedDistribution distribution(std::ssize(sample));
+  for (const double value : sample) distribution.add(value);
+  return distribution.result();
 }
 
 void RunningMean::add(double value) {
@@ -54,10 +59,10 @@ void RunningMean::add(double value) {
   squares_ += before * (value - mean_);
 }
 
-double RunningMean::mean() const { return count_ == 0 ? kNone : mean_; }
+double RunningMean::mean() const { return count_ == 0 ? kNotANumber : mean_; }
 
 double RunningMean::standard_error() const {
-  if (count_ < 2) return kNone;
+  if (count_ < 2) return kNotANumber;
   const auto count = static_cast<double>(count_);
   return std::sqrt(squares_ / (count - 1.0) / count);
 }

@@ -6,13 +6,12 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/text/json_text.hpp"
+#include "harness/trace/json_values.hpp"
 
 namespace qsmpc {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json interval_json(const RateInterval& interval) { return {interval.lower, interval.upper}; }
 
 Json spread_json(const Spread& spread) {
   Json json{{"episodes", spread.count},

@@ -4,14 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "harness/random/random_numbers.hpp"
+#include "harness/statistics/not_a_number.hpp"
 
 namespace qsmpc {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint64_t kBootstrapSeed = 0;  // any, once and for all: its stream is its own
 constexpr int kDrawsPerWord = 4;             // of 16 bits each
 constexpr int kDrawBits = 16;
@@ -55,7 +54,7 @@ const std::array<NamedValue, 6>& values() {
        [](const EpisodeRow& row) { return unless_faulted(row, row.min_clearance); }},
       {"certified",
        [](const EpisodeRow& row) {
-         return unless_faulted(row, row.steps > 0 ? row.next_step_sum / row.steps : kNone);
+         return unless_faulted(row, row.steps > 0 ? row.next_step_sum / row.steps : kNotANumber);
        }},
       {"iterations",
        [](const EpisodeRow& row) { return unless_faulted(row, row.iterations_median); }},
@@ -88,11 +87,11 @@ void BootstrapMean::add(double value, const Eigen::ArrayXd& weights) {
 }
 
 double BootstrapMean::mean() const {
-  return count_ == 0 ? kNone : sum_ / static_cast<double>(count_);
+  return count_ == 0 ? kNotANumber : sum_ / static_cast<double>(count_);
 }
 
 RateInterval BootstrapMean::interval() const {
-  if (count_ < 2) return {.lower = kNone, .upper = kNone};
+  if (count_ < 2) return {.lower = kNotANumber, .upper = kNotANumber};
   std::vector<double> means;
   for (Eigen::Index r = 0; r < kBootstrapReplicates; ++r) {
     // Of few pairs, none may be in a replicate: it says nothing.

@@ -3,14 +3,13 @@
 #include <cmath>
 
 #include "harness/campaign/statistics/paired_difference.hpp"
+#include "harness/statistics/not_a_number.hpp"
 
 namespace qsmpc {
 namespace {
 
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
 double share_of(double sum, std::int64_t count) {
-  return count == 0 ? kNone : sum / static_cast<double>(count);
+  return count == 0 ? kNotANumber : sum / static_cast<double>(count);
 }
 
 }  // namespace
@@ -55,7 +54,7 @@ void VariantTally::add(const EpisodeRow& row) {
   };
   add_to(cost_, row.cost);
   add_to(min_clearance_, row.min_clearance);
-  add_to(time_to_target_, row.time_to_target.value_or(kNone));
+  add_to(time_to_target_, row.time_to_target.value_or(kNotANumber));
 }
 
 void VariantTally::add(std::int64_t period, const PeriodRow& row) {
