@@ -1,9 +1,9 @@
+#include <algorithm>
 #include <cstdint>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -23,6 +23,7 @@
 #include "harness/files/atomic_file.hpp"
 #include "harness/files/text_file.hpp"
 #include "harness/text/number_parse.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc {
 namespace {
@@ -143,8 +144,7 @@ void add_campaign_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("campaign", kHelp);
   command->footer(kExample);
   const auto arguments = std::make_shared<CampaignArguments>();
-  arguments->options.jobs =
-      std::min(kMostJobs, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  arguments->options.jobs = std::min(kMostJobs, available_threads());
   add_campaign_options(*command, *arguments);
   add_campaign_status_command(*command, exit_code);
   add_campaign_merge_command(*command, exit_code);
