@@ -10,6 +10,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/section_values.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
 namespace qsmpc {
@@ -20,7 +21,6 @@ constexpr std::size_t kMostItems = 100;       // of a list in a mapping
 constexpr int kMostComponents = 1000;         // numbers of one sensor
 constexpr double kLongestDelay = 10.0;        // s
 constexpr double kLongestSettling = 1000.0;   // s
-constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
 constexpr std::array kMappingKeys = {"state",       "input",      "hold",
                                      "loops",       "rolling",    "rate_limit",
                                      "input_delay", "time_steps", "settling"};

@@ -298,7 +298,7 @@ std::optional<Eigen::MatrixXd> Section::matrix(const std::string& key, Eigen::In
   return all_rows ? std::optional(matrix) : std::nullopt;
 }
 
-std::optional<Interval> Section::interval(const std::string& key, bool finite) {
+std::optional<NumberInterval> Section::interval(const std::string& key, bool finite) {
   const YamlNode* node = take(key);
   if (node == nullptr) return std::nullopt;
   const std::string expected =
@@ -316,7 +316,7 @@ std::optional<Interval> Section::interval(const std::string& key, bool finite) {
       return std::nullopt;
     }
   }
-  if (*ends[0] < *ends[1]) return Interval{*ends[0], *ends[1]};
+  if (*ends[0] < *ends[1]) return NumberInterval{*ends[0], *ends[1]};
   note(key, "lower < upper", fmt::format("[{}, {}]", *ends[0], *ends[1]));
   return std::nullopt;
 }
