@@ -19,7 +19,7 @@ constexpr double kDescent = 2.0;  // of letters below their line
 constexpr double kNear = 9.0;     // of a text to its point
 constexpr double kBold = 1.2;     // how much wider bold letters are
 
-struct Box {
+struct TextBox {
   double left = 0.0;
   double right = 0.0;
   double top = 0.0;
@@ -27,24 +27,24 @@ struct Box {
 };
 
 /// Area that two boxes share.
-double overlap(const Box& a, const Box& b) {
+double overlap(const TextBox& a, const TextBox& b) {
   const double across = std::min(a.right, b.right) - std::max(a.left, b.left);
   const double down = std::min(a.bottom, b.bottom) - std::max(a.top, b.top);
   return across > 0.0 && down > 0.0 ? across * down : 0.0;
 }
 
-struct Place {
-  Box box;
+struct TextPlace {
+  TextBox box;
   double away = 0.0;  ///< how much farther from its point than need be
 };
 
-Box box_at(double left, double top, double width) {
+TextBox box_at(double left, double top, double width) {
   return {.left = left, .right = left + width, .top = top, .bottom = top + kTextSize};
 }
 
 /// The places beside `at` where a text of `width` may stand, the best one first.
-std::vector<Place> places_beside(const MapPoint& at, double width) {
-  std::vector<Place> places;
+std::vector<TextPlace> places_beside(const MapPoint& at, double width) {
+  std::vector<TextPlace> places;
   for (const double away : {kNear, 2.0 * kNear, 4.0 * kNear}) {
     const double below = at.y + away - 4.0;
     const double above = at.y - away + 4.0 - kTextSize;
@@ -52,10 +52,11 @@ std::vector<Place> places_beside(const MapPoint& at, double width) {
     const double left = at.x - away - width;
     const double middle = at.x - width / 2.0;
     const double level = at.y - kTextSize / 2.0;
-    for (const Box& box : {box_at(right, below, width), box_at(right, above, width),
-                           box_at(left, below, width), box_at(left, above, width),
-                           box_at(middle, below + 3.0, width), box_at(middle, above - 3.0, width),
-                           box_at(right, level, width), box_at(left, level, width)}) {
+    for (const TextBox& box :
+         {box_at(right, below, width), box_at(right, above, width), box_at(left, below, width),
+          box_at(left, above, width), box_at(middle, below + 3.0, width),
+          box_at(middle, above - 3.0, width), box_at(right, level, width),
+          box_at(left, level, width)}) {
       places.push_back({.box = box, .away = away - kNear});
     }
   }
@@ -63,10 +64,11 @@ std::vector<Place> places_beside(const MapPoint& at, double width) {
 }
 
 /// The places about `at` outside of the outline, straight away from it.
-std::vector<Place> places_outside(const MapCanvas& canvas, const PlacedText& text, double width) {
+std::vector<TextPlace> places_outside(const MapCanvas& canvas, const PlacedText& text,
+                                      double width) {
   constexpr double kGap = 3.0;
   const MapPoint middle = canvas.place(text.at);
-  std::vector<Place> places;
+  std::vector<TextPlace> places;
   for (const MapPoint& point : text.outline) {
     const MapPoint on = canvas.place(point);
     const double length = std::max(std::hypot(on.x - middle.x, on.y - middle.y), kNear);
@@ -81,14 +83,14 @@ std::vector<Place> places_outside(const MapCanvas& canvas, const PlacedText& tex
 }
 
 /// How bad a place is, in units of area.
-double cost_of(const Place& place, const Box& map, const std::vector<Box>& taken,
+double cost_of(const TextPlace& place, const TextBox& map, const std::vector<TextBox>& taken,
                const std::vector<MapPoint>& ink) {
   constexpr double kAreaOfInk = 8.0;   // what a covered point counts for
   constexpr double kAreaOfAway = 1.0;  // what a unit of distance counts for
   constexpr double kOutside = 10.0;    // how much worse a text is that is cut off or on another one
-  const Box& box = place.box;
+  const TextBox& box = place.box;
   double hidden = (box.right - box.left) * (box.bottom - box.top) - overlap(box, map);
-  for (const Box& other : taken) hidden += overlap(box, other);
+  for (const TextBox& other : taken) hidden += overlap(box, other);
   const auto covered = std::count_if(ink.begin(), ink.end(), [&](const MapPoint& point) {
     return point.x > box.left && point.x < box.right && point.y > box.top && point.y < box.bottom;
   });
@@ -99,21 +101,21 @@ double cost_of(const Place& place, const Box& map, const std::vector<Box>& taken
 
 std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& texts,
                       const std::vector<MapPoint>& ink) {
-  const Box map{.right = canvas.inner_size().width, .bottom = canvas.inner_size().height};
+  const TextBox map{.right = canvas.inner_size().width, .bottom = canvas.inner_size().height};
   std::vector<MapPoint> covered;
   covered.reserve(ink.size());
   for (const MapPoint& point : ink) covered.push_back(canvas.place(point));
-  std::vector<Box> taken;
+  std::vector<TextBox> taken;
   std::string grounds;
   std::string svg;
   for (const PlacedText& text : texts) {
     const double width = kBold * estimated_width(text.text, kTextSize);
-    const std::vector<Place> places = text.outline.empty()
-                                          ? places_beside(canvas.place(text.at), width)
-                                          : places_outside(canvas, text, width);
+    const std::vector<TextPlace> places = text.outline.empty()
+                                              ? places_beside(canvas.place(text.at), width)
+                                              : places_outside(canvas, text, width);
     std::vector<double> costs;
     costs.reserve(places.size());
-    for (const Place& place : places) costs.push_back(cost_of(place, map, taken, covered));
+    for (const TextPlace& place : places) costs.push_back(cost_of(place, map, taken, covered));
     const auto best = std::min_element(costs.begin(), costs.end()) - costs.begin();
     taken.push_back(places[static_cast<std::size_t>(best)].box);
     const std::string rest = fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", taken.back().left,

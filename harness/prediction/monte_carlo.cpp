@@ -17,10 +17,10 @@ namespace {
 constexpr std::int64_t kBatch = 1024;
 
 /// Simulates batches of paths; the batches are shared out among threads.
-class Simulation {
+class PathSimulation {
  public:
-  Simulation(const PredictedMotion& motion, const SafeSet& safe_set,
-             const MonteCarloOptions& options)
+  PathSimulation(const PredictedMotion& motion, const SafeSet& safe_set,
+                 const MonteCarloOptions& options)
       : motion_(motion),
         safe_set_(safe_set),
         options_(options),
@@ -105,7 +105,7 @@ void add_to(UnsafeCounts& total, const UnsafeCounts& more) {
 std::optional<UnsafeCounts> simulate_unsafe_counts(const PredictedMotion& motion,
                                                    const SafeSet& safe_set,
                                                    const MonteCarloOptions& options) {
-  Simulation simulation(motion, safe_set, options);
+  PathSimulation simulation(motion, safe_set, options);
   const int threads = options.threads > 0 ? options.threads : available_threads();
   std::vector<UnsafeCounts> counts(static_cast<std::size_t>(threads));
   run_workers(threads, [&](int worker) {
