@@ -37,8 +37,4 @@ class IoError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// `text` on one line and safe for a terminal: control characters become spaces, a text longer
-/// than `limit` bytes is cut and marked with "…".
-[[nodiscard]] std::string printable(const std::string& text, std::size_t limit = 80);
-
 }  // namespace qsmpc

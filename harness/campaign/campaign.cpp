@@ -1,12 +1,12 @@
 #include "harness/campaign/campaign.hpp"
 
-#include <charconv>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+
+#include "harness/text/number_parse.hpp"
 
 namespace qsmpc {
 namespace {
@@ -15,12 +15,9 @@ constexpr std::string_view kTo = " to ";
 constexpr std::string_view kComma = ", ";
 
 std::uint64_t seed_from_text(std::string_view text) {
-  std::uint64_t seed = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), seed);
-  if (error != std::errc{} || end != text.data() + text.size()) {
-    throw std::invalid_argument("seeds: no seed is \"" + std::string(text) + "\"");
-  }
-  return seed;
+  const auto seed = parse_integer<std::uint64_t>(text);
+  if (!seed) throw std::invalid_argument("seeds: no seed is \"" + std::string(text) + "\"");
+  return *seed;
 }
 
 }  // namespace

@@ -3,12 +3,10 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <exception>
 #include <filesystem>
 #include <mutex>
 #include <optional>
 #include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -19,6 +17,7 @@
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/plant/plant_registry.hpp"
+#include "harness/threads/workers.hpp"
 #include "harness/trace/trace_file.hpp"
 
 namespace qsmpc {
@@ -83,23 +82,18 @@ class CampaignRun {
 
   CampaignProgress run() {
     tell();
-    std::vector<std::jthread> threads;
-    for (int job = 1; job < options_.jobs; ++job) threads.emplace_back([this] { work(); });
-    work();
-    threads.clear();  // joins them
-    if (error_) std::rethrow_exception(error_);
+    run_workers(options_.jobs, [this](int) { work(); });
     progress_.elapsed = seconds_since(start_);
     return progress_;
   }
 
  private:
-  void work() noexcept {
+  void work() {
     try {
       while (const std::optional<Task> task = next()) drive(*task);
     } catch (...) {
-      const std::lock_guard lock(mutex_);
-      if (!error_) error_ = std::current_exception();
-      failed_ = true;
+      failed_ = true;  // the others give up, too
+      throw;
     }
   }
 
@@ -197,7 +191,6 @@ class CampaignRun {
   std::mutex trace_mutex_;
   std::mutex mutex_;  // of what follows
   CampaignProgress progress_;
-  std::exception_ptr error_;
 };
 
 }  // namespace

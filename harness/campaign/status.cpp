@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/errors.hpp"
+#include "harness/text/json_text.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {
@@ -80,7 +81,7 @@ std::string status_json(const CampaignStatus& status) {
   json["rate"] = status.rate;
   json["left"] = nullptr;
   if (status.left) json["left"] = *status.left;
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 std::string progress_note(const CampaignProgress& progress) {

@@ -13,6 +13,7 @@
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/report/episode_page.hpp"
+#include "harness/text/printable.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "render/gl/gl_library.hpp"
@@ -148,7 +149,7 @@ std::string summary_table(const Trace& trace, const std::string& folder, bool wi
 
 Trace read_folder(const std::string& folder) {
   const std::string path = in_folder(folder, kTraceFile);
-  const std::string partial = path + ".partial";
+  const std::string partial = partial_path_of(path);
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(partial, ignored)) {
     return read_trace(partial);

@@ -1,11 +1,9 @@
-#include <charconv>
+#include <algorithm>
 #include <cstdint>
 #include <iostream>
 #include <memory>
 #include <string>
 #include <string_view>
-#include <system_error>
-#include <thread>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -24,6 +22,8 @@
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/files/text_file.hpp"
+#include "harness/text/number_parse.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc {
 namespace {
@@ -56,15 +56,13 @@ struct CampaignArguments {
 /// "I/N", 1 ≤ I ≤ N. Throws InputError on something else.
 Shard parse_shard(const std::string& text) {
   const std::size_t slash = text.find('/');
-  const auto number = [](std::string_view digits, std::int64_t& value) {
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    return error == std::errc{} && end == digits.data() + digits.size();
-  };
-  Shard shard;
-  if (slash != std::string::npos && number(std::string_view(text).substr(0, slash), shard.index) &&
-      number(std::string_view(text).substr(slash + 1), shard.count) && shard.index >= 1 &&
-      shard.index <= shard.count && shard.count <= kMostShards) {
-    return shard;
+  if (slash != std::string::npos) {
+    const auto index = parse_integer<std::int64_t>(std::string_view(text).substr(0, slash));
+    const auto count = parse_integer<std::int64_t>(std::string_view(text).substr(slash + 1));
+    const bool both = index && count;
+    if (both && *index >= 1 && *index <= *count && *count <= kMostShards) {
+      return {.index = *index, .count = *count};
+    }
   }
   throw InputError({.key = "--shard",
                     .found = text,
@@ -146,8 +144,7 @@ void add_campaign_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("campaign", kCampaignHelp);
   command->footer(kCampaignExample);
   const auto arguments = std::make_shared<CampaignArguments>();
-  arguments->options.jobs =
-      std::min(kMostJobs, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+  arguments->options.jobs = std::min(kMostJobs, available_threads());
   add_campaign_options(*command, *arguments);
   add_campaign_status_command(*command, exit_code);
   add_campaign_merge_command(*command, exit_code);

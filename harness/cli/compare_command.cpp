@@ -15,7 +15,6 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
-#include "harness/errors.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/mismatch/comparison.hpp"
@@ -27,6 +26,7 @@
 #include "harness/report/comparison_page.hpp"
 #include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

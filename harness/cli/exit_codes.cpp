@@ -5,6 +5,7 @@
 #include <string>
 
 #include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

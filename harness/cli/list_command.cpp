@@ -15,6 +15,7 @@
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/shipped_files.hpp"
+#include "harness/text/json_text.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
@@ -80,7 +81,7 @@ std::string as_json(const std::vector<Table>& chosen) {
       json[table.title].push_back({{"name", item.name}, {"summary", item.summary}});
     }
   }
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 int list(const std::string& kind, bool json) {

@@ -10,7 +10,7 @@
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
-#include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 #include "harness/version.hpp"
 
 namespace qsmpc {

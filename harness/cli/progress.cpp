@@ -8,7 +8,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

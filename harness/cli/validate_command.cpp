@@ -14,6 +14,7 @@
 #include "harness/cli/output.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/text/json_text.hpp"
 
 namespace qsmpc {
 namespace {
@@ -21,13 +22,13 @@ namespace {
 using Errors = std::vector<InputError::Where>;
 
 /// What is said of a scenario or campaign.
-struct Verdict {
+struct FileVerdict {
   std::string file;
   Errors errors{};
   std::optional<Campaign> campaign{};  ///< if it is a valid one
 };
 
-Verdict verdict_on(const std::string& file) {
+FileVerdict verdict_on(const std::string& file) {
   if (!is_campaign_file(file)) return {.file = file, .errors = validate_scenario_file(file)};
   try {
     return {.file = file, .campaign = load_campaign(file)};
@@ -38,7 +39,7 @@ Verdict verdict_on(const std::string& file) {
   }
 }
 
-std::string as_text(const Verdict& verdict) {
+std::string as_text(const FileVerdict& verdict) {
   std::string text;
   for (const InputError::Where& error : verdict.errors) {
     text += InputError(error).what() + std::string("\n");
@@ -48,7 +49,7 @@ std::string as_text(const Verdict& verdict) {
   return verdict.file + ": " + size + "ok\n";
 }
 
-nlohmann::ordered_json as_json(const Verdict& verdict) {
+nlohmann::ordered_json as_json(const FileVerdict& verdict) {
   nlohmann::ordered_json json;
   json["file"] = verdict.file;
   json["ok"] = verdict.errors.empty();
@@ -74,15 +75,14 @@ int validate(const std::vector<std::string>& files, bool json) {
   nlohmann::ordered_json results = nlohmann::ordered_json::array();
   std::string text;
   for (const std::string& file : files) {
-    const Verdict verdict = verdict_on(file);
+    const FileVerdict verdict = verdict_on(file);
     all_valid = all_valid && verdict.errors.empty();
     text += as_text(verdict);
     results.push_back(as_json(verdict));
   }
   // One file is one object, as documented; several are an array of them.
   const auto& value = results.size() == 1 ? results.front() : results;
-  const auto replace = nlohmann::ordered_json::error_handler_t::replace;
-  print_result(json ? value.dump(2, ' ', false, replace) + "\n" : text);
+  print_result(json ? json_text(value) : text);
   return all_valid ? kDone : kBadInput;
 }
 

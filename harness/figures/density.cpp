@@ -41,13 +41,14 @@ Eigen::VectorXd normalised(const Eigen::Ref<const Eigen::VectorXd>& weights, Ind
   return scaled / scaled.sum();
 }
 
-struct Spread {
+struct PrincipalAxes {
   Eigen::VectorXd mean;
   Eigen::MatrixXd axes;  ///< columns: principal axes times their standard deviations, raised
 };
 
 /// `weights` sum to one. Of a single effective point, the covariance is 0.
-Spread spread_of(const Eigen::Ref<const Eigen::MatrixXd>& points, const Eigen::VectorXd& weights) {
+PrincipalAxes principal_axes_of(const Eigen::Ref<const Eigen::MatrixXd>& points,
+                                const Eigen::VectorXd& weights) {
   const Eigen::VectorXd mean = points * weights;
   const Eigen::MatrixXd centred = points.colwise() - mean;
   const double freedom = 1.0 - weights.squaredNorm();
@@ -91,7 +92,8 @@ Eigen::VectorXd spaced_about(const Eigen::Ref<const Eigen::VectorXd>& sample, do
 
 double kernel_deviation(const Eigen::Ref<const Eigen::VectorXd>& sample,
                         const Eigen::VectorXd& weights) {
-  return scott_factor(weights, 1) * std::abs(spread_of(sample.transpose(), weights).axes(0, 0));
+  return scott_factor(weights, 1) *
+         std::abs(principal_axes_of(sample.transpose(), weights).axes(0, 0));
 }
 
 }  // namespace
@@ -130,7 +132,7 @@ DensityGrid density_grid(const Eigen::Ref<const Eigen::Matrix2Xd>& points,
                          const Eigen::Ref<const Eigen::VectorXd>& weights, int count) {
   require(points.allFinite(), "places must be finite");
   const Eigen::VectorXd w = normalised(weights, points.cols());
-  const Spread spread = spread_of(points, w);
+  const PrincipalAxes spread = principal_axes_of(points, w);
   DensityGrid grid{.centre = spread.mean, .basis = spread.axes};
   // In units of the principal axes the kernel is h² I: the product of one along each axis.
   const double deviation = scott_factor(w, 2);

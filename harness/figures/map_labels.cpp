@@ -33,7 +33,7 @@ double overlap(const TextBox& a, const TextBox& b) {
   return across > 0.0 && down > 0.0 ? across * down : 0.0;
 }
 
-struct Place {
+struct TextPlace {
   TextBox box;
   double away = 0.0;  ///< how much farther from its point than need be
 };
@@ -43,8 +43,8 @@ TextBox box_at(double left, double top, double width) {
 }
 
 /// The places beside `at` where a text of `width` may stand, the best one first.
-std::vector<Place> places_beside(const MapPoint& at, double width) {
-  std::vector<Place> places;
+std::vector<TextPlace> places_beside(const MapPoint& at, double width) {
+  std::vector<TextPlace> places;
   for (const double away : {kNear, 2.0 * kNear, 4.0 * kNear}) {
     const double below = at.y + away - 4.0;
     const double above = at.y - away + 4.0 - kTextSize;
@@ -64,10 +64,11 @@ std::vector<Place> places_beside(const MapPoint& at, double width) {
 }
 
 /// The places about `at` outside of the outline, straight away from it.
-std::vector<Place> places_outside(const MapCanvas& canvas, const PlacedText& text, double width) {
+std::vector<TextPlace> places_outside(const MapCanvas& canvas, const PlacedText& text,
+                                      double width) {
   constexpr double kGap = 3.0;
   const MapPoint middle = canvas.place(text.at);
-  std::vector<Place> places;
+  std::vector<TextPlace> places;
   for (const MapPoint& point : text.outline) {
     const MapPoint on = canvas.place(point);
     const double length = std::max(std::hypot(on.x - middle.x, on.y - middle.y), kNear);
@@ -82,7 +83,7 @@ std::vector<Place> places_outside(const MapCanvas& canvas, const PlacedText& tex
 }
 
 /// How bad a place is, in units of area.
-double cost_of(const Place& place, const TextBox& map, const std::vector<TextBox>& taken,
+double cost_of(const TextPlace& place, const TextBox& map, const std::vector<TextBox>& taken,
                const std::vector<MapPoint>& ink) {
   constexpr double kAreaOfInk = 8.0;   // what a covered point counts for
   constexpr double kAreaOfAway = 1.0;  // what a unit of distance counts for
@@ -109,12 +110,12 @@ std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& te
   std::string svg;
   for (const PlacedText& text : texts) {
     const double width = kBold * estimated_width(text.text, kTextSize);
-    const std::vector<Place> places = text.outline.empty()
-                                          ? places_beside(canvas.place(text.at), width)
-                                          : places_outside(canvas, text, width);
+    const std::vector<TextPlace> places = text.outline.empty()
+                                              ? places_beside(canvas.place(text.at), width)
+                                              : places_outside(canvas, text, width);
     std::vector<double> costs;
     costs.reserve(places.size());
-    for (const Place& place : places) costs.push_back(cost_of(place, map, taken, covered));
+    for (const TextPlace& place : places) costs.push_back(cost_of(place, map, taken, covered));
     const auto best = std::min_element(costs.begin(), costs.end()) - costs.begin();
     taken.push_back(places[static_cast<std::size_t>(best)].box);
     const std::string rest = fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", taken.back().left,

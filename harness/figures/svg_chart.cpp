@@ -28,7 +28,7 @@ constexpr std::size_t kMostPoints = 1000;  // of a line; more would not be seen
 constexpr std::size_t kMarksOnLine = 8;    // where it has many points
 constexpr std::size_t kAllMarked = 12;     // a line of so many points has a mark at each
 
-struct Frame {
+struct PlotFrame {
   Axis x;
   Axis y;
 
@@ -87,7 +87,7 @@ std::string limit_arrow(double x, double y) {
 }
 
 /// Error bars with a short stroke at either end.
-std::string bars_data(const Series& series, const Frame& frame) {
+std::string bars_data(const Series& series, const PlotFrame& frame) {
   const std::size_t count = std::min({series.x.size(), series.lower.size(), series.upper.size()});
   std::string data;
   for (std::size_t i = 0; i < count; ++i) {
@@ -100,7 +100,7 @@ std::string bars_data(const Series& series, const Frame& frame) {
   return data;
 }
 
-PathData path_data(const Series& series, const Frame& frame) {
+PathData path_data(const Series& series, const PlotFrame& frame) {
   const std::vector<std::size_t> indices = drawn_indices(series);
   const auto shown = [&](std::size_t n) {
     return n < indices.size() && is_shown(series, indices[n]);
@@ -133,7 +133,7 @@ bool has_marks(const Chart& chart, const Series& series) {
 }
 
 /// Signs along a line, at other places for another colour.
-std::string line_marks(const Series& series, const Frame& frame) {
+std::string line_marks(const Series& series, const PlotFrame& frame) {
   std::vector<std::size_t> shown;
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     if (is_shown(series, i)) shown.push_back(i);
@@ -158,7 +158,7 @@ std::string line_classes(const Series& series) {
   return fmt::format("line c{}{}", palette_index(series), series.dashed ? " dash" : "");
 }
 
-Frame frame_of(const Chart& chart) {
+PlotFrame frame_of(const Chart& chart) {
   std::vector<double> across = chart.x_includes;
   std::vector<double> up = chart.y_includes;
   for (const Series& series : chart.series) {
@@ -178,7 +178,7 @@ Frame frame_of(const Chart& chart) {
                                             : rounded_axis(up, kTicksUp)};
 }
 
-std::vector<Tick> ticks_across(const Chart& chart, const Frame& frame) {
+std::vector<Tick> ticks_across(const Chart& chart, const PlotFrame& frame) {
   if (chart.x_names.empty()) return ticks_of(frame.x, kTicksAcross);
   std::vector<Tick> ticks;
   for (const std::string& name : chart.x_names) {
@@ -187,7 +187,7 @@ std::vector<Tick> ticks_across(const Chart& chart, const Frame& frame) {
   return ticks;
 }
 
-std::string axes_svg(const Chart& chart, const Frame& frame) {
+std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
   const double right = kWidth - kRight;
   const double foot = kHeight - kBottom;
   std::string svg;
@@ -213,7 +213,7 @@ std::string axes_svg(const Chart& chart, const Frame& frame) {
   return svg;
 }
 
-std::string areas_svg(const Chart& chart, const Frame& frame) {
+std::string areas_svg(const Chart& chart, const PlotFrame& frame) {
   std::string svg;
   for (const Area& area : chart.areas) {
     std::string data;
@@ -279,7 +279,7 @@ bool has_points(const Chart& chart) {
 }
 
 std::string chart_drawing(const Chart& chart, double x, double y) {
-  const Frame frame = frame_of(chart);
+  const PlotFrame frame = frame_of(chart);
   // Only where it is put into another drawing; a page leaves place and size to its style.
   const std::string place =
       x == 0.0 && y == 0.0 ? ""

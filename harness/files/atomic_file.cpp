@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {
@@ -56,8 +57,17 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
+std::string partial_path_of(const std::string& path) { return path + ".partial"; }
+
+void commit_partial_file(const std::string& path) {
+  const std::string partial = partial_path_of(path);
+  sync_path(partial, 0);
+  if (::rename(partial.c_str(), path.c_str()) != 0) fail(path, "be written", errno);
+  sync_path(folder_of(path), O_DIRECTORY);
+}
+
 PendingFile::PendingFile(std::string path)
-    : path_(std::move(path)), partial_path_(path_ + ".partial") {
+    : path_(std::move(path)), partial_path_(partial_path_of(path_)) {
   descriptor_ = open_retrying(partial_path_, O_WRONLY | O_CREAT | O_TRUNC);
   if (descriptor_ < 0) fail(path_, "be written", errno);
 }
@@ -86,10 +96,8 @@ void PendingFile::close_file() {
 
 void PendingFile::commit() {
   close_file();
-  sync_path(partial_path_, 0);
-  if (::rename(partial_path_.c_str(), path_.c_str()) != 0) fail(path_, "be written", errno);
+  commit_partial_file(path_);
   committed_ = true;
-  sync_path(folder_of(path_), O_DIRECTORY);
 }
 
 void write_file(const std::string& path, std::string_view text) {

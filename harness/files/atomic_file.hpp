@@ -10,6 +10,14 @@
 
 namespace qsmpc {
 
+/// Where the file `path` stands while it is being written: `PATH.partial`.
+[[nodiscard]] std::string partial_path_of(const std::string& path);
+
+/// Makes the finished file at `partial_path_of(path)` durable and gives it the name `path`,
+/// replacing what stood there. Throws IoError on any failure; `path` then still holds what it held
+/// before. For files that outlive their writer when it is killed; others are a PendingFile.
+void commit_partial_file(const std::string& path);
+
 /// A file that is being written as `PATH.partial` beside its final name. `commit` gives it that
 /// name, replacing what stood there; a PendingFile that is destroyed without leaves no trace.
 /// A library that writes files by itself may be given `partial_path()`.

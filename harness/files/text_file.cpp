@@ -1,7 +1,6 @@
 #include "harness/files/text_file.hpp"
 
 #include <cerrno>
-#include <charconv>
 #include <system_error>
 
 #include <fcntl.h>
@@ -57,20 +56,6 @@ std::string read_text_file(const std::string& path) {
     ::close(descriptor);
     throw;
   }
-}
-
-std::optional<double> parse_decimal(std::string_view text) {
-  const bool negative = text.starts_with('-');
-  if (negative || text.starts_with('+')) text.remove_prefix(1);
-  // from_chars also knows a second sign and words such as "infinity".
-  if (text.empty() || text.find_first_not_of("0123456789.eE+-") != std::string_view::npos ||
-      text.front() == '-' || text.front() == '+') {
-    return std::nullopt;
-  }
-  double value = 0.0;
-  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || stopped != text.data() + text.size()) return std::nullopt;
-  return negative ? -value : value;
 }
 
 }  // namespace qsmpc

@@ -1,7 +1,6 @@
 #include "harness/mismatch/closed_loop.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <stdexcept>
 
@@ -9,7 +8,9 @@
 #include "harness/episode/episode.hpp"
 #include "harness/mismatch/horizon_comparison.hpp"
 #include "harness/statistics/exceedance.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 #include "harness/trace/residuals.hpp"
+#include "harness/trace/rows.hpp"
 #include "harness/trace/summary.hpp"
 
 namespace qsmpc {
@@ -27,17 +28,6 @@ PeriodTallies tallies_of(const std::vector<EpisodeResult>& episodes) {
     }
   }
   return tallies;
-}
-
-void add_cost(const std::vector<EpisodeResult>& episodes, ClosedLoop& loop) {
-  const auto count = static_cast<double>(episodes.size());
-  for (const EpisodeResult& episode : episodes) loop.cost += episode.cost / count;
-  double squares = 0.0;
-  for (const EpisodeResult& episode : episodes) {
-    squares += (episode.cost - loop.cost) * (episode.cost - loop.cost);
-  }
-  loop.cost_deviation = episodes.size() > 1 ? std::sqrt(squares / (count - 1.0) / count)
-                                            : std::numeric_limits<double>::quiet_NaN();
 }
 
 }  // namespace
@@ -93,7 +83,9 @@ ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes) {
     loop.unsafe_periods += std::ranges::count(episode.unsafe_next, 1);
     for (const double probability : episode.certified) loop.certified_periods += probability;
   }
-  add_cost(episodes, loop);
+  const std::vector<double> costs = column_of(episodes, &EpisodeResult::cost);
+  loop.cost = mean_of_shares(costs);
+  loop.cost_deviation = standard_error_about(costs, loop.cost);
   loop.unsafe_limits = clopper_pearson(loop.unsafe, loop.episodes, kIntervalTail);
   loop.p_value = exceedance_p_value(tallies_of(episodes).tallies());
   return loop;

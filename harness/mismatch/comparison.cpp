@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
-#include <thread>
 #include <utility>
 
 #include "controller/certification/error_budget.hpp"
@@ -16,6 +15,7 @@
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/executor.hpp"
+#include "harness/threads/workers.hpp"
 #include "harness/version.hpp"
 
 namespace qsmpc {
@@ -67,7 +67,7 @@ struct Candidate {
 class Comparing {
  public:
   Comparing(const Scenario& scenario, const ComparisonOptions& options)
-      : options_(options), run_(executor_of(threads(options))), scenario_(scenario) {
+      : options_(options), run_(executor_of(usable_threads(options.threads))), scenario_(scenario) {
     // One thread an episode, and nothing that depends on how fast it is.
     scenario_.controller.threads = 1;
     scenario_.controller.deadline = std::numeric_limits<double>::infinity();
@@ -97,11 +97,6 @@ class Comparing {
   }
 
  private:
-  static int threads(const ComparisonOptions& options) {
-    const auto available = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-    return options.threads > 0 ? std::min(options.threads, available) : available;
-  }
-
   [[nodiscard]] PathNumbers path_numbers() const { return {.seed = scenario_.seed, .first = 0}; }
 
   void choose_plants() {

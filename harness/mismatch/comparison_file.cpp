@@ -8,7 +8,7 @@
 
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
-#include "harness/files/atomic_file.hpp"
+#include "harness/files/file_group.hpp"
 #include "harness/mismatch/comparison_json.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/coordinate_labels.hpp"
@@ -22,7 +22,7 @@ using Type = DatasetSpec::Type;
 
 constexpr const char* kStateNorm = "Euclidean norm of the state";
 
-struct Sizes {
+struct ComparisonSizes {
   CoordinateLabels states;
   CoordinateLabels inputs;
   std::size_t paths = 0;
@@ -30,7 +30,7 @@ struct Sizes {
   [[nodiscard]] std::size_t state_dim() const { return states.names.size(); }
 };
 
-Sizes sizes_of(const Comparison& comparison) {
+ComparisonSizes comparison_sizes(const Comparison& comparison) {
   const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
   return {.states = labels_of(model->description().states),
           .inputs = labels_of(model->description().inputs),
@@ -38,7 +38,7 @@ Sizes sizes_of(const Comparison& comparison) {
 }
 
 /// One row a stage (or what `axis` says), one column a state.
-DatasetSpec by_state(const std::string& path, const std::string& axis, const Sizes& n,
+DatasetSpec by_state(const std::string& path, const std::string& axis, const ComparisonSizes& n,
                      const std::string& comment) {
   return {.path = path,
           .row_shape = {n.state_dim()},
@@ -49,7 +49,8 @@ DatasetSpec by_state(const std::string& path, const std::string& axis, const Siz
 }
 
 /// Paths at the stages: stage, path, state.
-DatasetSpec of_paths(const std::string& path, const Sizes& n, const std::string& comment) {
+DatasetSpec of_paths(const std::string& path, const ComparisonSizes& n,
+                     const std::string& comment) {
   return {.path = path,
           .row_shape = {n.paths, n.state_dim()},
           .axes = {"stage", "path", "state"},
@@ -60,7 +61,7 @@ DatasetSpec of_paths(const std::string& path, const Sizes& n, const std::string&
           .compress = true};
 }
 
-void add_plan(Layout& layout, const Sizes& n) {
+void add_plan(Layout& layout, const ComparisonSizes& n) {
   layout.push_back({.path = "/plan/inputs",
                     .row_shape = {n.inputs.names.size()},
                     .axes = {"stage", "input"},
@@ -76,7 +77,7 @@ void add_plan(Layout& layout, const Sizes& n) {
                     .comment = "K; zero for an open-loop policy"});
 }
 
-void add_model(Layout& layout, const Sizes& n, bool with_error) {
+void add_model(Layout& layout, const ComparisonSizes& n, bool with_error) {
   layout.push_back(of_paths("/model/states", n, "paths of the model; stage 0 is the present"));
   layout.push_back({.path = "/model/w2_floor",
                     .row_shape = {2},
@@ -130,7 +131,7 @@ void add_next_step(Layout& layout, const std::string& group) {
   add("unsafe", Type::kInt64, "1 where it did");
 }
 
-void add_residuals(Layout& layout, const std::string& group, const Sizes& n) {
+void add_residuals(Layout& layout, const std::string& group, const ComparisonSizes& n) {
   const std::string episode = "episode of the row of the same number, from 0";
   layout.push_back(by_state(group + "/one_step/residuals", "period", n,
                             "x+ - w - f(x, u), episode after episode"));
@@ -162,7 +163,7 @@ void add_residuals(Layout& layout, const std::string& group, const Sizes& n) {
   }
 }
 
-void add_horizon(Layout& layout, const std::string& group, const Sizes& n) {
+void add_horizon(Layout& layout, const std::string& group, const ComparisonSizes& n) {
   layout.push_back(of_paths(group + "/paths/states", n,
                             "paths of the plant under the plan; stage 0 is the present; not a "
                             "number from the stage on at which the plant broke"));
@@ -337,7 +338,7 @@ std::vector<std::string> plant_groups(const Comparison& comparison) {
 }
 
 std::vector<DatasetSpec> comparison_layout(const Comparison& comparison) {
-  const Sizes sizes = sizes_of(comparison);
+  const ComparisonSizes sizes = comparison_sizes(comparison);
   Layout layout;
   add_plan(layout, sizes);
   add_model(layout, sizes, comparison.with_error.has_value());
@@ -356,23 +357,14 @@ std::vector<DatasetSpec> comparison_layout(const Comparison& comparison) {
 
 void write_comparison(const Comparison& comparison, const std::vector<TextFile>& more,
                       const std::string& folder) {
-  std::vector<std::unique_ptr<PendingFile>> others;
-  for (const TextFile& file : more) {
-    others.push_back(std::make_unique<PendingFile>(file.path));
-    others.back()->write(file.text);
-  }
-  PendingFile data(folder + "/" + kComparisonFile);
-  PendingFile scenario(folder + "/" + kScenarioFile);
-  PendingFile numbers(folder + "/" + kComparisonNumbersFile);
+  FileGroup files;
+  const PendingFile& data = files.add(folder + "/" + kComparisonFile);
+  files.add(folder + "/" + kScenarioFile).write(comparison.scenario_text);
+  for (const TextFile& file : more) files.add(file.path).write(file.text);
+  files.add(folder + "/" + kComparisonNumbersFile).write(comparison_json(comparison));
   write_hdf5(comparison, data.partial_path());
-  scenario.write(comparison.scenario_text);
-  numbers.write(comparison_json(comparison));
-  // Killed from here on, there is no comparison.json of an older one beside a new comparison.h5.
-  remove_file(numbers.path());
-  data.commit();
-  scenario.commit();
-  for (const std::unique_ptr<PendingFile>& file : others) file->commit();
-  numbers.commit();
+  // There is never a comparison.json of an older comparison beside a new comparison.h5.
+  files.commit_sealed();
 }
 
 }  // namespace qsmpc

@@ -4,14 +4,13 @@
 #include <memory>
 
 #include "harness/episode/assembly.hpp"
+#include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
 namespace qsmpc {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json interval_json(const RateInterval& interval) { return {interval.lower, interval.upper}; }
 
 double rate_of(std::int64_t events, std::int64_t trials) {
   return static_cast<double>(events) / static_cast<double>(trials);
@@ -135,8 +134,7 @@ std::string comparison_json(const Comparison& comparison) {
     json["plants"][plant.name] = plant_json(comparison, plant);
   }
   if (comparison.measured_error) json["model_error"] = error_json(comparison);
-  // Names come from files: what is no UTF-8 is replaced, not thrown about.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

@@ -1,7 +1,6 @@
 // read_comparison: the reading side of comparison_file.hpp.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -9,6 +8,7 @@
 #include "harness/errors.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
@@ -16,7 +16,6 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Of what an older file does not say.
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 class ComparisonReader {
  public:
@@ -185,7 +184,7 @@ ClosedLoop ComparisonReader::closed_loop(const std::string& group,
   for (const double certified : doubles(group + "/closed_loop/certified", episodes.size())) {
     loop.certified_periods += certified;
   }
-  loop.p_value = kUnknown;
+  loop.p_value = kNotANumber;
   return loop;
 }
 
@@ -236,7 +235,7 @@ void ComparisonReader::read_plant(std::size_t n) {
   plant.horizon = horizon(group);
   plant.exceeded_stages = exceeded_stages(plant.horizon, comparison_.in_force());
   const bool has_speed = file_.has_dataset("/timing/speed");
-  plant.speed = has_speed ? doubles("/timing/speed", groups_.size())[n] : kUnknown;
+  plant.speed = has_speed ? doubles("/timing/speed", groups_.size())[n] : kNotANumber;
 }
 
 }  // namespace

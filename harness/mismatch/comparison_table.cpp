@@ -9,7 +9,8 @@
 #include <fmt/format.h>
 
 #include "harness/episode/assembly.hpp"
-#include "harness/errors.hpp"
+#include "harness/text/number_format.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {
@@ -28,9 +29,7 @@ std::string plant_name(const std::string& name) {
 /// Three digits, at most 9 characters.
 std::string number(double value) {
   if (std::isnan(value)) return "-";
-  const double size = std::abs(value);
-  const bool plain = size == 0.0 || (size >= 1e-2 && size < 1e4);
-  return plain ? fmt::format("{:.3f}", value) : fmt::format("{:.2e}", value);
+  return is_plain_in_table(value) ? fmt::format("{:.3f}", value) : fmt::format("{:.2e}", value);
 }
 
 std::string by_state(const std::string& name, const Eigen::VectorXd& values,

@@ -1,10 +1,10 @@
 #include "harness/mismatch/horizon_comparison.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "controller/measure/wasserstein.hpp"
 #include "models/constants.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {
 namespace {
@@ -45,14 +45,8 @@ std::int64_t count_unsafe(const Points& states, const SafeSet& safe_set) {
 }
 
 W2Floor floor_of(const std::vector<double>& distances) {
-  const auto count = static_cast<double>(distances.size());
-  W2Floor floor;
-  for (const double distance : distances) floor.mean += distance / count;
-  for (const double distance : distances) {
-    floor.deviation += (distance - floor.mean) * (distance - floor.mean) / (count - 1.0);
-  }
-  floor.deviation = std::sqrt(floor.deviation);
-  return floor;
+  const double mean = mean_of_shares(distances);
+  return {.mean = mean, .deviation = standard_deviation_about(distances, mean)};
 }
 
 }  // namespace

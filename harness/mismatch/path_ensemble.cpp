@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "models/constants.hpp"
+#include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {
 namespace {
@@ -124,9 +125,7 @@ double simulation_speed(Plant& plant, const PathSource& source, double time_step
     const double wall = std::chrono::duration<double>(Clock::now() - start).count();
     speeds.push_back(static_cast<double>(done) * time_step / wall);
   }
-  const auto middle = speeds.begin() + static_cast<std::ptrdiff_t>(speeds.size() / 2);
-  std::nth_element(speeds.begin(), middle, speeds.end());
-  return *middle;
+  return median_of(std::move(speeds));
 }
 
 }  // namespace qsmpc

@@ -10,6 +10,7 @@
 
 namespace qsmpc {
 namespace {
+
 // x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit each; with a margin.
 constexpr double kRoundings = 4.0;
 

@@ -13,6 +13,7 @@
 #include "harness/files/text_file.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
+#include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
 
 namespace qsmpc {

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <atomic>
-#include <future>
-#include <thread>
+#include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "harness/random/random_numbers.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc {
 namespace {
@@ -15,10 +17,10 @@ namespace {
 constexpr std::int64_t kBatch = 1024;
 
 /// Simulates batches of paths; the batches are shared out among threads.
-class Simulation {
+class PathSimulation {
  public:
-  Simulation(const PredictedMotion& motion, const SafeSet& safe_set,
-             const MonteCarloOptions& options)
+  PathSimulation(const PredictedMotion& motion, const SafeSet& safe_set,
+                 const MonteCarloOptions& options)
       : motion_(motion),
         safe_set_(safe_set),
         options_(options),
@@ -103,17 +105,16 @@ void add_to(UnsafeCounts& total, const UnsafeCounts& more) {
 std::optional<UnsafeCounts> simulate_unsafe_counts(const PredictedMotion& motion,
                                                    const SafeSet& safe_set,
                                                    const MonteCarloOptions& options) {
-  Simulation simulation(motion, safe_set, options);
-  const auto available = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  const int threads = options.threads > 0 ? options.threads : available;
-  std::vector<std::future<UnsafeCounts>> others;
-  for (int i = 1; i < threads; ++i) {
-    others.push_back(
-        std::async(std::launch::async, [&simulation] { return simulation.work(false); }));
-  }
-  UnsafeCounts total = simulation.work(true);
-  for (std::future<UnsafeCounts>& other : others) add_to(total, other.get());
+  PathSimulation simulation(motion, safe_set, options);
+  const int threads = options.threads > 0 ? options.threads : available_threads();
+  std::vector<UnsafeCounts> counts(static_cast<std::size_t>(threads));
+  run_workers(threads, [&](int worker) {
+    const bool reports = worker == 0;  // the calling thread
+    counts[static_cast<std::size_t>(worker)] = simulation.work(reports);
+  });
   if (simulation.stopped()) return std::nullopt;
+  UnsafeCounts total = std::move(counts.front());
+  for (std::size_t n = 1; n < counts.size(); ++n) add_to(total, counts[n]);
   // The last batch may have been another thread's.
   if (options.on_progress) options.on_progress(total.samples, options.samples);
   return total;

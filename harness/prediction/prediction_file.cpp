@@ -5,7 +5,7 @@
 
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
-#include "harness/files/atomic_file.hpp"
+#include "harness/files/file_group.hpp"
 #include "harness/prediction/prediction_json.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/certificate_fields.hpp"
@@ -273,17 +273,13 @@ std::vector<DatasetSpec> prediction_layout(const PredictionReport& report) {
 }
 
 void write_prediction(const PredictionReport& report, const std::string& folder) {
-  PendingFile measures(folder + "/" + kPredictionFile);
-  PendingFile scenario(folder + "/" + kScenarioFile);
-  PendingFile numbers(folder + "/" + kPredictionNumbersFile);
+  FileGroup files;
+  const PendingFile& measures = files.add(folder + "/" + kPredictionFile);
+  files.add(folder + "/" + kScenarioFile).write(report.scenario_text);
+  files.add(folder + "/" + kPredictionNumbersFile).write(prediction_json(report));
   write_hdf5(report, measures.partial_path());
-  scenario.write(report.scenario_text);
-  numbers.write(prediction_json(report));
-  // Killed from here on, there is no predict.json of an older prediction beside a new predict.h5.
-  remove_file(numbers.path());
-  measures.commit();
-  scenario.commit();
-  numbers.commit();
+  // There is never a predict.json of an older prediction beside a new predict.h5.
+  files.commit_sealed();
 }
 
 }  // namespace qsmpc

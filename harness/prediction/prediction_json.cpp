@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "harness/prediction/prediction_file.hpp"
+#include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
 namespace qsmpc {
@@ -66,7 +67,7 @@ std::string prediction_json(const PredictionReport& report) {
         rate_json(report.monte_carlo->any_stage, report.monte_carlo->samples);
   }
   json["particles"] = kPredictionFile;
-  return json.dump(2) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

@@ -8,7 +8,8 @@
 #include <fmt/format.h>
 
 #include "harness/episode/assembly.hpp"
-#include "harness/errors.hpp"
+#include "harness/text/number_format.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {
@@ -31,10 +32,8 @@ constexpr double kRoundedToZero = 1e-9;
 
 /// Three decimals where that shows enough and is not too long; at most 9 characters.
 std::string number(double value) {
-  const double size = std::abs(value);
-  const bool plain = size < kRoundedToZero || (size >= 1e-2 && size < 1e4);
-  return plain ? fmt::format("{:.3f}", size < kRoundedToZero ? 0.0 : value)
-               : fmt::format("{:.3g}", value);
+  const double shown = std::abs(value) < kRoundedToZero ? 0.0 : value;
+  return is_plain_in_table(shown) ? fmt::format("{:.3f}", shown) : fmt::format("{:.3g}", shown);
 }
 
 std::string probability(double value) { return fmt::format("{:.2e}", value); }

@@ -9,8 +9,8 @@
 
 #include <fmt/format.h>
 
-#include "harness/errors.hpp"
 #include "harness/figures/palette.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

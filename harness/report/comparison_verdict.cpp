@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "harness/errors.hpp"
 #include "harness/text/number_format.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

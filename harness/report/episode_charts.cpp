@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/figures/palette.hpp"
+#include "models/constants.hpp"
 #include "harness/trace/residuals.hpp"
 
 namespace qsmpc {

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include <nlohmann/json.hpp>
 
@@ -13,6 +12,8 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
+#include "models/constants.hpp"
+#include "harness/text/json_text.hpp"
 
 namespace qsmpc {
 namespace {
@@ -191,7 +192,7 @@ class EpisodeData {
   [[nodiscard]] std::array<double, 5> planar_moments(const StageParticles& stage) const {
     const double weight = stage.weights.sum();
     if (stage.size() == 0 || !(weight > 0.0)) {
-      return {kNotANumber, kMissing, kMissing, kMissing, kMissing};
+      return {kNotANumber, kNotANumber, kNotANumber, kNotANumber, kNotANumber};
     }
     const Eigen::ArrayXd x = stage.locations.row(system_.position_x).transpose();
     const Eigen::ArrayXd y = stage.locations.row(system_.position_y).transpose();
@@ -273,7 +274,7 @@ class EpisodeData {
 
 /// Nothing in it can end the element that it stands in.
 std::string for_script(const Json& json) {
-  const std::string text = json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = compact_json_text(json);
   std::string safe;
   safe.reserve(text.size());
   for (const char c : text) {

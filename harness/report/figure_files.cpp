@@ -11,7 +11,7 @@
 
 #include "harness/episode/assembly.hpp"
 #include "harness/figures/pdf_figure.hpp"
-#include "harness/files/atomic_file.hpp"
+#include "harness/files/file_group.hpp"
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/episode_charts.hpp"
@@ -100,23 +100,15 @@ std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
                                        const std::string& folder) {
   const std::string target = folder + "/" + kFigureFolder;
   make_output_folder(target);
-  std::vector<std::unique_ptr<PendingFile>> files;
-  const auto write = [&](const std::string& name, const std::string& bytes) {
-    files.push_back(std::make_unique<PendingFile>(target + "/" + name));
-    files.back()->write(bytes);
-  };
+  FileGroup files;
   for (const FigureFile& figure : figures) {
     const std::string svg = svg_figure(figure.panels);
     const std::string title = figure.panels.empty() ? figure.name : title_of(figure.panels.front());
-    write(figure.name + ".svg", svg);
-    write(figure.name + ".pdf", pdf_figure(svg, title));
+    files.add(target + "/" + figure.name + ".svg").write(svg);
+    files.add(target + "/" + figure.name + ".pdf").write(pdf_figure(svg, title));
   }
-  std::vector<std::string> paths;
-  for (const std::unique_ptr<PendingFile>& file : files) {
-    file->commit();
-    paths.push_back(file->path());
-  }
-  return paths;
+  files.commit();
+  return files.paths();
 }
 
 }  // namespace qsmpc

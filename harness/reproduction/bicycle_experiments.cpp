@@ -43,13 +43,14 @@ ExperimentResult bicycle_by_points(Laboratory& laboratory) {
   ExperimentResult result;
   std::vector<const Sample*> samples;
   for (const PointsColumn& published : kColumns) {
-    const Column column{.name = fmt::format("{} points", published.points),
-                        .variant = {.scenario = kScenario,
-                                    .overrides = {fmt::format("controller.quantisation.state={}",
-                                                              published.points)}},
-                        .reached_s = kSimulated,
-                        .optimisation_s = published.optimisation_s,
-                        .unsafe = published.unsafe};
+    const PublishedDrive column{
+        .name = fmt::format("{} points", published.points),
+        .variant = {.scenario = kScenario,
+                    .overrides = {fmt::format("controller.quantisation.state={}",
+                                              published.points)}},
+        .reached_s = kSimulated,
+        .optimisation_s = published.optimisation_s,
+        .unsafe = published.unsafe};
     samples.push_back(&laboratory.sample(column.variant));
     add_drive_rows(column, *samples.back(), result);
   }
@@ -77,7 +78,7 @@ ExperimentResult bicycle_by_points(Laboratory& laboratory) {
 
 ExperimentResult bicycle_with_noise(Laboratory& laboratory) {
   ExperimentResult result;
-  const Column column{
+  const PublishedDrive column{
       .name = "full noise",
       .variant = {.scenario = kScenario, .overrides = {"controller.propagate_noise=true"}},
       .optimisation_s = kNoisyHours * kSecondsAnHour};

@@ -72,7 +72,7 @@ std::string share_text(int count, std::size_t total) {
                      100.0 * count / static_cast<double>(total));
 }
 
-void add_drive_rows(const Column& column, const Sample& sample, ExperimentResult& result) {
+void add_drive_rows(const PublishedDrive& column, const Sample& sample, ExperimentResult& result) {
   const std::vector<double> arrivals = arrival_times(sample);
   const auto row = [&](const std::string& what, const std::string& unit,
                        std::optional<double> published, double here, const std::string& note = {}) {

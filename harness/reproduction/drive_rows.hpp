@@ -12,7 +12,7 @@
 namespace qsmpc {
 
 /// One column of a table of the thesis: a drive and what is published of it.
-struct Column {
+struct PublishedDrive {
   std::string name;  ///< e.g. "open loop"
   Variant variant;
   std::optional<double> reached_s{};       ///< "target reached in"
@@ -36,7 +36,7 @@ using EpisodeSeries = std::vector<double> EpisodeDigest::*;
 
 /// Time to the target, optimisation time, P(unsafe) the published way and as bounds that hold, and
 /// how many drives were safe: medians over the episodes of `sample`.
-void add_drive_rows(const Column& column, const Sample& sample, ExperimentResult& result);
+void add_drive_rows(const PublishedDrive& column, const Sample& sample, ExperimentResult& result);
 
 /// "k of n (p %)".
 [[nodiscard]] std::string share_text(int count, std::size_t total);

@@ -22,7 +22,7 @@ constexpr const char* kUnseenNoise = "controller.propagate_noise=false";
 // ---- Table 5-2
 
 struct CorridorColumn {
-  Column column;
+  PublishedDrive column;
   double printed_plan_s;  // "average optimisation time per time step"
 };
 
@@ -45,7 +45,7 @@ const std::array<CorridorColumn, 2>& corridor_columns() {
 
 void add_plan_time_rows(const CorridorColumn& entry, const Sample& sample,
                         ExperimentResult& result) {
-  const Column& column = entry.column;
+  const PublishedDrive& column = entry.column;
   const double periods = *column.reached_s / sample.scenario.time_step;
   const double here = median_plan_seconds(sample);
   result.rows.push_back({.quantity = column.name + ": optimisation time of a problem, as printed",
@@ -122,12 +122,12 @@ const std::array<SolverColumns, 2>& solver_columns() {
   return columns;
 }
 
-Column column_of(const SolverColumns& solver, std::size_t n) {
-  Column column{.name = fmt::format("{}, {} points", solver.name, kPoints[n]),
-                .variant = {.scenario = "dubins_trap", .overrides = solver.overrides},
-                .reached_s = solver.reached_s[n],
-                .optimisation_s = solver.optimisation_s[n],
-                .unsafe = solver.unsafe[n]};
+PublishedDrive published_drive(const SolverColumns& solver, std::size_t n) {
+  PublishedDrive column{.name = fmt::format("{}, {} points", solver.name, kPoints[n]),
+                        .variant = {.scenario = "dubins_trap", .overrides = solver.overrides},
+                        .reached_s = solver.reached_s[n],
+                        .optimisation_s = solver.optimisation_s[n],
+                        .unsafe = solver.unsafe[n]};
   column.variant.overrides.push_back(fmt::format("controller.quantisation.state={}", kPoints[n]));
   return column;
 }
@@ -272,7 +272,7 @@ ExperimentResult obstacles_by_solver(Laboratory& laboratory) {
   for (const SolverColumns& solver : solver_columns()) {
     samples.emplace_back();
     for (std::size_t n = 0; n < kPoints.size(); ++n) {
-      const Column column = column_of(solver, n);
+      const PublishedDrive column = published_drive(solver, n);
       samples.back().push_back(&laboratory.sample(column.variant));
       add_drive_rows(column, *samples.back().back(), result);
     }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,6 +14,7 @@
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/executor.hpp"
+#include "harness/threads/workers.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/summary.hpp"
 
@@ -64,8 +64,7 @@ Scenario scenario_of(const Variant& variant) {
 
 Laboratory::Laboratory(LaboratoryOptions options)
     : options_(std::move(options)),
-      threads_(std::min(options_.threads > 0 ? options_.threads : std::numeric_limits<int>::max(),
-                        static_cast<int>(std::max(1U, std::thread::hardware_concurrency())))),
+      threads_(usable_threads(options_.threads)),
       run_(executor_of(threads_)) {}
 
 void Laboratory::at_work(const std::string& what) const {

@@ -51,7 +51,7 @@ const std::vector<Drive>& drives() {
 /// Rows and a figure of the drives of a scenario of which nothing is published.
 void add_drive(Laboratory& laboratory, const std::string& name, const std::string& scenario,
                ExperimentResult& result) {
-  const Column column{.name = name, .variant = {.scenario = scenario}};
+  const PublishedDrive column{.name = name, .variant = {.scenario = scenario}};
   const Sample& sample = laboratory.sample(column.variant);
   add_drive_rows(column, sample, result);
   const std::vector<NamedSample> drives{{name, &sample}};

@@ -27,13 +27,13 @@ constexpr int kShownEvery = 10;
 constexpr std::int64_t kPictureSamples = 2000;
 
 /// Position and its spread at one stage.
-struct Spread {
+struct PositionSpread {
   Eigen::Vector2d mean;
   Eigen::Matrix2d covariance;
   [[nodiscard]] double deviation() const { return std::sqrt(covariance.trace()); }
 };
 
-Spread position_spread(const DiscreteMeasure& measure) {
+PositionSpread position_spread(const DiscreteMeasure& measure) {
   return {.mean = mean_of(measure).head<2>(),
           .covariance = covariance_of(measure).topLeftCorner<2, 2>()};
 }
@@ -42,8 +42,8 @@ void add_turn_rows(const PredictionReport& report, const std::vector<Points>& sa
                    ExperimentResult& result) {
   for (int stage = 0; stage <= kTurnStages; stage += kShownEvery) {
     const auto k = static_cast<std::size_t>(stage);
-    const Spread points = position_spread(report.prediction.stages[k]);
-    const Spread sampled = position_spread(equally_weighted(samples[k]));
+    const PositionSpread points = position_spread(report.prediction.stages[k]);
+    const PositionSpread sampled = position_spread(equally_weighted(samples[k]));
     const double time = stage * report.scenario.time_step;
     result.rows.push_back(
         {.quantity = fmt::format("distance of the mean positions, {:.0f} s", time),
@@ -121,7 +121,7 @@ MapCloud cloud_of(const DiscreteMeasure& measure) {
 }
 
 MapEllipse ellipse_of(const DiscreteMeasure& measure) {
-  const Spread spread = position_spread(measure);
+  const PositionSpread spread = position_spread(measure);
   return {.colour = kOrange, .mean = spread.mean, .covariance = spread.covariance};
 }
 

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <thread>
 
 #include <fmt/format.h>
+
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc {
 namespace {
@@ -32,7 +33,7 @@ std::optional<double> ratio_of(const ResultRow& row) {
 
 Machine this_machine() {
   return {.processor = processor_name(),
-          .cores = static_cast<int>(std::max(1U, std::thread::hardware_concurrency())),
+          .cores = available_threads(),
 #ifdef __clang__
           .compiler = fmt::format("clang {}", __clang_version__)};
 #else

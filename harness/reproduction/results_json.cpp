@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/reproduction/results_table.hpp"
+#include "harness/text/json_text.hpp"
 
 namespace qsmpc {
 namespace {
@@ -54,7 +55,7 @@ std::string results_json(const Reproduction& reproduction) {
                                    {"remarks", experiment.remarks},
                                    {"figures", figures}});
   }
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

@@ -5,8 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/errors.hpp"
 #include "harness/text/number_format.hpp"
+#include "harness/text/printable.hpp"
+#include "harness/text/text_width.hpp"
 
 namespace qsmpc {
 namespace {
@@ -23,19 +24,6 @@ std::string with_unit(const ResultRow& row) {
 std::string plain_number(std::optional<double> value) {
   if (!value || !std::isfinite(*value)) return "-";
   return fmt::format("{:.{}g}", *value, kDigits);
-}
-
-/// Columns that `text` takes: UTF-8's continuation bytes take none.
-std::size_t columns_of(const std::string& text) {
-  std::size_t columns = 0;
-  for (const char c : text) columns += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U ? 1 : 0;
-  return columns;
-}
-
-std::string padded(std::string text, std::size_t width) {
-  const std::size_t columns = columns_of(text);
-  if (columns < width) text.append(width - columns, ' ');
-  return text;
 }
 
 std::string experiment_text(const ExperimentResult& experiment) {

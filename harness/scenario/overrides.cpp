@@ -1,14 +1,13 @@
 #include "harness/scenario/overrides.hpp"
 
-#include <charconv>
 #include <cstddef>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "harness/errors.hpp"
+#include "harness/text/number_parse.hpp"
 
 namespace qsmpc {
 namespace {
@@ -46,19 +45,17 @@ YamlNode& child_in_map(YamlNode& map, const std::string& key) {
 }
 
 YamlNode& child_in_list(YamlNode& list, const std::string& part, const std::string& key) {
-  std::size_t index = 0;
-  const char* end = part.data() + part.size();
-  const auto [stopped, error] = std::from_chars(part.data(), end, index);
-  if (error != std::errc{} || stopped != end || index > list.items.size()) {
+  const auto index = parse_integer<std::size_t>(part);
+  if (!index || *index > list.items.size()) {
     throw InputError({.file = kOverrideSource,
                       .key = key,
                       .found = part,
                       .expected = "an index from 0 to " + std::to_string(list.items.size())});
   }
-  if (index == list.items.size()) list.items.emplace_back();
+  if (*index == list.items.size()) list.items.emplace_back();
   // Whether a list is right depends on all of its items: what is wrong with it now may be this one.
   list.from_override = true;
-  return list.items[index];
+  return list.items[*index];
 }
 
 YamlNode& child(YamlNode& parent, const std::string& part, const std::string& key) {

@@ -10,6 +10,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/section_values.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
 namespace qsmpc {

@@ -10,10 +10,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/scenario/controller_reader.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/plant_mapping_reader.hpp"
+#include "harness/scenario/section_values.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/value_checks.hpp"
 
@@ -25,16 +27,9 @@ constexpr std::size_t kMostObstacles = 1000;      // every particle is held agai
 constexpr double kShortestPeriod = 1e-4;          // s, a simulator's step at its finest
 constexpr double kLongestPeriod = 10.0;           // s
 constexpr double kShortestSimulatorStep = 1e-6;   // s
-constexpr double kLongestDeadline = 1e6;          // s; well within what a clock can count
-constexpr WholeRange kHorizonRange{1, kMostStages};
-constexpr WholeRange kPointsRange{1, 100000};
-constexpr WholeRange kIterationsRange{1, 100000};
-constexpr WholeRange kThreadsRange{1, 256};
 constexpr WholeRange kStepsRange{1, 1000000};
 constexpr WholeRange kFpsRange{1, 240};
-constexpr NumberRange kNotNegative{.least = 0.0};
 constexpr NumberRange kDeviationRange{.least = 0.0, .most = 0.5};  // of a logarithm
-constexpr NumberRange kDeadlineRange{.least = 0.0, .most = kLongestDeadline, .above_least = true};
 
 // The vehicle that drives, or is drawn for, a system unless the scenario names another. One that
 // has no place in the plane cannot be drawn without its own simulation.
@@ -97,7 +92,8 @@ class ScenarioReader {
           root_, problems_,
           {.system = scenario_.model.system, .dim = state_dim(), .folder = lookup_.folder});
       read_target();
-      read_controller();
+      Section controller = root_.section("controller");
+      scenario_.controller = read_controller(controller, system());
     } else {
       // Sizes are not known without a system; what is wrong in here shows once it has one.
       for (const char* key : {"initial_state", "disturbance", "safe_set", "target", "controller"}) {
@@ -118,26 +114,15 @@ class ScenarioReader {
   void read_initial_state();
   void read_disturbance();
   void read_safe_set();
-  Box read_box(Section& section, bool& any);
   void read_target();
   void read_angles(Section& target);
-  void read_controller();
-  void read_gain(Section& controller);
-  void read_solver(Section& controller);
-  void read_propagation(Section& controller);
-  void read_quantisation(Section& controller);
-  void read_cost(Section& controller);
-  void read_penalty(Section& controller);
-  void read_input_bounds(Section& controller);
   void read_limit();
   void read_video();
   [[nodiscard]] static std::vector<std::string> read_overlays(Section& section);
   void check_safe(Section& section, const std::string& key, const Eigen::VectorXd& point);
-  Eigen::MatrixXd semidefinite(Section& section, const std::string& key, Eigen::MatrixXd fallback);
 
   [[nodiscard]] const SystemDescription& system() const { return dynamics_->description(); }
   [[nodiscard]] Eigen::Index state_dim() const { return dynamics_->state_dim(); }
-  [[nodiscard]] Eigen::Index input_dim() const { return dynamics_->input_dim(); }
 
   Section root_;
   Problems& problems_;
@@ -225,17 +210,6 @@ void ScenarioReader::read_mapping(Section& plant) {
       plant, {.description = system(), .parameters = scenario_.model.parameters});
 }
 
-Eigen::MatrixXd ScenarioReader::semidefinite(Section& section, const std::string& key,
-                                             Eigen::MatrixXd fallback) {
-  std::optional<Eigen::MatrixXd> matrix = section.matrix(key, fallback.rows(), fallback.cols());
-  if (!matrix) return fallback;
-  if (const auto problem = make_semidefinite(*matrix)) {
-    section.note(key, "a symmetric, positive semidefinite matrix", *problem);
-    return fallback;
-  }
-  return *matrix;
-}
-
 void ScenarioReader::check_safe(Section& section, const std::string& key,
                                 const Eigen::VectorXd& point) {
   if (const auto problem = why_unsafe(point, scenario_.safe_set, system().states)) {
@@ -271,36 +245,20 @@ void ScenarioReader::read_disturbance() {
   section.refuse_unread();
 }
 
-// Intervals by state name; a state that is not named is not restricted.
-Box ScenarioReader::read_box(Section& section, bool& any) {
-  Box box = unbounded_safe_set(state_dim()).bounds;
-  for (Eigen::Index i = 0; i < state_dim(); ++i) {
-    const auto interval =
-        section.interval(system().states[static_cast<std::size_t>(i)].name, false);
-    if (!interval) continue;
-    box.lower[i] = interval->lower;
-    box.upper[i] = interval->upper;
-    any = true;
-  }
-  section.refuse_unread();
-  return box;
-}
-
 void ScenarioReader::read_safe_set() {
   Section section = root_.section("safe_set");
+  const Box everywhere = unbounded_safe_set(state_dim()).bounds;
   Section bounds = section.section("bounds");
-  bool any = false;
-  scenario_.safe_set.bounds = read_box(bounds, any);
+  scenario_.safe_set.bounds = read_intervals(bounds, system().states, {.fallback = everywhere}).box;
   const std::size_t count = section.list_size("obstacles");
   if (count > kMostObstacles) {
     section.note("obstacles", fmt::format("at most {} obstacles", kMostObstacles));
   }
   for (std::size_t i = 0; i < std::min(count, kMostObstacles); ++i) {
     Section item = section.item("obstacles", i);
-    any = false;
-    Box box = read_box(item, any);
-    if (any) {
-      scenario_.safe_set.obstacles.push_back(std::move(box));
+    NamedIntervals obstacle = read_intervals(item, system().states, {.fallback = everywhere});
+    if (obstacle.any) {
+      scenario_.safe_set.obstacles.push_back(std::move(obstacle.box));
     } else if (item.present() && item.keys().empty()) {
       item.note_here(fmt::format("an interval of at least one of {}",
                                  fmt::join(coordinate_names(system().states), ", ")),
@@ -340,98 +298,6 @@ void ScenarioReader::read_angles(Section& section) {
       angles.push_back(index);
     }
   }
-}
-
-void ScenarioReader::read_controller() {
-  Section section = root_.section("controller");
-  Scenario::Controller& controller = scenario_.controller;
-  controller.horizon = section.whole("horizon", controller.horizon, kHorizonRange);
-  controller.policy = section.name("policy", controller.policy, policy_names());
-  read_gain(section);
-  read_solver(section);
-  read_propagation(section);
-  read_quantisation(section);
-  read_cost(section);
-  read_penalty(section);
-  read_input_bounds(section);
-  section.refuse_unread();
-}
-
-void ScenarioReader::read_gain(Section& section) {
-  Scenario::Controller& controller = scenario_.controller;
-  controller.feedback_gain = section.matrix("feedback_gain", input_dim(), state_dim());
-  controller.optimise_gain = section.flag("optimise_gain", controller.optimise_gain);
-  if (controller.optimise_gain && controller.policy != "closed_loop") {
-    section.note("optimise_gain", "false, or controller.policy: closed_loop");
-  }
-}
-
-void ScenarioReader::read_solver(Section& section) {
-  Scenario::Controller& controller = scenario_.controller;
-  controller.solver = section.name("solver", controller.solver, solver_names());
-  const std::string fallback = controller.input_bounding;
-  controller.input_bounding = section.name("input_bounding", fallback, input_bounding_names());
-  if (controller.solver != "lbfgs" && controller.input_bounding != fallback) {
-    section.note("input_bounding", fallback + ", or controller.solver: lbfgs");
-  }
-  controller.max_iterations =
-      section.whole("max_iterations", controller.max_iterations, kIterationsRange);
-  controller.deadline = section.number("deadline", controller.deadline, kDeadlineRange);
-  controller.threads = section.whole("threads", controller.threads, kThreadsRange);
-}
-
-// A way of propagating noise that is then not propagated is a contradiction, unless it is the
-// default: that stands in every resolved scenario.
-void ScenarioReader::read_propagation(Section& section) {
-  Scenario::Controller& controller = scenario_.controller;
-  controller.propagate_noise = section.flag("propagate_noise", controller.propagate_noise);
-  const std::string fallback = controller.propagator;
-  controller.propagator = section.name("propagator", fallback, propagator_names());
-  if (!controller.propagate_noise && controller.propagator != fallback) {
-    section.note("propagator", fallback + ", or controller.propagate_noise: true");
-  }
-}
-
-void ScenarioReader::read_quantisation(Section& controller) {
-  Section section = controller.section("quantisation");
-  Scenario::Quantisation& points = scenario_.controller.quantisation;
-  points.state = section.whole("state", points.state, kPointsRange);
-  points.noise = section.whole("noise", points.noise, kPointsRange);
-  points.compressed = section.whole("compressed", points.compressed, kPointsRange);
-  points.quantiser = section.name("quantiser", points.quantiser, quantiser_names());
-  section.refuse_unread();
-}
-
-void ScenarioReader::read_cost(Section& controller) {
-  Section section = controller.section("cost");
-  Scenario::Cost& cost = scenario_.controller.cost;
-  cost.state = semidefinite(section, "state", Eigen::MatrixXd::Identity(state_dim(), state_dim()));
-  cost.input = semidefinite(section, "input", Eigen::MatrixXd::Identity(input_dim(), input_dim()));
-  cost.terminal = semidefinite(section, "terminal", cost.state);
-  section.refuse_unread();
-}
-
-void ScenarioReader::read_penalty(Section& controller) {
-  Section section = controller.section("penalty");
-  Scenario::Penalty& penalty = scenario_.controller.penalty;
-  penalty.shape = section.name("shape", penalty.shape, penalty_shape_names());
-  penalty.box = section.number("box", penalty.box, kNotNegative);
-  penalty.obstacle = section.number("obstacle", penalty.obstacle, kNotNegative);
-  penalty.length = section.number("length", penalty.length, kPositive);
-  section.refuse_unread();
-}
-
-void ScenarioReader::read_input_bounds(Section& controller) {
-  Section section = controller.section("input_bounds");
-  scenario_.controller.input_lower = system().input_lower;
-  scenario_.controller.input_upper = system().input_upper;
-  for (Eigen::Index i = 0; i < input_dim(); ++i) {
-    const auto interval = section.interval(system().inputs[static_cast<std::size_t>(i)].name, true);
-    if (!interval) continue;
-    scenario_.controller.input_lower[i] = interval->lower;
-    scenario_.controller.input_upper[i] = interval->upper;
-  }
-  section.refuse_unread();
 }
 
 void ScenarioReader::read_limit() {

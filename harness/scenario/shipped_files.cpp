@@ -7,6 +7,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/yaml_tree.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

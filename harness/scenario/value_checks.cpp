@@ -1,11 +1,10 @@
 #include "harness/scenario/value_checks.hpp"
 
-#include <charconv>
 #include <cmath>
-#include <system_error>
 
 #include <fmt/format.h>
 
+#include "harness/text/number_parse.hpp"
 #include "models/linear_algebra.hpp"
 
 namespace qsmpc {
@@ -16,11 +15,9 @@ namespace {
 constexpr double kMatrixTolerance = 1e-9;
 
 std::optional<int> parse_side(std::string_view text, int most) {
-  int side = 0;
-  const auto [stopped, error] = std::from_chars(text.data(), text.data() + text.size(), side);
-  const bool is_number = error == std::errc{} && stopped == text.data() + text.size();
-  if (!is_number || side < kLeastFrameSide || side > most || side % 2 != 0) return std::nullopt;
-  return side;
+  const std::optional<int> side = parse_integer<int>(text);
+  const bool is_allowed = side && *side >= kLeastFrameSide && *side <= most && *side % 2 == 0;
+  return is_allowed ? side : std::nullopt;
 }
 
 }  // namespace

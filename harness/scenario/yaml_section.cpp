@@ -1,16 +1,14 @@
 #include "harness/scenario/yaml_section.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "harness/files/text_file.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/overrides.hpp"
+#include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
 
 namespace qsmpc {
@@ -32,13 +30,9 @@ bool is_within(double value, const NumberRange& range) {
 }
 
 template <class Integer>
-std::optional<Integer> parse_integer(const YamlNode& node) {
+std::optional<Integer> integer_in(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kText || node.quoted) return std::nullopt;
-  const char* end = node.text.data() + node.text.size();
-  Integer value{};
-  const auto [stopped, error] = std::from_chars(node.text.data(), end, value);
-  if (error != std::errc{} || stopped != end) return std::nullopt;
-  return value;
+  return parse_integer<Integer>(node.text);
 }
 
 }  // namespace
@@ -171,7 +165,7 @@ double Section::number(const std::string& key, double fallback, NumberRange rang
 int Section::whole(const std::string& key, int fallback, WholeRange range) {
   const YamlNode* node = take(key);
   if (node == nullptr) return fallback;
-  const std::optional<int> value = parse_integer<int>(*node);
+  const std::optional<int> value = integer_in<int>(*node);
   if (value && *value >= range.least && *value <= range.most) return *value;
   note(key, fmt::format("a whole number from {} to {}", range.least, range.most));
   return fallback;
@@ -180,7 +174,7 @@ int Section::whole(const std::string& key, int fallback, WholeRange range) {
 std::uint64_t Section::seed(const std::string& key, std::uint64_t fallback) {
   const YamlNode* node = take(key);
   if (node == nullptr) return fallback;
-  if (const auto value = parse_integer<std::uint64_t>(*node)) return *value;
+  if (const auto value = integer_in<std::uint64_t>(*node)) return *value;
   note(key, "a whole number from 0 to 18446744073709551615");
   return fallback;
 }
@@ -304,7 +298,7 @@ std::optional<Eigen::MatrixXd> Section::matrix(const std::string& key, Eigen::In
   return all_rows ? std::optional(matrix) : std::nullopt;
 }
 
-std::optional<Interval> Section::interval(const std::string& key, bool finite) {
+std::optional<NumberInterval> Section::interval(const std::string& key, bool finite) {
   const YamlNode* node = take(key);
   if (node == nullptr) return std::nullopt;
   const std::string expected =
@@ -322,7 +316,7 @@ std::optional<Interval> Section::interval(const std::string& key, bool finite) {
       return std::nullopt;
     }
   }
-  if (*ends[0] < *ends[1]) return Interval{*ends[0], *ends[1]};
+  if (*ends[0] < *ends[1]) return NumberInterval{*ends[0], *ends[1]};
   note(key, "lower < upper", fmt::format("[{}, {}]", *ends[0], *ends[1]));
   return std::nullopt;
 }

@@ -62,7 +62,7 @@ struct WholeRange {
 };
 
 /// A pair [lower, upper] with lower < upper.
-struct Interval {
+struct NumberInterval {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
 };
@@ -114,7 +114,7 @@ class Section {
   [[nodiscard]] std::optional<Eigen::MatrixXd> matrix(const std::string& key, Eigen::Index rows,
                                                       Eigen::Index cols);
   /// [lower, upper], lower < upper; ±infinity is allowed unless `finite`.
-  [[nodiscard]] std::optional<Interval> interval(const std::string& key, bool finite);
+  [[nodiscard]] std::optional<NumberInterval> interval(const std::string& key, bool finite);
 
   /// Notes a problem with what `key` holds (or with this section, if it holds nothing); `found`
   /// defaults to a description of it.

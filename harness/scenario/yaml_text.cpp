@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/text/utf8.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -22,24 +24,8 @@ bool is_word(std::string_view text) {
   return !text.empty() && only_word_characters && !is_null && !is_mark;
 }
 
-std::string escaped(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (c == '\n') {
-      out += "\\n";
-    } else if (byte < 0x20 || byte == 0x7F) {
-      out += fmt::format("\\x{:02X}", byte);
-    } else {
-      if (c == '"' || c == '\\') out += '\\';
-      out += c;
-    }
-  }
-  return out + '"';
-}
-
 std::string flow_key(const std::string& key) {
-  const std::string text = is_word(key) ? key : escaped(key);
+  const std::string text = is_word(key) ? key : quoted_yaml(key);
   return text.size() > kLongestPlainKey ? "? " + text : text;
 }
 
@@ -53,8 +39,14 @@ std::string yaml_number(double value) {
 std::string quoted_yaml(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
+    if (c == '\n') {
+      out += "\\n";
+    } else if (is_control_character(c)) {
+      out += fmt::format("\\x{:02X}", static_cast<unsigned char>(c));
+    } else {
+      if (c == '"' || c == '\\') out += '\\';
+      out += c;
+    }
   }
   return out + '"';
 }
@@ -87,7 +79,7 @@ std::string yaml_square(const Eigen::MatrixXd& matrix) {
 std::string yaml_flow(const YamlNode& node) {
   if (node.kind == YamlNode::Kind::kNull) return "null";
   if (node.kind == YamlNode::Kind::kText) {
-    return node.quoted || !is_word(node.text) ? escaped(node.text) : node.text;
+    return node.quoted || !is_word(node.text) ? quoted_yaml(node.text) : node.text;
   }
   const bool is_map = node.kind == YamlNode::Kind::kMap;
   std::string out = is_map ? "{" : "[";

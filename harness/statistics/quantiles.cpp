@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <stdexcept>
 
 #include "models/constants.hpp"
 
 namespace qsmpc {
+
 SortedQuantiles::SortedQuantiles(std::int64_t count, const std::vector<double>& shares)
     : values_(shares.size(), kNotANumber) {
   const bool in_range = std::ranges::all_of(shares, [](double q) { return q >= 0.0 && q <= 1.0; });
@@ -40,6 +42,14 @@ Distribution SortedDistribution::result() const {
           .p99 = values[2],
           .max = values[3],
           .mean = added_ == 0 ? kNotANumber : sum_ / static_cast<double>(added_)};
+}
+
+Distribution distribution_or_zeros(std::vector<double> sample) {
+  if (sample.empty()) return {};
+  std::ranges::sort(sample);
+  SortedDistribution distribution(std::ssize(sample));
+  for (const double value : sample) distribution.add(value);
+  return distribution.result();
 }
 
 void RunningMean::add(double value) {

@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "harness/trace/summary.hpp"
-
 namespace qsmpc {
 
 /// Quantiles by nearest rank: the smallest value that at least the share q of the values do not
@@ -30,7 +28,16 @@ class SortedQuantiles {
   std::int64_t added_ = 0;
 };
 
-/// Median, p95, p99, greatest and mean of a sorted stream, as in summary.json.
+/// Quantiles by nearest rank, and the mean, of a sample.
+struct Distribution {
+  double median = 0.0;
+  double p95 = 0.0;
+  double p99 = 0.0;
+  double max = 0.0;
+  double mean = 0.0;
+};
+
+/// The distribution of a sorted stream.
 class SortedDistribution {
  public:
   /// count: of the values that will be added, ≥ 0.
@@ -45,6 +52,9 @@ class SortedDistribution {
   std::int64_t added_ = 0;
   double sum_ = 0.0;
 };
+
+/// The distribution of `sample`, which may be in any order; all 0 where it is empty.
+[[nodiscard]] Distribution distribution_or_zeros(std::vector<double> sample);
 
 /// A running mean and its standard error (Welford: "Note on a method for calculating corrected sums
 /// of squares and products", Technometrics 4, 1962).

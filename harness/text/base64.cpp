@@ -7,7 +7,7 @@
 namespace qsmpc {
 namespace {
 
-constexpr std::string_view kBase64Digits =
+constexpr std::string_view kAlphabet =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 std::uint8_t hex_value(char digit) {
@@ -29,7 +29,7 @@ std::string base64(std::span<const std::uint8_t> bytes) {
       group = group << 8U | (k < count ? bytes[i + k] : 0U);
     }
     for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= count ? kBase64Digits[group >> (18U - 6U * k) & 63U] : '=';
+      text += k <= count ? kAlphabet[group >> (18U - 6U * k) & 63U] : '=';
     }
   }
   return text;

@@ -14,16 +14,18 @@ namespace {
 constexpr int kSmallestPlain = -3;  // exponents that are written out as a plain decimal
 constexpr int kLargestPlain = 5;
 constexpr const char* kMinus = "−";
+constexpr double kLeastPlainInTable = 1e-2;  // keeps two digits with three or four decimals
+constexpr double kEndOfPlainInTable = 1e4;   // keeps a column of nine characters
 
 std::string with_minus_sign(const std::string& digits) {
   return digits.starts_with('-') ? kMinus + digits.substr(1) : digits;
 }
 
 std::string superscript(int value) {
-  constexpr std::array<const char*, 10> kDigits = {"⁰", "¹", "²", "³", "⁴",
-                                                   "⁵", "⁶", "⁷", "⁸", "⁹"};
+  constexpr std::array<const char*, 10> kSuperscripts = {"⁰", "¹", "²", "³", "⁴",
+                                                         "⁵", "⁶", "⁷", "⁸", "⁹"};
   std::string text = value < 0 ? "⁻" : "";
-  for (const char digit : std::to_string(std::abs(value))) text += kDigits.at(digit - '0');
+  for (const char digit : std::to_string(std::abs(value))) text += kSuperscripts.at(digit - '0');
   return text;
 }
 
@@ -72,6 +74,11 @@ std::string format_fixed(double value, int decimals) {
   const std::string text = fmt::format("{:.{}f}", value, decimals);
   const bool zero = text.find_first_not_of("-0.") == std::string::npos;
   return zero && text.starts_with('-') ? text.substr(1) : with_minus_sign(text);
+}
+
+bool is_plain_in_table(double value) {
+  const double size = std::abs(value);
+  return size == 0.0 || (size >= kLeastPlainInTable && size < kEndOfPlainInTable);
 }
 
 std::string format_power_of_ten(int exponent) {

@@ -19,6 +19,10 @@ namespace qsmpc {
 /// `value` with `decimals` digits after the point.
 [[nodiscard]] std::string format_fixed(double value, int decimals);
 
+/// Whether a table shows `value` as a plain decimal: zero, or of a size from 0.01 to below 10 000.
+/// Others, and what is not a number, take an exponent there or a mark.
+[[nodiscard]] bool is_plain_in_table(double value);
+
 /// "10⁻⁵".
 [[nodiscard]] std::string format_power_of_ten(int exponent);
 

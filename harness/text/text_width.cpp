@@ -1,22 +1,17 @@
 #include "harness/text/text_width.hpp"
 
-#include <algorithm>
 #include <cstddef>
 
+#include "harness/text/utf8.hpp"
+
 namespace qsmpc {
-namespace {
-
-/// Whether a UTF-8 character begins with `byte`.
-bool begins_character(char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }
-
-}  // namespace
 
 double estimated_width(const std::string& text, double size) {
   constexpr double kWidthOfSize = 0.56;        // of a letter on average, with some to spare
   constexpr unsigned char kThreeBytes = 0xE0;  // scripts whose characters may be square, and signs
   double width = 0.0;
   for (const char byte : text) {
-    if (!begins_character(byte)) continue;
+    if (!begins_utf8_character(byte)) continue;
     width += static_cast<unsigned char>(byte) >= kThreeBytes ? 1.0 : kWidthOfSize;
   }
   return width * size;
@@ -27,7 +22,7 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
   for (std::size_t begin = 0; begin < text.size();) {
     std::size_t end = begin;
     for (std::size_t count = 0; end < text.size(); ++end) {
-      if (begins_character(text[end]) && ++count > columns) break;
+      if (begins_utf8_character(text[end]) && ++count > columns) break;
     }
     if (end < text.size()) {
       const std::size_t space = text.rfind(' ', end);
@@ -37,6 +32,12 @@ std::vector<std::string> wrapped(const std::string& text, std::size_t columns) {
     begin = end < text.size() && text[end] == ' ' ? end + 1 : end;
   }
   return lines;
+}
+
+std::string padded(std::string text, std::size_t columns) {
+  const std::size_t taken = utf8_characters(text);
+  if (taken < columns) text.append(columns - taken, ' ');
+  return text;
 }
 
 }  // namespace qsmpc

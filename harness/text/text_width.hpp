@@ -1,6 +1,7 @@
-// Texts of a drawing, whose width nobody measures.
+// How wide texts are: about, in a drawing; in columns, on a terminal.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -11,5 +12,8 @@ namespace qsmpc {
 
 /// `text` in lines of at most `columns` ≥ 1 characters, broken at spaces where there are some.
 [[nodiscard]] std::vector<std::string> wrapped(const std::string& text, std::size_t columns);
+
+/// `text` with spaces after it up to `columns` characters; each character takes one column.
+[[nodiscard]] std::string padded(std::string text, std::size_t columns);
 
 }  // namespace qsmpc

@@ -1,4 +1,8 @@
 // The threads that the controller's loops over many particles are divided among.
+//
+// TBB runs them, where other work has plain Workers: these loops are short, so that threads must be
+// kept between them; and they stand within each other, e.g. certificates within episodes, so that a
+// thread that waits for an inner loop must take its tasks rather than block.
 #pragma once
 
 #include "controller/parallel.hpp"

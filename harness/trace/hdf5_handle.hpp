@@ -1,4 +1,4 @@
-// HDF5's identifiers as owned values, for `hdf5_file.cpp` alone: the only header with its types.
+// HDF5's identifiers as owned values, for the sources of `hdf5_file.hpp` alone.
 #pragma once
 
 #include <cstddef>

@@ -1,10 +1,12 @@
-// Vectors and matrices as JSON.
+// Vectors, matrices and intervals as JSON.
 #pragma once
 
 #include <vector>
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+
+#include "harness/statistics/binomial_interval.hpp"
 
 namespace qsmpc {
 
@@ -17,6 +19,11 @@ namespace qsmpc {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const auto& row : matrix.rowwise()) rows.push_back(vector_json(row));
   return rows;
+}
+
+/// [lower, upper].
+[[nodiscard]] inline nlohmann::ordered_json interval_json(const RateInterval& interval) {
+  return {interval.lower, interval.upper};
 }
 
 }  // namespace qsmpc

@@ -1,8 +1,8 @@
 #include "harness/trace/summary.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -10,6 +10,7 @@
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
+#include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 #include "harness/trace/residuals.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -19,36 +20,17 @@ namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
 
-/// The smallest value that at least the share `quantile` of the sorted values does not exceed.
-double nearest_rank(const std::vector<double>& sorted, double quantile) {
-  if (sorted.empty()) return 0.0;
-  const auto rank =
-      static_cast<std::size_t>(std::ceil(quantile * static_cast<double>(sorted.size())));
-  return sorted[std::clamp<std::size_t>(rank, 1, sorted.size()) - 1];
-}
-
 template <class Value>
-std::vector<double> sorted_values(const Trace& trace, const Value& value) {
+Distribution over_steps(const Trace& trace, const Value& value) {
   std::vector<double> values;
+  values.reserve(trace.steps.size());
   for (const StepRecord& step : trace.steps) values.push_back(value(step));
-  std::sort(values.begin(), values.end());
-  return values;
+  return distribution_or_zeros(std::move(values));
 }
 
 template <class Value>
-double median_of(const Trace& trace, const Value& value) {
-  return nearest_rank(sorted_values(trace, value), 0.5);
-}
-
-Distribution distribution_of(const std::vector<double>& sorted) {
-  if (sorted.empty()) return {};
-  double sum = 0.0;
-  for (const double value : sorted) sum += value;
-  return {.median = nearest_rank(sorted, 0.5),
-          .p95 = nearest_rank(sorted, 0.95),
-          .p99 = nearest_rank(sorted, 0.99),
-          .max = sorted.back(),
-          .mean = sum / static_cast<double>(sorted.size())};
+double median_over_steps(const Trace& trace, const Value& value) {
+  return over_steps(trace, value).median;
 }
 
 void add_clearance(const Trace& trace, Summary& summary) {
@@ -73,11 +55,15 @@ void add_cost(const Trace& trace, Summary& summary) {
 
 void add_timing(const Trace& trace, Summary& summary) {
   const auto total = [](const StepRecord& step) { return step.timing.total; };
-  summary.ocp_ms = distribution_of(sorted_values(trace, total));
-  summary.breakdown.quantise = median_of(trace, [](const auto& s) { return s.timing.quantise; });
-  summary.breakdown.propagate = median_of(trace, [](const auto& s) { return s.timing.propagate; });
-  summary.breakdown.optimise = median_of(trace, [](const auto& s) { return s.timing.optimise; });
-  summary.breakdown.certify = median_of(trace, [](const auto& s) { return s.timing.certify; });
+  summary.ocp_ms = over_steps(trace, total);
+  summary.breakdown.quantise =
+      median_over_steps(trace, [](const auto& s) { return s.timing.quantise; });
+  summary.breakdown.propagate =
+      median_over_steps(trace, [](const auto& s) { return s.timing.propagate; });
+  summary.breakdown.optimise =
+      median_over_steps(trace, [](const auto& s) { return s.timing.optimise; });
+  summary.breakdown.certify =
+      median_over_steps(trace, [](const auto& s) { return s.timing.certify; });
   const double deadline = kMillisecondsPerSecond * trace.scenario.time_step;
   const std::string cut_short = solver_status_name(SolverStatus::kDeadline);
   for (const StepRecord& step : trace.steps) {
@@ -86,7 +72,7 @@ void add_timing(const Trace& trace, Summary& summary) {
     if (step.solver_status == cut_short) ++summary.deadline_stops;
   }
   summary.iterations_median =
-      median_of(trace, [](const auto& s) { return static_cast<double>(s.iterations); });
+      median_over_steps(trace, [](const auto& s) { return static_cast<double>(s.iterations); });
 }
 
 void add_certificates(const Trace& trace, Summary& summary) {
@@ -185,8 +171,7 @@ std::string summary_json(const Trace& trace, const SummaryOptions& options) {
                         {"covariance", rows_json(summary.mismatch_covariance)}}}};
   json["video"] = nullptr;
   if (!options.video_file.empty()) json["video"] = options.video_file;
-  // Names come from files: what is no UTF-8 is replaced, not thrown about.
-  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

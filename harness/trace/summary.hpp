@@ -7,18 +7,10 @@
 
 #include <Eigen/Core>
 
+#include "harness/statistics/quantiles.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace qsmpc {
-
-/// Quantiles (nearest rank) and mean of a sample; all 0 where it is empty.
-struct Distribution {
-  double median = 0.0;
-  double p95 = 0.0;
-  double p99 = 0.0;
-  double max = 0.0;
-  double mean = 0.0;
-};
 
 struct Summary {
   std::string scenario;
@@ -31,10 +23,10 @@ struct Summary {
   bool collision = false;                ///< the true state entered the unsafe set
   double min_clearance = 0.0;            ///< m, over all true states at the control instants
   double closed_loop_cost = 0.0;         ///< Σ ½ |x − r|²_Q + |u|²_R along the true states
-  Distribution ocp_ms;                   ///< wall clock of a step: quantise … certify
-  StepTiming breakdown;                  ///< medians of the parts, ms
-  int deadline_misses = 0;               ///< steps whose wall clock exceeded the control period
-  double iterations_median = 0.0;        ///< evaluations of cost and gradient
+  Distribution ocp_ms;             ///< wall clock of a step: quantise … certify; 0 without one
+  StepTiming breakdown;            ///< medians of the parts, ms
+  int deadline_misses = 0;         ///< steps whose wall clock exceeded the control period
+  double iterations_median = 0.0;  ///< evaluations of cost and gradient
   int fallbacks = 0;
   int deadline_stops = 0;      ///< plans that `controller.deadline` cut short
   double next_step_max = 0.0;  ///< of the certificates of stage 1

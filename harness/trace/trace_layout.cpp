@@ -17,13 +17,13 @@ constexpr std::size_t kPointChunk = 512;
 constexpr std::size_t kMotionChunk = 256;
 
 /// The sizes and names that shapes and attributes are made from.
-struct Sizes {
+struct TraceSizes {
   std::size_t horizon;
   CoordinateLabels states;
   CoordinateLabels inputs;
 };
 
-Sizes sizes_of(const Scenario& scenario) {
+TraceSizes trace_sizes(const Scenario& scenario) {
   const auto dynamics =
       make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   return {.horizon = static_cast<std::size_t>(scenario.controller.horizon),
@@ -31,7 +31,7 @@ Sizes sizes_of(const Scenario& scenario) {
           .inputs = labels_of(dynamics->description().inputs)};
 }
 
-void add_plant(std::vector<DatasetSpec>& layout, const Sizes& n) {
+void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   layout.push_back({.path = "/plant/time",
                     .axes = {"step"},
                     .units = {"s"},
@@ -78,7 +78,7 @@ void add_plant(std::vector<DatasetSpec>& layout, const Sizes& n) {
                     .chunk_rows = kMotionChunk});
 }
 
-void add_belief_and_plan(std::vector<DatasetSpec>& layout, const Sizes& n) {
+void add_belief_and_plan(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   layout.push_back({.path = "/belief/mean",
                     .row_shape = {n.states.names.size()},
                     .axes = {"step", "state"},
@@ -123,7 +123,7 @@ void add_belief_and_plan(std::vector<DatasetSpec>& layout, const Sizes& n) {
                     .comment = "evaluations of the cost and its gradient"});
 }
 
-void add_particles(std::vector<DatasetSpec>& layout, const Sizes& n) {
+void add_particles(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   const std::string slices =
       "the points of step k and stage s (0 is the present) are the rows offsets[k, s] up to, "
       "without, offsets[k, s + 1], counted from 0";
@@ -149,7 +149,7 @@ void add_particles(std::vector<DatasetSpec>& layout, const Sizes& n) {
                     .comment = slices});
 }
 
-void add_certificate(std::vector<DatasetSpec>& layout, const Sizes& n) {
+void add_certificate(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   layout.push_back({.path = "/certificate/budget",
                     .row_shape = {n.horizon + 1, kBudgetColumns.size()},
                     .axes = {"step", "stage", "source"},
@@ -200,7 +200,7 @@ void add_timing(std::vector<DatasetSpec>& layout) {
 }  // namespace
 
 std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
-  const Sizes sizes = sizes_of(scenario);
+  const TraceSizes sizes = trace_sizes(scenario);
   std::vector<DatasetSpec> layout;
   add_plant(layout, sizes);
   add_belief_and_plan(layout, sizes);

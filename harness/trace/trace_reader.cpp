@@ -1,13 +1,13 @@
 // read_trace: the reading side of trace_file.hpp.
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "models/constants.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
@@ -18,7 +18,6 @@ namespace {
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Of what an older trace does not say.
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// Reads one file's groups into `trace`; a step is believed once it has a time.
 class TraceReader {
@@ -233,7 +232,7 @@ void TraceReader::read_budgets() {
     for (std::size_t i = k * stages; i < (k + 1) * stages; ++i) {
       // Without the dataset no model error was known to the program.
       StageBudget budget{.model = model.empty() ? 0.0 : model[i],
-                         .dynamics = dynamics.empty() ? kUnknown : dynamics[i],
+                         .dynamics = dynamics.empty() ? kNotANumber : dynamics[i],
                          .lipschitz = lipschitz[i]};
       const double* const columns = row_of(budgets, i, std::ssize(kBudgetColumns));
       for (std::size_t c = 0; c < kBudgetColumns.size(); ++c) {

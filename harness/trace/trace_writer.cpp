@@ -1,15 +1,10 @@
 // TraceWriter: the writing side of trace_file.hpp.
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/rows.hpp"
 #include "harness/trace/trace_file.hpp"
@@ -20,14 +15,6 @@ namespace {
 
 void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(std::string("step record: ") + what);
-}
-
-void synchronise(const std::string& path, int flags) {
-  const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC);
-  const bool done = descriptor >= 0 && ::fsync(descriptor) == 0;
-  const int error = errno;
-  if (descriptor >= 0) ::close(descriptor);
-  if (!done) throw IoError(path + ": cannot make it durable: " + std::strerror(error));
 }
 
 void write_header(Hdf5File& file, const Trace& header) {
@@ -45,7 +32,7 @@ void write_header(Hdf5File& file, const Trace& header) {
 
 TraceWriter::TraceWriter(std::string path, const Trace& header)
     : path_(std::move(path)),
-      file_(Hdf5File::create(path_ + ".partial")),
+      file_(Hdf5File::create(partial_path_of(path_))),
       state_dim_(header.scenario.initial_state.mean.size()),
       input_dim_(header.scenario.controller.input_lower.size()),
       horizon_(header.scenario.controller.horizon) {
@@ -183,12 +170,7 @@ void TraceWriter::finish(const Trace& trace) {
   file_.set_text("/", "outcome", outcome_name(trace.outcome));
   file_.set_text("/", "fault", trace.fault);
   file_.close();
-  synchronise(file_.path(), O_RDWR);
-  if (std::rename(file_.path().c_str(), path_.c_str()) != 0) {
-    throw IoError(path_ + ": cannot give the finished file its name: " + std::strerror(errno));
-  }
-  const auto slash = path_.rfind('/');
-  synchronise(slash == std::string::npos ? "." : path_.substr(0, slash + 1), O_RDONLY);
+  commit_partial_file(path_);
 }
 
 void write_trace(const std::string& path, const Trace& trace) {

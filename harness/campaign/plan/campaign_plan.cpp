@@ -7,7 +7,8 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-#include "harness/errors.hpp"
+#include "harness/text/json_text.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {
@@ -98,8 +99,7 @@ std::string campaign_plan_json(const Campaign& campaign) {
   json["episodes"] = campaign.episodes();
   json["traces"] = trace_keeping_name(campaign.traces);
   json["trace_sample"] = campaign.trace_sample;
-  // Names come from files: what is no UTF-8 is replaced, not thrown about.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

@@ -1,17 +1,16 @@
 #include "harness/campaign/plan/campaign_reader.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <optional>
 #include <string_view>
-#include <system_error>
 #include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "harness/scenario/yaml_text.hpp"
+#include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
 
 namespace qsmpc {
@@ -34,11 +33,8 @@ int line_of(const YamlNode& node) { return node.key_line > 0 ? node.key_line : n
 
 std::optional<std::uint64_t> parse_seed(const YamlNode& node) {
   if (node.kind != YamlNode::Kind::kText || node.quoted) return std::nullopt;
-  const char* end = node.text.data() + node.text.size();
-  std::uint64_t seed = 0;
-  const auto [stopped, error] = std::from_chars(node.text.data(), end, seed);
-  if (error != std::errc{} || stopped != end || seed >= kSeedEnd) return std::nullopt;
-  return seed;
+  const auto seed = parse_integer<std::uint64_t>(node.text);
+  return seed && *seed < kSeedEnd ? seed : std::nullopt;
 }
 
 class CampaignReader {

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/text/csv.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -81,13 +83,6 @@ std::string calibration_lines(const std::string& variant,
 }
 
 }  // namespace
-
-std::string csv_field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char letter : text) quoted += letter == '"' ? "\"\"" : std::string(1, letter);
-  return quoted + "\"";
-}
 
 std::string variants_csv(const CampaignStatistics& statistics) {
   std::string csv =

@@ -11,9 +11,6 @@
 
 namespace qsmpc {
 
-/// `text` as a field: in quotes, with those within doubled, where it needs them.
-[[nodiscard]] std::string csv_field(const std::string& text);
-
 /// A line a variant, difference and quantity, or bin; wall-clock values in the last columns. Of the
 /// bins, those that have periods; of all variants together, `variant` is empty.
 [[nodiscard]] std::string variants_csv(const CampaignStatistics& statistics);

@@ -5,12 +5,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/text/json_text.hpp"
+#include "harness/trace/json_values.hpp"
+
 namespace qsmpc {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json interval_json(const RateInterval& interval) { return {interval.lower, interval.upper}; }
 
 Json spread_json(const Spread& spread) {
   Json json{{"episodes", spread.count},
@@ -120,8 +121,7 @@ std::string campaign_json(const CampaignStatistics& statistics) {
   }
   json["exceedance_p_value"] = statistics.p_value;
   json["calibration"] = calibration_json(statistics.calibration, statistics.published);
-  // Names come from files: what is no UTF-8 is replaced, not thrown about.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json);
 }
 
 }  // namespace qsmpc

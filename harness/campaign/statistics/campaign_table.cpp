@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/errors.hpp"
+#include "harness/text/number_format.hpp"
+#include "harness/text/printable.hpp"
+#include "harness/text/text_width.hpp"
 
 namespace qsmpc {
 namespace {
@@ -22,11 +24,7 @@ constexpr std::size_t kNinetyFifth = 5;
 
 /// `text` cut to `width` columns. The mark of a cut text is one column and three bytes.
 std::string cut(const std::string& text, std::size_t width) {
-  std::string shown = printable(text, width - 2);  // the mark and a gap follow
-  std::size_t columns = 0;
-  for (const char letter : shown) columns += (static_cast<unsigned char>(letter) & 0xC0) != 0x80;
-  if (columns < width) shown.append(width - columns, ' ');
-  return shown;
+  return padded(printable(text, width - 2), width);  // the mark and a gap follow
 }
 
 std::string head_name(const char* text) { return fmt::format("     {:<{}}", text, kNameWidth); }
@@ -38,9 +36,7 @@ std::string name_of(const CampaignStatistics& statistics, std::size_t variant) {
 /// At most 9 characters.
 std::string number(double value) {
   if (!std::isfinite(value)) return "-";
-  const double size = std::abs(value);
-  const bool plain = size == 0.0 || (size >= 1e-2 && size < 1e4);
-  return plain ? fmt::format("{:.4g}", value) : fmt::format("{:.2e}", value);
+  return is_plain_in_table(value) ? fmt::format("{:.4g}", value) : fmt::format("{:.2e}", value);
 }
 
 std::string probability(double value) {

@@ -11,8 +11,6 @@
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/statistics/binomial_interval.hpp"
 #include "harness/statistics/quantiles.hpp"
-#include "harness/trace/summary.hpp"
-#include "models/constants.hpp"
 
 namespace qsmpc {
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

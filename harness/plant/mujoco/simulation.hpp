@@ -12,6 +12,7 @@
 
 #include "harness/plant/mujoco/applied_forces.hpp"
 #include "harness/plant/mujoco/control_binding.hpp"
+#include "harness/plant/mujoco/loaded_vehicle.hpp"
 #include "harness/plant/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 #include "harness/plant/mujoco/state_binding.hpp"
@@ -49,12 +50,6 @@ struct SimulationSnapshot {
   std::vector<Eigen::VectorXd> tyre_loads;  // N
   Eigen::VectorXd state;
   long steps = 0;
-};
-
-/// A model with its time step and variation, and the mapping that goes with it.
-struct LoadedVehicle {
-  MujocoModelPtr model;
-  PlantMapping mapping;
 };
 
 /// Throws MujocoError on any error or warning of MuJoCo, and on a state that is not finite or

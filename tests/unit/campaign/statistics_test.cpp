@@ -166,13 +166,6 @@ TEST(CampaignTable, keeps_its_lines_short_and_marks_names_that_it_cuts) {
   EXPECT_EQ(table.find("inf"), std::string::npos);
 }
 
-TEST(CampaignCsv, quotes_a_field_that_needs_it) {
-  EXPECT_EQ(csv_field("plain text"), "plain text");
-  EXPECT_EQ(csv_field("a,b"), "\"a,b\"");
-  EXPECT_EQ(csv_field("say \"a\""), "\"say \"\"a\"\"\"");
-  EXPECT_EQ(csv_field("two\nlines"), "\"two\nlines\"");
-}
-
 /// Fields of a line, quotes considered.
 std::size_t field_count(const std::string& line) {
   std::size_t count = 1;

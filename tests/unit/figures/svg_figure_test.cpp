@@ -9,7 +9,6 @@
 
 #include "harness/figures/palette.hpp"
 #include "harness/report/page_assets.hpp"
-#include "harness/text/text_width.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
@@ -155,21 +154,6 @@ TEST(SvgFigure, entries_of_a_legend_stand_side_by_side_while_they_fit) {
   EXPECT_TRUE(contains(svg_figure({chart}), "height=\"" + std::to_string(std::lround(low))));
   chart.series.back().name = std::string(100, 'm');  // two lines, and the limit below
   EXPECT_TRUE(contains(svg_figure({chart}), "height=\"" + std::to_string(std::lround(low) + 51)));
-}
-
-TEST(TextLayout, lines_are_broken_at_spaces_and_never_within_a_character) {
-  using Lines = std::vector<std::string>;
-  EXPECT_EQ(wrapped("one two three", 8), (Lines{"one two", "three"}));
-  EXPECT_EQ(wrapped("abcdef", 4), (Lines{"abcd", "ef"}));
-  EXPECT_EQ(wrapped("€€€ €€", 3), (Lines{"€€€", "€€"}));
-  EXPECT_EQ(wrapped("€€€€", 3), (Lines{"€€€", "€"}));
-  EXPECT_TRUE(wrapped("", 5).empty());
-}
-
-TEST(TextLayout, width_counts_characters_and_grows_with_the_font) {
-  EXPECT_DOUBLE_EQ(estimated_width("ä", 10.0), estimated_width("a", 10.0));
-  EXPECT_GT(estimated_width("速", 10.0), estimated_width("a", 10.0));
-  EXPECT_DOUBLE_EQ(estimated_width("abc", 20.0), 2.0 * estimated_width("abc", 10.0));
 }
 
 TEST(ChartDrawing, names_stand_in_place_of_numbers) {

@@ -93,6 +93,23 @@ TEST(PendingFile, a_folder_of_the_final_name_is_reported) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.txt.partial"));
 }
 
+TEST(CommitPartialFile, gives_a_finished_file_its_name) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.txt", "old");
+  (void)folder.file("a.txt.partial", "new");
+  EXPECT_EQ(partial_path_of(path), path + ".partial");
+  commit_partial_file(path);
+  EXPECT_EQ(content_of(path), "new");
+  EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
+}
+
+TEST(CommitPartialFile, keeps_the_old_file_where_there_is_no_finished_one) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.txt", "old");
+  EXPECT_THAT(io_error_of([&] { commit_partial_file(path); }), HasSubstr(path));
+  EXPECT_EQ(content_of(path), "old");
+}
+
 TEST(MakeOutputFolder, makes_all_folders_above_and_accepts_one_that_is_there) {
   const TemporaryFolder folder;
   make_output_folder(folder / "a/b/c");

@@ -49,6 +49,21 @@ TEST(SortedDistribution, has_the_figures_of_a_summary) {
   EXPECT_TRUE(std::isnan(SortedDistribution(0).result().mean));
 }
 
+TEST(DistributionOrZeros, takes_a_sample_in_any_order) {
+  const Distribution result = distribution_or_zeros({3.0, 1.0, 5.0, 2.0});
+  EXPECT_EQ(result.median, 2.0);
+  EXPECT_EQ(result.p99, 5.0);
+  EXPECT_EQ(result.max, 5.0);
+  EXPECT_EQ(result.mean, 2.75);
+}
+
+TEST(DistributionOrZeros, of_nothing_is_zero) {
+  const Distribution result = distribution_or_zeros({});
+  for (const double value : {result.median, result.p95, result.p99, result.max, result.mean}) {
+    EXPECT_EQ(value, 0.0);
+  }
+}
+
 TEST(RunningMean, is_that_of_the_whole_sample_also_far_from_zero) {
   std::vector<double> sample;
   RunningMean running;

@@ -1,5 +1,6 @@
 #include "harness/text/number_format.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -56,6 +57,15 @@ TEST(FormatBound, the_smallest_numbers_do_not_break_it) {
 TEST(FormatFixed, zero_has_no_sign) {
   EXPECT_EQ(format_fixed(-0.001, 1), "0.0");
   EXPECT_EQ(format_fixed(-2.5, 1), "−2.5");
+}
+
+TEST(PlainInTable, holds_for_zero_and_ordinary_sizes) {
+  for (const double value : {0.0, -0.0, 0.01, -0.01, 1.0, -9999.9}) {
+    EXPECT_TRUE(is_plain_in_table(value)) << value;
+  }
+  for (const double value : {0.00999, -1e4, kInfinity, std::nan("")}) {
+    EXPECT_FALSE(is_plain_in_table(value)) << value;
+  }
 }
 
 }  // namespace number_format_test

@@ -1,0 +1,15 @@
+// The section `controller` of a scenario.
+#pragma once
+
+#include "harness/scenario/scenario.hpp"
+#include "harness/scenario/yaml_section.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+/// Reads `section`, with defaults filled in; `system` is the one that is controlled. Everything
+/// wrong with it is noted.
+[[nodiscard]] Scenario::Controller read_controller(Section& section,
+                                                   const SystemDescription& system);
+
+}  // namespace qsmpc

@@ -1,0 +1,39 @@
+// Values that several sections of a scenario hold, read and checked.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/safe_set.hpp"
+#include "harness/scenario/yaml_section.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc {
+
+inline constexpr NumberRange kNotNegative{.least = 0.0};
+inline constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
+
+/// The symmetric, positive semidefinite matrix under `key`, of the size of `fallback`; `fallback`
+/// where there is none, or another one, which is noted.
+[[nodiscard]] Eigen::MatrixXd semidefinite(Section& section, const std::string& key,
+                                           const Eigen::MatrixXd& fallback);
+
+struct IntervalOptions {
+  Box fallback;         ///< of coordinates that are not named
+  bool finite = false;  ///< whether infinite ends are refused
+};
+
+/// Intervals of coordinates, as a box.
+struct NamedIntervals {
+  Box box;
+  bool any = false;  ///< whether a coordinate is named
+};
+
+/// The intervals that `section` has by the names of `coordinates`. Any other key is noted.
+[[nodiscard]] NamedIntervals read_intervals(Section& section,
+                                            const std::vector<Coordinate>& coordinates,
+                                            const IntervalOptions& options);
+
+}  // namespace qsmpc
