@@ -30,8 +30,8 @@ constexpr Colour kBar{0.1F, 0.3F, 0.9F};
 Image test_image(int index) {
   Image image{kWidth, kHeight, {}};
   image.rgb.resize(3 * kWidth * kHeight);
-  fill_rectangle(image, {0.0, 0.0, kWidth, kHeight}, kGround);
-  fill_rectangle(image, {3.0 * index, 60.0, 20.0, 30.0}, kBar);
+  Canvas(image).fill_rectangle({0.0, 0.0, kWidth, kHeight}, kGround);
+  Canvas(image).fill_rectangle({3.0 * index, 60.0, 20.0, 30.0}, kBar);
   return image;
 }
 

@@ -32,7 +32,7 @@ Image test_image(int index) {
     image.rgb[i + 1] = 60;
     image.rgb[i + 2] = 30;
   }
-  fill_rectangle(image, {3.0 * index, 60.0, 20.0, 30.0}, {0.1F, 0.3F, 0.9F});
+  Canvas(image).fill_rectangle({3.0 * index, 60.0, 20.0, 30.0}, {0.1F, 0.3F, 0.9F});
   return image;
 }
 
