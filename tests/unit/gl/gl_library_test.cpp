@@ -14,7 +14,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "render/media/png_file.hpp"
+#include "render/media/png_image.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
@@ -42,7 +42,7 @@ void draw(const std::string& library, const std::string& path) {
   const Frame frame = example_frame();
   Image image;
   renderer.draw(frame, image);
-  write_png(path, image);
+  std::ofstream(path, std::ios::binary) << encode_png(image);
   const PixelPoint vehicle = renderer.locate(frame, {frame.pose.x, frame.pose.y}, 0.2).value();
   std::cout << vehicle.x << ' ' << vehicle.y << ' ' << gl_description() << '\n';
 }
