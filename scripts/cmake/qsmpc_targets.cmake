@@ -26,19 +26,34 @@ if(QSMPC_SANITIZE)
   target_link_options(qsmpc_options INTERFACE -fsanitize=${QSMPC_SANITIZE})
 endif()
 
-# What nearly every source includes is parsed once: the libraries share one precompiled header, the
-# tests another. Sources include what they use all the same; scripts/check-style compiles them
-# without it.
+# What nearly every source includes is parsed once a group of targets: controller (all that plans and
+# certifies, at -O3), harness (the rest of the program, whose own loops take no time) and tests.
+# Sources include what they use all the same; scripts/check-style reads them without it.
 set(qsmpc_common_headers
   <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits> <map> <memory>
   <mutex> <optional> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Core>)
+set(qsmpc_controller_options "")
+set(qsmpc_harness_options $<$<CONFIG:Release>:-O2>)
+set(qsmpc_tests_options $<$<CONFIG:Release>:-O1>)
+
+# qsmpc_headers(GROUP [LINK libraries…] [HEADERS …]): the precompiled header of a group.
+function(qsmpc_headers group)
+  cmake_parse_arguments(ARG "" "" "LINK;HEADERS" ${ARGN})
+  set(source ${CMAKE_BINARY_DIR}/precompiled_${group}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  add_library(qsmpc_${group}_headers OBJECT ${source})
+  target_link_libraries(qsmpc_${group}_headers PRIVATE qsmpc_options ${ARG_LINK})
+  target_compile_options(qsmpc_${group}_headers PRIVATE ${qsmpc_${group}_options})
+  if(NOT group STREQUAL "tests")
+    set_target_properties(qsmpc_${group}_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  endif()
+  target_precompile_headers(qsmpc_${group}_headers PRIVATE ${qsmpc_common_headers} ${ARG_HEADERS})
+endfunction()
 
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
-file(WRITE ${CMAKE_BINARY_DIR}/qsmpc_headers.cpp "")
-add_library(qsmpc_headers OBJECT ${CMAKE_BINARY_DIR}/qsmpc_headers.cpp)
-target_link_libraries(qsmpc_headers PRIVATE qsmpc_options Eigen3::Eigen)
-set_target_properties(qsmpc_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
-target_precompile_headers(qsmpc_headers PRIVATE ${qsmpc_common_headers})
+find_package(fmt REQUIRED)
+qsmpc_headers(controller LINK Eigen3::Eigen)
+qsmpc_headers(harness LINK Eigen3::Eigen fmt::fmt HEADERS <fmt/format.h>)
 
 # qsmpc_library(NAME SOURCES… [ALONE sources…] LINK libraries…): one room as a static library.
 # ALONE: sources that no batch can hold, such as SIMD kernels, which Highway compiles once for every
@@ -49,5 +64,11 @@ function(qsmpc_library name)
   set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_link_libraries(${name} PUBLIC qsmpc_options ${ARG_LINK})
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
-  target_precompile_headers(${name} REUSE_FROM qsmpc_headers)
+  if(CMAKE_CURRENT_SOURCE_DIR MATCHES "/(controller|models)$")
+    set(group controller)
+  else()
+    set(group harness)
+  endif()
+  target_compile_options(${name} PRIVATE ${qsmpc_${group}_options})
+  target_precompile_headers(${name} REUSE_FROM qsmpc_${group}_headers)
 endfunction()

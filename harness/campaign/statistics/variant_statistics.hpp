@@ -11,6 +11,7 @@
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/statistics/binomial_interval.hpp"
 #include "harness/statistics/quantiles.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 
