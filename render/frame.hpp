@@ -1,5 +1,5 @@
 // What a picture shows, as plain values: nothing here knows of planners or episodes.
-// Lengths are metres in the plane of the ground unless a name says otherwise.
+// Lengths are metres in the plane of the ground unless a name says otherwise; text is UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -64,12 +64,12 @@ struct TubeSection {
 /// A horizontal line in a strip chart, e.g. a deadline.
 struct ChartLimit {
   double value = 0.0;
-  std::string label{};  ///< ASCII
+  std::string label{};
 };
 
 /// One strip chart of the head-up display: the history of a quantity up to now.
 struct StripChart {
-  std::string label{};           ///< e.g. "yaw_rate [rad/s]"; ASCII
+  std::string label{};           ///< e.g. "yaw_rate [rad/s]"
   std::string value{};           ///< the newest, as text
   std::vector<double> values{};  ///< one a control period, oldest first
   std::size_t slots = 0;  ///< periods that the time axis holds; less than values: their number

@@ -2,19 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
-
-#include <Eigen/Cholesky>
 
 #include "controller/certification/error_truncation.hpp"
 #include "controller/certification/statistical_linearisation.hpp"
 #include "controller/certification/unicycle_residual.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Bounds of a sum.
 StageError added(const StageError& one, const StageError& other) {

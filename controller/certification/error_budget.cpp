@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "controller/certification/affine_surrogate.hpp"
+#include "models/constants.hpp"
 #include "models/dynamics/local_lipschitz.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// An error after a map with this Lipschitz constant. No error stays none, even where no constant
 /// is known (0 · ∞); what is not a number counts as infinite.

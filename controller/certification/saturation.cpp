@@ -13,7 +13,7 @@ namespace qsmpc {
 namespace {
 
 // Relative to the terms of a difference: what cancellation between them can leave.
-constexpr double kRounding = 16.0 * std::numeric_limits<double>::epsilon();
+constexpr double kQuadratureRounding = 16.0 * std::numeric_limits<double>::epsilon();
 
 // Quadrature of moments: how far it goes, and what the nodes can leave, relative.
 constexpr int kQuadratureReach = 12;
@@ -48,7 +48,7 @@ Excess excess(double z) {
   const double roundings = z > 0.0 ? 1.0 + z * z : 1.0;
   return {.first = std::max(0.0, density - z * tail),
           .second = std::max(0.0, (1.0 + z * z) * tail - z * density),
-          .rounding = kRounding * std::max(0.0, roundings * (1.0 + z * z) * tail)};
+          .rounding = kQuadratureRounding * std::max(0.0, roundings * (1.0 + z * z) * tail)};
 }
 
 using Rule = boost::math::quadrature::gauss<double, 10>;  // half of the nodes; they are symmetric

@@ -6,18 +6,16 @@
 #include <limits>
 #include <vector>
 
-#include <Eigen/Cholesky>
-
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Beyond this many standard deviations a normal tail is below 1e-17; it counts as kTailAllowance.
 constexpr double kTail = 8.6;
 constexpr double kTailAllowance = 1e-17;
-constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+constexpr double kWallRounding = 8.0 * std::numeric_limits<double>::epsilon();
 // t is searched over radius · 1.02 … radius · 1.02 · 2^kOctaves, then about the best of these.
 constexpr int kOctaves = 24;
 constexpr int kBisections = 5;
@@ -33,7 +31,7 @@ double before_wall(double wall, double deviation, double t) {
   const double second =
       deviation * deviation * (mass + normal_density_moment(low) - normal_density_moment(high));
   const double squares = wall * wall * mass - 2.0 * wall * first + second;
-  const double rounding = kRounding * (wall * wall + deviation * deviation) / (t * t);
+  const double rounding = kWallRounding * (wall * wall + deviation * deviation) / (t * t);
   return std::clamp(mass - squares / (t * t) + rounding, 0.0, mass);
 }
 
@@ -69,10 +67,15 @@ Eigen::VectorXd whitened_direction(const Eigen::VectorXd& across,
     if (std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis])) bounded.push_back(axis);
   }
   Eigen::VectorXd direction = Eigen::VectorXd::Zero(across.size());
-  const Eigen::MatrixXd marginal = covariance(bounded, bounded);
-  const Eigen::VectorXd offset = across(bounded);
-  const Eigen::VectorXd solution = marginal.ldlt().solve(offset);
-  direction(bounded) = solution;
+  const auto count = static_cast<Eigen::Index>(bounded.size());
+  Eigen::MatrixXd marginal(count, count);
+  Eigen::VectorXd offset(count);
+  for (Eigen::Index j = 0; j < count; ++j) {
+    offset[j] = across[bounded[j]];
+    for (Eigen::Index i = 0; i < count; ++i) marginal(i, j) = covariance(bounded[i], bounded[j]);
+  }
+  const Eigen::VectorXd solution = solve_symmetric(marginal, offset);
+  for (Eigen::Index i = 0; i < count; ++i) direction[bounded[i]] = solution[i];
   return direction;
 }
 

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "controller/certification/unicycle_fit.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// z = (x, u): the box of a stage and how far its points are from the centre of the expansion.
 struct Neighbourhood {
   Eigen::VectorXd lower;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <Eigen/LU>
@@ -11,11 +10,10 @@
 #include "controller/certification/smoothed_bound.hpp"
 #include "controller/measure/normal/bivariate_normal.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // ½ · max over sets A of ∫_A ∂²p for a standard normal density p: a quarter of E|Z² − 1|, which is
 // 4φ(1); rounded up.
 constexpr double kCurvature = 0.24198;

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "models/constants.hpp"
+
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Moves mass in the order of its unit cost until `budget` is spent; returns the mass moved.
 double greedy_transport(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -26,9 +26,7 @@ void check_gaussian(const Gaussian& gaussian) {
   if (asymmetry.cwiseAbs().maxCoeff() > allowance) {
     throw std::invalid_argument("Gaussian: the covariance is not symmetric");
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gaussian.covariance,
-                                                             Eigen::EigenvaluesOnly);
-  if (eigen.eigenvalues().minCoeff() < -allowance) {
+  if (symmetric_eigenvalues(gaussian.covariance).minCoeff() < -allowance) {
     throw std::invalid_argument("Gaussian: the covariance is not positive semidefinite");
   }
 }

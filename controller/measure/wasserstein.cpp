@@ -7,10 +7,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 #include <lemon/network_simplex.h>
 #include <lemon/smart_graph.h>
+
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -103,8 +104,8 @@ double transport_cost(const Supply& from, const Supply& to) {
 
 /// A matrix R with R Rᵀ = covariance.
 Eigen::MatrixXd root(const Eigen::MatrixXd& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  return eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "controller/planning/cost/angular_target.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
@@ -103,7 +104,6 @@ Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
 /// Over the inputs of all stages and `entries` entries of the gains, which are not bounded.
 void Planner::make_search(Eigen::Index entries, Search& out) {
   const Eigen::Index inputs = Eigen::Index{dynamics_.input_dim()} * settings_.horizon;
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   out.problem.lower.setConstant(inputs + entries, -kInfinity);
   out.problem.upper.setConstant(inputs + entries, kInfinity);
   out.problem.lower.head(inputs) = settings_.bounds.lower.replicate(settings_.horizon, 1);

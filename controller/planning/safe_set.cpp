@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <string>
 
+#include "models/constants.hpp"
+
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void check_box(const Box& box, Eigen::Index dim, const std::string& name) {
   if (box.lower.size() != dim || box.upper.size() != dim) {

@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "models/linear_algebra.hpp"
+
 namespace qsmpc {
 namespace {
 
@@ -16,6 +18,18 @@ constexpr int kSmall = 8;
 using SmallMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kSmall, kSmall>;
 using SmallVector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSmall, 1>;
 
+struct SmallEigen {
+  SmallVector values;
+  SmallMatrix vectors;
+};
+
+SmallEigen eigen_of(const SmallMatrix& matrix) {
+  const Eigen::SelfAdjointEigenSolver<SmallMatrix> solver(matrix);
+  return {.values = solver.eigenvalues(), .vectors = solver.eigenvectors()};
+}
+
+SymmetricEigen eigen_of(const Eigen::MatrixXd& matrix) { return symmetric_eigen(matrix); }
+
 template <class Matrix>
 Matrix symmetric(const Matrix& matrix) {
   return 0.5 * (matrix + matrix.transpose());
@@ -24,28 +38,28 @@ Matrix symmetric(const Matrix& matrix) {
 template <class Matrix, class Vector>
 void spread(const Matrix& from, const Matrix& to, Eigen::MatrixXd& out) {
   const Eigen::Index dim = from.rows();
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(from);
-  const double least = kNoVariance * eigen.eigenvalues()[dim - 1];
+  const auto eigen = eigen_of(from);
+  const double least = kNoVariance * eigen.values[dim - 1];
   Eigen::Index null = 0;  // eigenvalues increase
-  while (null < dim && eigen.eigenvalues()[null] <= least) ++null;
+  while (null < dim && eigen.values[null] <= least) ++null;
   const Eigen::Index rank = dim - null;
   out.setIdentity(dim, dim);
   if (rank == 0) return;
   // In the coordinates of the support U, where U'·from·U is diagonal.
-  const Matrix support = eigen.eigenvectors().rightCols(rank);
-  const Vector deviation = eigen.eigenvalues().tail(rank).cwiseSqrt();
+  const Matrix support = eigen.vectors.rightCols(rank);
+  const Vector deviation = eigen.values.tail(rank).cwiseSqrt();
   const Matrix reached = to * support;
   const Matrix projected = support.transpose() * reached;
   const Matrix scaled_target = deviation.asDiagonal() * projected * deviation.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> target(symmetric<Matrix>(scaled_target));
-  const Vector roots = target.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  const Matrix stretched = target.eigenvectors() * roots.asDiagonal();
-  const Matrix root = stretched * target.eigenvectors().transpose();
+  const auto target = eigen_of(symmetric<Matrix>(scaled_target));
+  const Vector roots = target.values.cwiseMax(0.0).cwiseSqrt();
+  const Matrix stretched = target.vectors * roots.asDiagonal();
+  const Matrix root = stretched * target.vectors.transpose();
   const Vector inverse = deviation.cwiseInverse();
   const Matrix scaled_root = inverse.asDiagonal() * root * inverse.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix> stretch(symmetric<Matrix>(scaled_root));
-  const Matrix directions = support * stretch.eigenvectors();
-  const Vector excess = stretch.eigenvalues().cwiseMin(kLargestStretch).array() - 1.0;
+  const auto stretch = eigen_of(symmetric<Matrix>(scaled_root));
+  const Matrix directions = support * stretch.vectors;
+  const Vector excess = stretch.values.cwiseMin(kLargestStretch).array() - 1.0;
   const Matrix weighted = directions * excess.asDiagonal();
   out.noalias() += weighted * directions.transpose();
 }

@@ -28,12 +28,12 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kCampaignHelp =
     "Drives many episodes: scenarios, settings and plants with many seeds, on all cores; writes a\n"
     "store (campaign.sqlite), statistics (campaign.json, CSV files), figures and a page "
     "(report.html).\n"
     "Started again on the same folder, it goes on where it stopped.";
-constexpr const char* kExample =
+constexpr const char* kCampaignExample =
     "Example: qsmpc campaign dubins_policies --out out/policies\n"
     "How far it is, from another terminal: qsmpc campaign status out/policies\n"
     "On two machines: qsmpc campaign dubins_policies --shard 1/2 --out out/one, --shard 2/2 on "
@@ -141,8 +141,8 @@ void add_campaign_options(CLI::App& command, CampaignArguments& arguments) {
 }  // namespace
 
 void add_campaign_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("campaign", kHelp);
-  command->footer(kExample);
+  CLI::App* command = app.add_subcommand("campaign", kCampaignHelp);
+  command->footer(kCampaignExample);
   const auto arguments = std::make_shared<CampaignArguments>();
   arguments->options.jobs = std::min(kMostJobs, available_threads());
   add_campaign_options(*command, *arguments);

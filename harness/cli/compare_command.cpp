@@ -32,12 +32,12 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kCompareHelp =
     "Measures how far plants are from the planner's model, in closed loop, in every period and "
     "along\n"
     "a plan, and what that does to the certificates; writes comparison.json, comparison.h5,\n"
     "scenario.yaml, figures and a page (report.html).";
-constexpr const char* kExample =
+constexpr const char* kCompareExample =
     "Example: qsmpc compare dubins_corridor --plant analytic --plant mujoco_car --episodes 50\n"
     "A plant is \"analytic\", \"mujoco\" (the scenario's own vehicle), the name of a shipped one, "
     "or the\n"
@@ -127,8 +127,8 @@ int compare(CompareArguments& arguments) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("compare", kHelp);
-  command->footer(kExample);
+  CLI::App* command = app.add_subcommand("compare", kCompareHelp);
+  command->footer(kCompareExample);
   const auto arguments = std::make_shared<CompareArguments>();
   ComparisonOptions& options = arguments->options;
   add_scenario_argument(*command, arguments->scenario);

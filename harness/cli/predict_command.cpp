@@ -27,11 +27,11 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kPredictHelp =
     "Plans once from the scenario's initial belief, without a plant, and writes the measures "
     "along\n"
     "the horizon, their error and their certificates: predict.h5, predict.json and scenario.yaml.";
-constexpr const char* kExample =
+constexpr const char* kPredictExample =
     "Examples: qsmpc predict dubins_corridor --steps 6 --monte-carlo 100000\n"
     "          qsmpc predict dubins_corridor --inputs my_inputs.csv --json\n"
     "FILE has one line a stage and one number an input, separated by commas; a first line may "
@@ -118,8 +118,8 @@ int predict(const PredictArguments& arguments) {
 }  // namespace
 
 void add_predict_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("predict", kHelp);
-  command->footer(kExample);
+  CLI::App* command = app.add_subcommand("predict", kPredictHelp);
+  command->footer(kPredictExample);
   const auto arguments = std::make_shared<PredictArguments>();
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);

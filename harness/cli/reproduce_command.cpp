@@ -22,7 +22,7 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kReproduceHelp =
     "Does the reference thesis's experiments again and lays each number beside the published one;\n"
     "writes results.json, results.md, results.html and the figures, after every experiment anew.";
 constexpr int kMostSeeds = 100'000;
@@ -91,7 +91,7 @@ int reproduce_command(ReproduceArguments& arguments) {
 }  // namespace
 
 void add_reproduce_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("reproduce", kHelp);
+  CLI::App* command = app.add_subcommand("reproduce", kReproduceHelp);
   command->footer(example());
   const auto arguments = std::make_shared<ReproduceArguments>();
   LaboratoryOptions& options = arguments->options;

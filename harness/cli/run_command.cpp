@@ -28,10 +28,10 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kHelp =
+constexpr const char* kRunHelp =
     "Runs one closed-loop episode and writes episode.h5, summary.json, scenario.yaml, episode.mp4\n"
     "and report.html.";
-constexpr const char* kExample =
+constexpr const char* kRunExample =
     "Example: qsmpc run dubins_obstacles --seed 3 --set controller.horizon=10 --out out/ten";
 
 struct RunArguments {
@@ -109,8 +109,8 @@ int run(const RunArguments& arguments) {
 }  // namespace
 
 void add_run_command(CLI::App& app, int& exit_code) {
-  CLI::App* command = app.add_subcommand("run", kHelp);
-  command->footer(kExample);
+  CLI::App* command = app.add_subcommand("run", kRunHelp);
+  command->footer(kRunExample);
   const auto arguments = std::make_shared<RunArguments>();
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);

@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <string>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
 #include "harness/figures/contour_lines.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -54,12 +54,12 @@ PrincipalAxes principal_axes_of(const Eigen::Ref<const Eigen::MatrixXd>& points,
   const double freedom = 1.0 - weights.squaredNorm();
   Eigen::MatrixXd covariance = centred * weights.asDiagonal() * centred.transpose();
   if (freedom > 0.0) covariance /= freedom;
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> principal(covariance);
-  const Eigen::VectorXd deviations = principal.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  const SymmetricEigen principal = symmetric_eigen(covariance);
+  const Eigen::VectorXd deviations = principal.values.cwiseMax(0.0).cwiseSqrt();
   const double least =
       std::max(kLeastOfGreatest * deviations.maxCoeff(), kLeastOfMean * mean.cwiseAbs().maxCoeff());
   const Eigen::VectorXd raised = deviations.cwiseMax(least > 0.0 ? least : kLeastOfZero);
-  return {.mean = mean, .axes = principal.eigenvectors() * raised.asDiagonal()};
+  return {.mean = mean, .axes = principal.vectors * raised.asDiagonal()};
 }
 
 /// h = n^(−1/(d + 4)).

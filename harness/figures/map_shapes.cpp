@@ -6,8 +6,9 @@
 #include <map>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
+
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -67,9 +68,9 @@ std::string arrow_svg(const MapCanvas& canvas, const std::vector<MapPoint>& poin
 }
 
 Eigen::Matrix2d principal_axes(const Eigen::Matrix2d& covariance) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> principal(covariance);
-  const Eigen::Vector2d deviations = principal.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return principal.eigenvectors() * deviations.asDiagonal();
+  const SymmetricEigen principal = symmetric_eigen(covariance);
+  const Eigen::Vector2d deviations = principal.values.cwiseMax(0.0).cwiseSqrt();
+  return principal.vectors * deviations.asDiagonal();
 }
 
 std::string ellipse_svg(const MapCanvas& canvas, const Eigen::Vector2d& mean,

@@ -50,6 +50,12 @@ void sync_path(const std::string& path, int flags) {
   if (error != 0) fail(path, "be written to disk", error);
 }
 
+// The name itself is durable once its folder is synced.
+void publish(const std::string& partial_path, const std::string& path) {
+  sync_path(partial_path, 0);
+  if (::rename(partial_path.c_str(), path.c_str()) != 0) fail(path, "be written", errno);
+}
+
 std::string folder_of(const std::string& path) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return folder.empty() ? "." : folder;
@@ -59,12 +65,12 @@ std::string folder_of(const std::string& path) {
 
 std::string partial_path_of(const std::string& path) { return path + ".partial"; }
 
-void commit_partial_file(const std::string& path) {
-  const std::string partial = partial_path_of(path);
-  sync_path(partial, 0);
-  if (::rename(partial.c_str(), path.c_str()) != 0) fail(path, "be written", errno);
+void commit_file(const std::string& partial_path, const std::string& path) {
+  publish(partial_path, path);
   sync_path(folder_of(path), O_DIRECTORY);
 }
+
+void commit_partial_file(const std::string& path) { commit_file(partial_path_of(path), path); }
 
 PendingFile::PendingFile(std::string path)
     : path_(std::move(path)), partial_path_(partial_path_of(path_)) {
@@ -96,8 +102,9 @@ void PendingFile::close_file() {
 
 void PendingFile::commit() {
   close_file();
-  commit_partial_file(path_);
+  publish(partial_path_, path_);
   committed_ = true;
+  sync_path(folder_of(path_), O_DIRECTORY);
 }
 
 void write_file(const std::string& path, std::string_view text) {

@@ -51,6 +51,11 @@ class PendingFile {
   bool committed_ = false;
 };
 
+/// Makes the file at `partial_path`, which is whole, durable, then visible under the name `path` in
+/// the same folder, replacing what stood there. Throws IoError on any failure; `path` then still
+/// holds what it held before.
+void commit_file(const std::string& partial_path, const std::string& path);
+
 /// Writes `text` to `path` in one piece, as PendingFile does. Throws IoError.
 void write_file(const std::string& path, std::string_view text);
 

@@ -8,7 +8,7 @@
 #include "harness/errors.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/scenario/scenario_file.hpp"
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

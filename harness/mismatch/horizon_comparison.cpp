@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "controller/measure/wasserstein.hpp"
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 #include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {

@@ -5,7 +5,7 @@
 #include <chrono>
 #include <memory>
 
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 #include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {

@@ -6,7 +6,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

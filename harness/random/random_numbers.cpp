@@ -5,10 +5,11 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <Random123/boxmuller.hpp>
 #include <Random123/philox.h>
 #include <Random123/uniform.hpp>
+
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -31,12 +32,12 @@ Eigen::MatrixXd symmetric_root(const Eigen::MatrixXd& covariance) {
   if (!covariance.isApprox(covariance.transpose(), kRelativeRounding)) {
     throw std::invalid_argument("covariance that is not symmetric");
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);
-  if (solver.eigenvalues().minCoeff() < -kRelativeRounding * scale) {
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  if (eigen.values.minCoeff() < -kRelativeRounding * scale) {
     throw std::invalid_argument("covariance that is not positive semidefinite");
   }
-  const Eigen::VectorXd deviations = solver.eigenvalues().cwiseMax(0.0).cwiseSqrt();
-  return solver.eigenvectors() * deviations.asDiagonal() * solver.eigenvectors().transpose();
+  const Eigen::VectorXd deviations = eigen.values.cwiseMax(0.0).cwiseSqrt();
+  return eigen.vectors * deviations.asDiagonal() * eigen.vectors.transpose();
 }
 
 }  // namespace

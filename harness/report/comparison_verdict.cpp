@@ -12,9 +12,9 @@
 namespace qsmpc {
 namespace {
 
-constexpr std::size_t kNameLimit = 120;  // bytes of a plant's name, which may be a path
+constexpr std::size_t kPlantNameLimit = 120;  // bytes of a plant's name, which may be a path
 
-std::string name_of(const PlantComparison& plant) { return printable(plant.name, kNameLimit); }
+std::string name_of(const PlantComparison& plant) { return printable(plant.name, kPlantNameLimit); }
 
 /// What is exceeded on `plant`; empty if nothing is.
 std::string exceeded_text(const PlantComparison& plant) {

@@ -11,7 +11,7 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/figures/palette.hpp"
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 #include "harness/trace/residuals.hpp"
 
 namespace qsmpc {

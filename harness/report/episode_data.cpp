@@ -12,7 +12,7 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 #include "harness/text/json_text.hpp"
 
 namespace qsmpc {

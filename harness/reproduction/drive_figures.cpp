@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kEllipsePeriod = 12;  // periods from one drawn belief to the next
 constexpr double kEllipseLevel = 0.95;
-constexpr double kLeastShown = 1e-8;  // of a probability
+constexpr double kLeastChartedProbability = 1e-8;  // of a probability
 constexpr const char* kTimeLabel = "time (s)";
 
 MapPath path_of(const Eigen::MatrixXd& states, const SystemDescription& system) {
@@ -103,7 +103,7 @@ Chart mean_chart(const std::string& title, const std::vector<NamedSample>& sampl
               .x_label = kTimeLabel,
               .y_label = "P(unsafe)",
               .y_scale = Scale::kLog,
-              .least_shown = kLeastShown};
+              .least_shown = kLeastChartedProbability};
   for (const NamedSample& named : samples) {
     chart.series.push_back(mean_series(named, values));
     chart.series.back().colour = static_cast<int>(chart.series.size() - 1) % kPaletteSize;
@@ -189,7 +189,7 @@ Chart risk_chart(const std::string& title, const Sample& sample) {
               .x_label = kTimeLabel,
               .y_label = "P(unsafe)",
               .y_scale = Scale::kLog,
-              .least_shown = kLeastShown};
+              .least_shown = kLeastChartedProbability};
   const auto add = [&](const std::string& name, int colour, bool dashed,
                        const std::function<double(std::size_t)>& value) {
     Series series{.name = name, .colour = colour, .dashed = dashed};

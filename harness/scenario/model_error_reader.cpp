@@ -22,8 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kKey = "model_error";
-constexpr std::size_t kLongestPath = 1024;  // bytes
-constexpr std::size_t kLongestName = 100;   // bytes
 constexpr std::size_t kMostPeriods = 1000;  // with errors of their own
 // Of a norm that is to be at least another one: what printing with ten digits may take away.
 constexpr double kRounding = 1e-9;

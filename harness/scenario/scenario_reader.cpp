@@ -22,9 +22,7 @@
 namespace qsmpc {
 namespace {
 
-constexpr std::size_t kLongestName = 100;         // bytes; a title, and part of file names
 constexpr std::size_t kLongestDescription = 500;  // bytes; one line
-constexpr std::size_t kLongestPath = 1024;        // bytes
 constexpr std::size_t kMostObstacles = 1000;      // every particle is held against each of them
 constexpr double kShortestPeriod = 1e-4;          // s, a simulator's step at its finest
 constexpr double kLongestPeriod = 10.0;           // s

@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "harness/text/number_parse.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -35,10 +35,8 @@ std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix) {
     }
   }
   // Scaled, so that no entry however large or small overflows on the way to the eigenvalues.
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix / scale,
-                                                              Eigen::EigenvaluesOnly);
-  const double least = solver.eigenvalues().minCoeff();
-  if (solver.info() == Eigen::Success && least >= -kMatrixTolerance) return std::nullopt;
+  const double least = symmetric_eigenvalues(matrix / scale).minCoeff();
+  if (least >= -kMatrixTolerance) return std::nullopt;
   return fmt::format("a matrix with the eigenvalue {:.6g}", least * scale);
 }
 

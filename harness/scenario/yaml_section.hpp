@@ -50,6 +50,11 @@ struct NumberRange {
   bool above_least = false;  ///< whether `least` itself is refused
 };
 
+inline constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
+
+inline constexpr std::size_t kLongestName = 100;   ///< bytes; a title, and part of file names
+inline constexpr std::size_t kLongestPath = 1024;  ///< bytes
+
 /// Which whole numbers are allowed.
 struct WholeRange {
   int least = 0;

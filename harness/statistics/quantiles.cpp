@@ -5,7 +5,7 @@
 #include <iterator>
 #include <stdexcept>
 
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 

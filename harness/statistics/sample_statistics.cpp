@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 

@@ -7,7 +7,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/cost_fields.hpp"
 #include "harness/trace/trace_file.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <Eigen/Eigenvalues>
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -41,11 +41,11 @@ PlanarMoments planar_moments(const ParticleStage& stage) {
 }
 
 PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probability) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(moments.covariance);
+  const SymmetricEigen axes = symmetric_eigen(moments.covariance);
   const double radius = planar_quantile(probability);
   const auto axis = [&](Eigen::Index i) {
-    const double deviation = std::sqrt(std::max(axes.eigenvalues()[i], 0.0));
-    return point_of(radius * deviation * axes.eigenvectors().col(i));
+    const double deviation = std::sqrt(std::max(axes.values[i], 0.0));
+    return point_of(radius * deviation * axes.vectors.col(i));
   };
   return {.centre = point_of(moments.mean), .first_axis = axis(1), .second_axis = axis(0)};
 }

@@ -15,8 +15,7 @@
 namespace qsmpc {
 namespace {
 
-constexpr double kTimeTolerance = 1e-9;  // s
-constexpr double kFlatHalfWidth = 0.5;   // m, of an obstacle in a direction that a system lacks
+constexpr double kFlatHalfWidth = 0.5;  // m, of an obstacle in a direction that a system lacks
 
 // The box's sides along x and y.
 PlanarRectangle planar_box(const SystemDescription& system, const Box& box, double missing) {
@@ -57,11 +56,6 @@ SafeSet planar_safe_set(const World& world) {
 }
 
 std::string every_nth(std::size_t every) { return fmt::format("1 of {}", every); }
-
-PlanarPose between(const PlanarPose& a, const PlanarPose& b, double share) {
-  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
-          a.heading + share * (b.heading - a.heading)};
-}
 
 }  // namespace
 

@@ -21,7 +21,7 @@ double next_certificate(const StepRecord& step) {
 }
 
 std::string bound_text(double bound) {
-  return bound < 1.0 ? fmt::format("<= {:.1e}", bound) : "<= 1";
+  return bound < 1.0 ? fmt::format("≤ {:.1e}", bound) : "≤ 1";
 }
 
 double decade_below(double value) { return std::pow(10.0, std::floor(std::log10(value))); }
@@ -54,7 +54,7 @@ class History {
 };
 
 StripChart certificate_chart(const History& history, const ChartRanges& ranges) {
-  StripChart chart = history.chart("next P(unsafe) <=", next_certificate);
+  StripChart chart = history.chart("next P(unsafe) ≤", next_certificate);
   chart.value = fmt::format("{:.1e}", chart.values.back());
   chart.lower = ranges.least_certificate;
   chart.logarithmic = true;

@@ -10,18 +10,12 @@
 namespace qsmpc {
 namespace {
 
-constexpr double kTimeTolerance = 1e-9;  // s
-constexpr double kCameraWindow = 0.35;   // s, standard deviation of the camera's smoothing
+constexpr double kCameraWindow = 0.35;  // s, standard deviation of the camera's smoothing
 
 // `angle` plus the multiple of a turn that brings it nearest to `reference`.
 double unwrapped(double angle, double reference) {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   return angle - kTurn * std::round((angle - reference) / kTurn);
-}
-
-PlanarPose between(const PlanarPose& a, const PlanarPose& b, double share) {
-  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
-          a.heading + share * (b.heading - a.heading)};
 }
 
 // Index of the last of `items`, sorted by time, that is not later than `time`; 0 if all are.
@@ -55,6 +49,11 @@ PlanarPose planar_pose(const SystemDescription& system,
                        const Eigen::Ref<const Eigen::VectorXd>& state) {
   const auto value = [&state](int index) { return index >= 0 ? state[index] : 0.0; };
   return {value(system.position_x), value(system.position_y), value(system.heading)};
+}
+
+PlanarPose between(const PlanarPose& a, const PlanarPose& b, double share) {
+  return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
+          a.heading + share * (b.heading - a.heading)};
 }
 
 EpisodeTrack::EpisodeTrack(const Trace& trace, const SystemDescription& system) {

@@ -18,6 +18,12 @@ namespace qsmpc {
 [[nodiscard]] PlanarPose planar_pose(const SystemDescription& system,
                                      const Eigen::Ref<const Eigen::VectorXd>& state);
 
+/// Times that differ by less are the same.
+inline constexpr double kTimeTolerance = 1e-9;  // s
+
+/// The pose at `share` of the way from `a` to `b`, linear in each coordinate.
+[[nodiscard]] PlanarPose between(const PlanarPose& a, const PlanarPose& b, double share);
+
 class EpisodeTrack {
  public:
   static constexpr double kEaseTime = 0.04;  ///< s

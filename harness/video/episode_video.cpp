@@ -9,11 +9,12 @@
 
 #include <fmt/format.h>
 
+#include "harness/files/atomic_file.hpp"
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/ordered_drawing.hpp"
+#include "harness/video/video_file.hpp"
 #include "render/gl/gl_library.hpp"
-#include "render/media/png_file.hpp"
-#include "render/media/video_writer.hpp"
+#include "render/media/png_image.hpp"
 
 namespace qsmpc {
 namespace {
@@ -95,8 +96,12 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
   const Clock::time_point begin = Clock::now();
   const EpisodePictures pictures(trace, layout_of(options), options.beside);
   const Timetable timetable(options, pictures.duration());
-  VideoWriter video(path, options.width, options.height, options.fps,
-                    {.format = options.format, .quality = options.quality});
+  const VideoFormat format = options.format ? *options.format : known_video_format(path);
+  VideoFile video(path, {.format = format,
+                         .width = options.width,
+                         .height = options.height,
+                         .frames_per_second = options.fps,
+                         .quality = options.quality});
   OrderedDrawing drawing({.total = timetable.total(), .threads = options.threads},
                          [&] { return make_drawer(pictures, timetable); });
   VideoTimings timings{.fps = options.fps,
@@ -104,7 +109,7 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
                        .speed = options.speed,
                        .width = options.width,
                        .height = options.height,
-                       .codec = video_codec(video.format()),
+                       .codec = video_codec(format),
                        .simulation_ms = mean_simulation_ms(trace)};
   double encoding = 0.0;
   Image image;
@@ -136,7 +141,7 @@ void write_episode_still(const Trace& trace, const EpisodeVideoOptions& options,
   EpisodePainter painter(pictures);
   Image image;
   painter.draw(time, image);
-  write_png(path, image);
+  write_file(path, encode_png(image));
 }
 
 }  // namespace qsmpc

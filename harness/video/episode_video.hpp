@@ -27,7 +27,7 @@ struct EpisodeVideoOptions {
   double from = 0.0;              ///< s of the episode, where the video begins
   double to = std::numeric_limits<double>::infinity();  ///< s, where it ends; at most the whole
   std::optional<VideoFormat> format = std::nullopt;     ///< without: by the path's ending
-  int quality = kUsualQuality;                          ///< see VideoOptions
+  int quality = kUsualQuality;                          ///< see VideoSettings
 };
 
 /// s, from the start to the end of the last control period.

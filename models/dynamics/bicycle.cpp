@@ -11,8 +11,8 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kName = "bicycle";
-constexpr const char* kSummary =
+constexpr const char* kBicycleName = "bicycle";
+constexpr const char* kBicycleSummary =
     "Dynamic bicycle on linear tyres: x, y, heading, two speeds, yaw rate; accelerated and steered "
     "(Eq. 5-4)";
 
@@ -40,8 +40,8 @@ class BicycleDynamics final : public TemplatedDynamics<Bicycle> {
 
 SystemDescription Bicycle::description() const {
   SystemDescription description;
-  description.name = kName;
-  description.summary = kSummary;
+  description.name = kBicycleName;
+  description.summary = kBicycleSummary;
   description.states = {{"x", "m"},
                         {"y", "m"},
                         {"heading", "rad", true},
@@ -67,20 +67,20 @@ double Bicycle::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const {
 }
 
 std::unique_ptr<const Dynamics> make_bicycle(const ParameterMap& parameters, double time_step) {
-  check_time_step(kName, time_step);
-  return std::make_unique<BicycleDynamics>(
-      Bicycle{.mass = positive_parameter(kName, parameters, "mass"),
-              .yaw_inertia = positive_parameter(kName, parameters, "yaw_inertia"),
-              .front_axle_distance = positive_parameter(kName, parameters, "front_axle_distance"),
-              .rear_axle_distance = positive_parameter(kName, parameters, "rear_axle_distance"),
-              .front_tyre_stiffness = negative_parameter(kName, parameters, "front_tyre_stiffness"),
-              .rear_tyre_stiffness = negative_parameter(kName, parameters, "rear_tyre_stiffness"),
-              .time_step = time_step});
+  check_time_step(kBicycleName, time_step);
+  return std::make_unique<BicycleDynamics>(Bicycle{
+      .mass = positive_parameter(kBicycleName, parameters, "mass"),
+      .yaw_inertia = positive_parameter(kBicycleName, parameters, "yaw_inertia"),
+      .front_axle_distance = positive_parameter(kBicycleName, parameters, "front_axle_distance"),
+      .rear_axle_distance = positive_parameter(kBicycleName, parameters, "rear_axle_distance"),
+      .front_tyre_stiffness = negative_parameter(kBicycleName, parameters, "front_tyre_stiffness"),
+      .rear_tyre_stiffness = negative_parameter(kBicycleName, parameters, "rear_tyre_stiffness"),
+      .time_step = time_step});
 }
 
 SystemEntry bicycle_entry() {
-  return {.name = kName,
-          .summary = kSummary,
+  return {.name = kBicycleName,
+          .summary = kBicycleSummary,
           .defaults = {{"mass", 1412.0},  // Table B-2
                        {"yaw_inertia", 1536.7},
                        {"front_axle_distance", 1.06},

@@ -9,8 +9,8 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kName = "cart_pole";
-constexpr const char* kSummary =
+constexpr const char* kCartPoleName = "cart_pole";
+constexpr const char* kCartPoleSummary =
     "Pole on a cart: position, velocity, pole angle (0 is upright), angular velocity; pushed by a "
     "force (Eq. D-3 to D-5)";
 // N. The force of the benchmark from which the default masses and length are.
@@ -20,8 +20,8 @@ constexpr double kDefaultForceBound = 10.0;
 
 SystemDescription CartPole::description() const {
   SystemDescription description;
-  description.name = kName;
-  description.summary = kSummary;
+  description.name = kCartPoleName;
+  description.summary = kCartPoleSummary;
   description.states = {{"position", "m"},
                         {"velocity", "m/s"},
                         {"pole_angle", "rad", true},
@@ -42,20 +42,20 @@ double CartPole::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const 
 }
 
 std::unique_ptr<const Dynamics> make_cart_pole(const ParameterMap& parameters, double time_step) {
-  check_time_step(kName, time_step);
-  return std::make_unique<TemplatedDynamics<CartPole>>(
-      CartPole{.cart_mass = positive_parameter(kName, parameters, "cart_mass"),
-               .pole_mass = positive_parameter(kName, parameters, "pole_mass"),
-               .pole_half_length = positive_parameter(kName, parameters, "pole_half_length"),
-               .gravity = positive_parameter(kName, parameters, "gravity"),
-               .time_step = time_step});
+  check_time_step(kCartPoleName, time_step);
+  return std::make_unique<TemplatedDynamics<CartPole>>(CartPole{
+      .cart_mass = positive_parameter(kCartPoleName, parameters, "cart_mass"),
+      .pole_mass = positive_parameter(kCartPoleName, parameters, "pole_mass"),
+      .pole_half_length = positive_parameter(kCartPoleName, parameters, "pole_half_length"),
+      .gravity = positive_parameter(kCartPoleName, parameters, "gravity"),
+      .time_step = time_step});
 }
 
 // The thesis prints no constants for this system. These are those of Barto, Sutton and Anderson,
 // "Neuronlike adaptive elements that can solve difficult learning control problems", 1983.
 SystemEntry cart_pole_entry() {
-  return {.name = kName,
-          .summary = kSummary,
+  return {.name = kCartPoleName,
+          .summary = kCartPoleSummary,
           .defaults = {
               {"cart_mass", 1.0}, {"pole_mass", 0.1}, {"pole_half_length", 0.5}, {"gravity", 9.8}}};
 }

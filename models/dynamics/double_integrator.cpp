@@ -3,26 +3,25 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
 #include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
 
 // m/s². Table B-4 bounds the speed (2 m/s) only; this reaches it within a second.
 constexpr double kDefaultAccelerationBound = 2.0;
-constexpr const char* kName = "double_integrator";
-constexpr const char* kSummary =
+constexpr const char* kDoubleIntegratorName = "double_integrator";
+constexpr const char* kDoubleIntegratorSummary =
     "Double integrator: position, velocity; driven by its acceleration (Eq. D-1, D-2)";
 
 }  // namespace
 
 SystemDescription DoubleIntegrator::description() const {
   SystemDescription description;
-  description.name = kName;
-  description.summary = kSummary;
+  description.name = kDoubleIntegratorName;
+  description.summary = kDoubleIntegratorSummary;
   description.states = {{"position", "m"}, {"velocity", "m/s"}};
   description.inputs = {{"acceleration", "m/s^2"}};
   description.input_lower = Eigen::VectorXd::Constant(1, -kDefaultAccelerationBound);
@@ -40,18 +39,18 @@ double DoubleIntegrator::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain
   const Eigen::Matrix2d saturated{{1.0, time_step}, {0.0, 1.0}};
   const Eigen::Vector2d by_input(0.5 * time_step * time_step, time_step);
   const Eigen::Matrix2d regulated = saturated + by_input * gain;
-  return std::max(saturated.operatorNorm(), regulated.operatorNorm());
+  return std::max(spectral_norm(saturated), spectral_norm(regulated));
 }
 
 std::unique_ptr<const Dynamics> make_double_integrator(const ParameterMap& /*parameters*/,
                                                        double time_step) {
-  check_time_step(kName, time_step);
+  check_time_step(kDoubleIntegratorName, time_step);
   return std::make_unique<TemplatedDynamics<DoubleIntegrator>>(
       DoubleIntegrator{.time_step = time_step});
 }
 
 SystemEntry double_integrator_entry() {
-  return {.name = kName, .summary = kSummary, .defaults = {}};
+  return {.name = kDoubleIntegratorName, .summary = kDoubleIntegratorSummary, .defaults = {}};
 }
 
 }  // namespace qsmpc

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double kDefaultSpeed = 1.5;         // m/s, Table B-1
 constexpr double kDefaultYawRateBound = 2.0;  // rad/s, Table B-1
-constexpr const char* kSummary = "Dubins car: x, y, heading; steered by its yaw rate (Eq. 5-1)";
+constexpr const char* kDubinsSummary =
+    "Dubins car: x, y, heading; steered by its yaw rate (Eq. 5-1)";
 
 /// Batches go through loops made by hand.
 class DubinsDynamics final : public TemplatedDynamics<Dubins> {
@@ -44,7 +45,7 @@ class DubinsDynamics final : public TemplatedDynamics<Dubins> {
 SystemDescription Dubins::description() const {
   SystemDescription description;
   description.name = "dubins";
-  description.summary = kSummary;
+  description.summary = kDubinsSummary;
   description.states = {{"x", "m"}, {"y", "m"}, {"heading", "rad", true}};
   description.inputs = {{"yaw_rate", "rad/s"}};
   description.input_lower = Eigen::VectorXd::Constant(1, -kDefaultYawRateBound);
@@ -85,7 +86,7 @@ std::unique_ptr<const Dynamics> make_dubins(const ParameterMap& parameters, doub
 }
 
 SystemEntry dubins_entry() {
-  return {.name = "dubins", .summary = kSummary, .defaults = {{"speed", kDefaultSpeed}}};
+  return {.name = "dubins", .summary = kDubinsSummary, .defaults = {{"speed", kDefaultSpeed}}};
 }
 
 }  // namespace qsmpc

@@ -13,8 +13,8 @@
 namespace qsmpc {
 namespace {
 
-constexpr const char* kName = "dubins_rk4";
-constexpr const char* kSummary =
+constexpr const char* kDubinsRk4Name = "dubins_rk4";
+constexpr const char* kDubinsRk4Summary =
     "Dubins car by the Runge-Kutta method: x, y, heading; steered by its yaw rate, which it holds "
     "over a period";
 
@@ -38,8 +38,8 @@ class DubinsRk4Dynamics final : public TemplatedDynamics<DubinsRk4> {
 // What the Dubins car is called, bounded and drawn by does not depend on how it is discretised.
 SystemDescription DubinsRk4::description() const {
   SystemDescription description = Dubins{.speed = speed, .time_step = time_step}.description();
-  description.name = kName;
-  description.summary = kSummary;
+  description.name = kDubinsRk4Name;
+  description.summary = kDubinsRk4Summary;
   return description;
 }
 
@@ -79,12 +79,13 @@ std::unique_ptr<const Dynamics> make_dubins_rk4(const ParameterMap& parameters, 
   if (!(std::isfinite(speed) && speed >= 0.0)) {
     throw std::invalid_argument("dubins_rk4: speed must be a finite number of at least 0 m/s");
   }
-  check_time_step(kName, time_step);
+  check_time_step(kDubinsRk4Name, time_step);
   return std::make_unique<DubinsRk4Dynamics>(DubinsRk4{.speed = speed, .time_step = time_step});
 }
 
 SystemEntry dubins_rk4_entry() {
-  return {.name = kName, .summary = kSummary, .defaults = dubins_entry().defaults};
+  return {
+      .name = kDubinsRk4Name, .summary = kDubinsRk4Summary, .defaults = dubins_entry().defaults};
 }
 
 }  // namespace qsmpc

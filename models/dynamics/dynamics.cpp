@@ -1,9 +1,9 @@
 #include "models/dynamics/dynamics.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <stdexcept>
 
+#include "models/constants.hpp"
 #include "models/dynamics/bicycle.hpp"
 #include "models/dynamics/cart_pole.hpp"
 #include "models/dynamics/double_integrator.hpp"
@@ -44,7 +44,6 @@ int SystemDescription::state_index(std::string_view wanted) const {
 }
 
 DerivativeBounds unknown_derivative_bounds(int state_dim, int input_dim) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const int arguments = state_dim + input_dim;
   const Eigen::MatrixXd jacobian = Eigen::MatrixXd::Constant(state_dim, arguments, kInfinity);
   const std::vector<Eigen::MatrixXd> hessian(

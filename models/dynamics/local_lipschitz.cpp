@@ -4,9 +4,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
+#include "models/constants.hpp"
 #include "models/dynamics/interval.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -53,9 +53,9 @@ double local_lipschitz(const DerivativeBounds& bounds,
       radius(row, column) = 0.5 * (entry.upper() - entry.lower());
     }
   }
-  if (!middle.allFinite() || !radius.allFinite()) return std::numeric_limits<double>::infinity();
-  const double split = middle.operatorNorm() + radius.operatorNorm();
-  const double largest = (middle.cwiseAbs() + radius).operatorNorm();
+  if (!middle.allFinite() || !radius.allFinite()) return kInfinity;
+  const double split = spectral_norm(middle) + spectral_norm(radius);
+  const double largest = spectral_norm(middle.cwiseAbs() + radius);
   return std::min(split, largest) * (1.0 + kRoundingAllowance);
 }
 

@@ -10,7 +10,6 @@
 // override `step` and `pullback`; the tests hold the overrides against what is derived here.
 #pragma once
 
-#include <limits>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -18,6 +17,7 @@
 #include <Eigen/Core>
 #include <unsupported/Eigen/AutoDiff>
 
+#include "models/constants.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "models/dynamics/interval.hpp"
 #include "models/dynamics/second_order_jet.hpp"
@@ -105,7 +105,6 @@ class TemplatedDynamics : public Dynamics {
   /// Throws std::invalid_argument unless lower ≤ upper is a box of (x, u) with a point in it.
   void check_box(const Eigen::Ref<const Eigen::VectorXd>& lower,
                  const Eigen::Ref<const Eigen::VectorXd>& upper) const {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     if (lower.size() != kArguments || upper.size() != kArguments) {
       throw std::invalid_argument(description_.name + ": a box must bound every state and input");
     }

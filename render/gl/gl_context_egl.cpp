@@ -11,7 +11,7 @@
 namespace qsmpc {
 namespace {
 
-struct Functions {
+struct EglFunctions {
   decltype(&::eglGetProcAddress) lookup = nullptr;
   decltype(&::eglQueryString) query_string = nullptr;
   decltype(&::eglInitialize) initialise = nullptr;
@@ -22,7 +22,7 @@ struct Functions {
   decltype(&::eglDestroyContext) destroy = nullptr;
   decltype(&::eglReleaseThread) release_thread = nullptr;
 
-  explicit Functions(void* library) {
+  explicit EglFunctions(void* library) {
     find_function(library, "eglGetProcAddress", lookup);
     find_function(library, "eglQueryString", query_string);
     find_function(library, "eglInitialize", initialise);
@@ -49,7 +49,7 @@ struct Display {
 
 class DisplaySearch {
  public:
-  explicit DisplaySearch(const Functions& functions) : functions_(functions) {
+  explicit DisplaySearch(const EglFunctions& functions) : functions_(functions) {
     get_display_ = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(
         functions.lookup("eglGetPlatformDisplayEXT"));
     extensions_ = functions.query_string(EGL_NO_DISPLAY, EGL_EXTENSIONS);
@@ -117,13 +117,13 @@ class DisplaySearch {
     return found;
   }
 
-  const Functions& functions_;
+  const EglFunctions& functions_;
   PFNEGLGETPLATFORMDISPLAYEXTPROC get_display_ = nullptr;
   const char* extensions_ = nullptr;
 };
 
 // One display for all threads, open until the process ends.
-Display shared_display(const Functions& functions) {
+Display shared_display(const EglFunctions& functions) {
   static std::mutex mutex;
   static Display display;
   const std::lock_guard lock(mutex);
@@ -160,7 +160,7 @@ class EglContext : public GlContext {
   [[nodiscard]] GlLookup lookup() const override { return functions_.lookup; }
 
  private:
-  Functions functions_;
+  EglFunctions functions_;
   EGLDisplay display_;
   EGLContext context_ = EGL_NO_CONTEXT;
 };

@@ -13,13 +13,13 @@ constexpr std::size_t kBufferSide = 16;  // pixels
 constexpr int kDepthBits = 24;
 constexpr int kStencilBits = 8;
 
-struct Functions {
+struct OsmesaFunctions {
   decltype(&::OSMesaCreateContextExt) create = nullptr;
   decltype(&::OSMesaMakeCurrent) make_current = nullptr;
   decltype(&::OSMesaDestroyContext) destroy = nullptr;
   decltype(&::OSMesaGetProcAddress) lookup = nullptr;
 
-  explicit Functions(void* library) {
+  explicit OsmesaFunctions(void* library) {
     find_function(library, "OSMesaCreateContextExt", create);
     find_function(library, "OSMesaMakeCurrent", make_current);
     find_function(library, "OSMesaDestroyContext", destroy);
@@ -52,7 +52,7 @@ class OsmesaContext : public GlContext {
   [[nodiscard]] GlLookup lookup() const override { return functions_.lookup; }
 
  private:
-  Functions functions_;
+  OsmesaFunctions functions_;
   OSMesaContext context_;
   std::array<unsigned char, 4 * kBufferSide * kBufferSide> pixels_{};
 };

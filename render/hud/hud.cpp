@@ -34,16 +34,6 @@ const Colour& chart_colour(std::size_t index) {
 
 }  // namespace
 
-std::string fitting(const Font& font, std::string text, double width) {
-  if (font.width(text) <= width) {
-    return text;
-  }
-  while (!text.empty() && font.width(text + "..") > width) {
-    text.pop_back();
-  }
-  return text + "..";
-}
-
 Hud::Hud(int width, int height) : width_(width), height_(height), style_(width, height) {}
 
 double Hud::panel_width() const {
@@ -89,52 +79,54 @@ void Hud::draw_panel(const Frame& frame, Image& image) const {
   const double fit = std::max(std::floor((room - rows - 2.0 * padding) / chart), 0.0);
   const std::size_t charts = std::min(frame.charts.size(), static_cast<std::size_t>(fit));
   const double height = std::min(rows + static_cast<double>(charts) * chart + 2.0 * padding, room);
-  fill_rectangle(image, {left, left, panel_width(), height}, hud_colour::kPanel,
-                 kCorner * style_.scale);
+  const PixelRectangle panel{left, left, panel_width(), height};
+  Canvas canvas(image, panel);
+  canvas.fill_rectangle(panel, hud_colour::kPanel, kCorner * style_.scale);
   const PixelRectangle inner{left + padding, left + padding, panel_width() - 2.0 * padding,
                              height - 2.0 * padding};
-  double top = inner.y + draw_rows(frame, inner, image);
+  double top = inner.y + draw_rows(frame, inner, canvas);
   for (std::size_t i = 0; i < charts; ++i) {
     draw_strip_chart(frame.charts[i],
                      {inner.x, top + style_.gap(), inner.width, chart - style_.gap()},
-                     chart_colour(i), style_, image);
+                     chart_colour(i), style_, canvas);
     top += chart;
   }
 }
 
-double Hud::draw_rows(const Frame& frame, const PixelRectangle& area, Image& image) const {
+double Hud::draw_rows(const Frame& frame, const PixelRectangle& area, Canvas& canvas) const {
   double used = 0.0;
   if (!frame.title.empty()) {
-    draw_text(image, style_.title, fitting(style_.title, frame.title, area.width),
-              {area.x, area.y + 0.86 * style_.title.size()}, hud_colour::kText);
+    canvas.draw_text(style_.title, fitting(style_.title, frame.title, area.width),
+                     {area.x, area.y + 0.86 * style_.title.size()}, hud_colour::kText);
     used = style_.title_height();
-    fill_rectangle(image, {area.x, area.y + 0.73 * used, area.width, 1.0}, hud_colour::kChartLine);
+    canvas.fill_rectangle({area.x, area.y + 0.73 * used, area.width, 1.0}, hud_colour::kChartLine);
   }
   for (const HudRow& row : frame.hud) {
     if (used + style_.row_height() > area.height + 1.0) break;
-    draw_row(row, {area.x, area.y + used, area.width, style_.row_height()}, image);
+    draw_row(row, {area.x, area.y + used, area.width, style_.row_height()}, canvas);
     used += style_.row_height();
   }
   return used;
 }
 
-void Hud::draw_row(const HudRow& row, const PixelRectangle& area, Image& image) const {
+void Hud::draw_row(const HudRow& row, const PixelRectangle& area, Canvas& canvas) const {
   const double baseline = area.y + 1.07 * style_.text.size();
   const std::string value = fitting(style_.text, row.value, 0.62 * area.width);
   const double value_left = area.x + area.width - style_.text.width(value);
   const std::string name = fitting(style_.text, row.name, value_left - area.x - style_.gap());
-  draw_text(image, style_.text, name, {area.x, baseline}, hud_colour::kFaintText);
-  draw_text(image, style_.text, value, {value_left, baseline}, hud_colour::kText);
+  canvas.draw_text(style_.text, name, {area.x, baseline}, hud_colour::kFaintText);
+  canvas.draw_text(style_.text, value, {value_left, baseline}, hud_colour::kText);
 }
 
 void Hud::draw_band(const Frame& frame, const PixelRectangle& area, Image& image) const {
-  fill_rectangle(image, area, hud_colour::kBand);
+  Canvas canvas(image, area);
+  canvas.fill_rectangle(area, hud_colour::kBand);
   const double padding = style_.padding();
   const PixelRectangle inner{area.x + padding, area.y + 0.7 * padding, area.width - 2.0 * padding,
                              area.height - padding};
   const double rows =
       std::min(std::max(kBandRows * style_.scale, 15.0 * style_.text.size()), 0.5 * inner.width);
-  draw_rows(frame, {inner.x, inner.y, rows, inner.height}, image);
+  draw_rows(frame, {inner.x, inner.y, rows, inner.height}, canvas);
   const double gap = 1.6 * style_.gap();
   const double left = inner.x + rows + gap;
   const double width = inner.x + inner.width - left;
@@ -153,7 +145,7 @@ void Hud::draw_band(const Frame& frame, const PixelRectangle& area, Image& image
     draw_strip_chart(
         frame.charts[i],
         {left + column * (wide + gap), inner.y + line * (high + style_.gap()), wide, high},
-        chart_colour(i), style_, image);
+        chart_colour(i), style_, canvas);
   }
 }
 
@@ -168,15 +160,18 @@ void Hud::draw_legend(const Frame& frame, Image& image) const {
   const double height = legend.height() + style_.gap();
   const double left = width_ - margin - width;
   const double top = height_ - margin - height;
-  fill_rectangle(image, {left, top, width, height}, hud_colour::kPanel, kCorner * style_.scale);
-  legend.draw({left + padding, top + 0.5 * style_.gap()}, image);
+  const PixelRectangle panel{left, top, width, height};
+  Canvas canvas(image, panel);
+  canvas.fill_rectangle(panel, hud_colour::kPanel, kCorner * style_.scale);
+  legend.draw({left + padding, top + 0.5 * style_.gap()}, canvas);
 }
 
 void Hud::draw_legend_band(const Frame& frame, const PixelRectangle& area, Image& image) const {
-  fill_rectangle(image, area, hud_colour::kBand);
+  Canvas canvas(image, area);
+  canvas.fill_rectangle(area, hud_colour::kBand);
   const auto lines = static_cast<std::size_t>(area.height / style_.row_height());
   const Legend legend(frame, style_, area.width - 2.0 * style_.padding(), lines);
-  legend.draw({area.x + style_.padding(), area.y + 0.5 * (area.height - legend.height())}, image);
+  legend.draw({area.x + style_.padding(), area.y + 0.5 * (area.height - legend.height())}, canvas);
 }
 
 void Hud::draw_banner(const Frame& frame, const PixelRectangle& area, Image& image) const {
@@ -187,19 +182,22 @@ void Hud::draw_banner(const Frame& frame, const PixelRectangle& area, Image& ima
   const double width = style_.banner.width(text) + 2.0 * inset;
   const double left = area.x + 0.5 * (area.width - width);
   const double top = area.y + std::max(64.0 * style_.scale, 24.0);
-  fill_rectangle(image, {left, top, width, 2.07 * style_.banner.size()},
-                 hud_colour::kPanel.with_alpha(0.86F), 12.0 * style_.scale);
-  draw_text(image, style_.banner, text, {left + inset, top + 1.37 * style_.banner.size()},
-            hud_colour::kText);
+  const PixelRectangle panel{left, top, width, 2.07 * style_.banner.size()};
+  Canvas canvas(image, panel);
+  canvas.fill_rectangle(panel, hud_colour::kPanel.with_alpha(0.86F), 12.0 * style_.scale);
+  canvas.draw_text(style_.banner, text, {left + inset, top + 1.37 * style_.banner.size()},
+                   hud_colour::kText);
 }
 
 void Hud::draw_heading(const std::string& text, const PixelRectangle& area, Image& image) const {
   const double padding = style_.padding();
   const std::string line = fitting(style_.text, text, area.width - 2.0 * padding);
   const double height = style_.row_height() + style_.gap();
-  fill_rectangle(image, {area.x, area.y, area.width, height}, hud_colour::kPanel);
-  draw_text(image, style_.text, line, {area.x + padding, area.y + 0.68 * height},
-            hud_colour::kText);
+  const PixelRectangle panel{area.x, area.y, area.width, height};
+  Canvas canvas(image, panel);
+  canvas.fill_rectangle(panel, hud_colour::kPanel);
+  canvas.draw_text(style_.text, line, {area.x + padding, area.y + 0.68 * height},
+                   hud_colour::kText);
 }
 
 }  // namespace qsmpc

@@ -43,8 +43,8 @@ class Hud {
   void draw_panel(const Frame& frame, Image& image) const;
   void draw_legend(const Frame& frame, Image& image) const;
   // Title and rows in `area`; returns the height that they take.
-  double draw_rows(const Frame& frame, const PixelRectangle& area, Image& image) const;
-  void draw_row(const HudRow& row, const PixelRectangle& area, Image& image) const;
+  double draw_rows(const Frame& frame, const PixelRectangle& area, Canvas& canvas) const;
+  void draw_row(const HudRow& row, const PixelRectangle& area, Canvas& canvas) const;
 
   int width_;
   int height_;

@@ -3,10 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <string>
 
 #include "render/colour.hpp"
-#include "render/hud/font.hpp"
+#include "render/hud/canvas.hpp"
 
 namespace qsmpc {
 
@@ -31,9 +30,6 @@ struct HudStyle {
   [[nodiscard]] double title_height() const { return 1.95 * title.size(); }
   [[nodiscard]] double row_height() const { return 1.57 * text.size(); }
 };
-
-/// `text`, cut so that it is at most `width` pixels wide.
-[[nodiscard]] std::string fitting(const Font& font, std::string text, double width);
 
 namespace hud_colour {
 

@@ -37,7 +37,7 @@ std::vector<Legend::Entry> Legend::entries_of(const Frame& frame) {
   const int stages = static_cast<int>(std::max(frame.particles.size(), frame.ellipses.size()));
   if (stages > 0) {
     Entry belief{
-        stages > 1 ? fmt::format("belief, stage 0-{}", stages - 1) : "belief", Mark::kDots, {}};
+        stages > 1 ? fmt::format("belief, stage 0–{}", stages - 1) : "belief", Mark::kDots, {}};
     for (int stage = 0; stage < stages; ++stage) {
       belief.colours.push_back(mix(stage_colour(stage, stages), kWhite, 0.12F));
     }
@@ -51,7 +51,7 @@ std::vector<Legend::Entry> Legend::entries_of(const Frame& frame) {
                        std::vector<Colour>(3, mix(palette::kRawPoint, kWhite, 0.25F))});
   }
   if (!frame.tube.empty()) {
-    entries.push_back({"P(unsafe) <= 1e-6..1", Mark::kRamp, ramp(tube_colour)});
+    entries.push_back({"P(unsafe) ≤ 10⁻⁶ … 1", Mark::kRamp, ramp(tube_colour)});
   }
   if (!frame.planned_path.empty()) {
     entries.push_back({"planned mean", Mark::kLine, {kWhite}});
@@ -61,7 +61,7 @@ std::vector<Legend::Entry> Legend::entries_of(const Frame& frame) {
   }
   if (!frame.clearances.empty()) {
     entries.push_back(
-        {fmt::format("driven, clearance 0..{:g} m", kCalmClearance), Mark::kRamp,
+        {fmt::format("driven, clearance 0 … {:g} m", kCalmClearance), Mark::kRamp,
          ramp([](double share) { return clearance_colour(share * kCalmClearance); })});
   } else if (!frame.driven_path.empty()) {
     entries.push_back({"driven path", Mark::kLine, {Colour{0.45F, 0.62F, 0.90F}}});
@@ -105,48 +105,48 @@ double Legend::mark_width(const Entry& entry) const {
   }
 }
 
-void Legend::draw_mark(const Entry& entry, double x, double middle, Image& image) const {
+void Legend::draw_mark(const Entry& entry, double x, double middle, Canvas& canvas) const {
   const double unit = style_.small.size() / 12.0;
   const double width = mark_width(entry);
   const auto count = static_cast<double>(entry.colours.size());
   switch (entry.mark) {
     case Entry::Mark::kDots:
       for (std::size_t i = 0; i < entry.colours.size(); ++i) {
-        fill_circle(image, {x + unit * 4.5 + static_cast<double>(i) * unit * 8.0, middle},
-                    unit * 4.2, entry.colours[i]);
+        canvas.fill_circle({x + unit * 4.5 + static_cast<double>(i) * unit * 8.0, middle},
+                           unit * 4.2, entry.colours[i]);
       }
       break;
     case Entry::Mark::kRamp:
       for (std::size_t i = 0; i < entry.colours.size(); ++i) {
         const double left = std::round(x + width * static_cast<double>(i) / count);
         const double right = std::round(x + width * static_cast<double>(i + 1) / count);
-        fill_rectangle(image, {left, std::round(middle - unit * 4.0), right - left, unit * 8.0},
-                       entry.colours[i]);
+        canvas.fill_rectangle({left, std::round(middle - unit * 4.0), right - left, unit * 8.0},
+                              entry.colours[i]);
       }
       break;
     case Entry::Mark::kRing:
-      fill_circle(image, {x + 0.5 * width, middle}, unit * 6.0, entry.colours[0]);
-      fill_circle(image, {x + 0.5 * width, middle}, unit * 4.6, hud_colour::kBand);
-      fill_circle(image, {x + 0.5 * width, middle}, unit * 3.2, entry.colours[0]);
-      fill_circle(image, {x + 0.5 * width, middle}, unit * 1.8, hud_colour::kBand);
+      canvas.fill_circle({x + 0.5 * width, middle}, unit * 6.0, entry.colours[0]);
+      canvas.fill_circle({x + 0.5 * width, middle}, unit * 4.6, hud_colour::kBand);
+      canvas.fill_circle({x + 0.5 * width, middle}, unit * 3.2, entry.colours[0]);
+      canvas.fill_circle({x + 0.5 * width, middle}, unit * 1.8, hud_colour::kBand);
       break;
     case Entry::Mark::kLine:
     case Entry::Mark::kPatch: {
       const double half = unit * (entry.mark == Entry::Mark::kLine ? 1.75 : 4.0);
-      fill_rectangle(image, {x, middle - half, width, 2.0 * half}, entry.colours[0], 1.75);
+      canvas.fill_rectangle({x, middle - half, width, 2.0 * half}, entry.colours[0], 1.75);
       break;
     }
   }
 }
 
-void Legend::draw(const PixelPoint& corner, Image& image) const {
+void Legend::draw(const PixelPoint& corner, Canvas& canvas) const {
   for (const Entry& entry : entries_) {
     const double x = corner.x + entry.x;
     const double middle = corner.y + (static_cast<double>(entry.line) + 0.5) * style_.row_height();
-    draw_mark(entry, x, middle, image);
-    draw_text(image, style_.small, entry.text,
-              {x + mark_width(entry) + style_.gap(), middle + 0.35 * style_.small.size()},
-              hud_colour::kText);
+    draw_mark(entry, x, middle, canvas);
+    canvas.draw_text(style_.small, entry.text,
+                     {x + mark_width(entry) + style_.gap(), middle + 0.35 * style_.small.size()},
+                     hud_colour::kText);
   }
 }
 

@@ -20,7 +20,7 @@ class Legend {
   [[nodiscard]] double height() const;
 
   /// Draws it with its upper left corner at `corner`.
-  void draw(const PixelPoint& corner, Image& image) const;
+  void draw(const PixelPoint& corner, Canvas& canvas) const;
 
  private:
   struct Entry {
@@ -34,7 +34,7 @@ class Legend {
 
   static std::vector<Entry> entries_of(const Frame& frame);
   [[nodiscard]] double mark_width(const Entry& entry) const;
-  void draw_mark(const Entry& entry, double x, double middle, Image& image) const;
+  void draw_mark(const Entry& entry, double x, double middle, Canvas& canvas) const;
 
   const HudStyle& style_;
   std::vector<Entry> entries_;

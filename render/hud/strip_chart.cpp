@@ -58,23 +58,23 @@ PixelPoint point_in(const Plot& plot, const StripChart& chart, std::size_t slot,
           plot.ground.y + kInset + (1.0 - share) * (plot.ground.height - 2.0 * kInset)};
 }
 
-void draw_limit(const StripChart& chart, const Plot& plot, const HudStyle& style, Image& image) {
+void draw_limit(const StripChart& chart, const Plot& plot, const HudStyle& style, Canvas& canvas) {
   const double y = point_in(plot, chart, 0, chart.limit->value).y;
   const double end = plot.ground.x + plot.curve_width;
   const int dashes = static_cast<int>(std::ceil(plot.curve_width / (2.0 * kDash)));
   for (int dash = 0; dash < dashes; ++dash) {
     const double x = plot.ground.x + 2.0 * kDash * dash;
-    fill_rectangle(image, {x, y - 0.5, std::min(kDash, end - x), 1.0}, hud_colour::kLimit);
+    canvas.fill_rectangle({x, y - 0.5, std::min(kDash, end - x), 1.0}, hud_colour::kLimit);
   }
   // At the end of the time axis, where the curve is last, and on a ground of its own.
   const double letters = style.small.size();
   const double width = style.small.width(chart.limit->label) + 2.0 * kInset;
   const bool above = y - 1.2 * letters > plot.ground.y;
   const double top = above ? y - 1.2 * letters - 1.0 : y + 2.0;
-  fill_rectangle(image, {end - width, top, width, 1.2 * letters},
-                 hud_colour::kBand.with_alpha(0.7F));
-  draw_text(image, style.small, chart.limit->label, {end - width + kInset, top + letters},
-            hud_colour::kLimit);
+  canvas.fill_rectangle({end - width, top, width, 1.2 * letters},
+                        hud_colour::kBand.with_alpha(0.7F));
+  canvas.draw_text(style.small, chart.limit->label, {end - width + kInset, top + letters},
+                   hud_colour::kLimit);
 }
 
 }  // namespace
@@ -89,36 +89,36 @@ PixelPoint chart_point(const StripChart& chart, const PixelRectangle& area, cons
 }
 
 void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const Colour& colour,
-                      const HudStyle& style, Image& image) {
+                      const HudStyle& style, Canvas& canvas) {
   const Plot plot = plot_of(chart, area, style);
   const PixelRectangle& ground = plot.ground;
   const double baseline = area.y + 1.1 * style.small.size();
   const std::string value = fitting(style.small, chart.value, 0.6 * area.width);
   const double value_left = area.x + area.width - style.small.width(value);
-  draw_text(image, style.small,
-            fitting(style.small, chart.label, value_left - area.x - style.gap()),
-            {area.x, baseline}, colour);
-  draw_text(image, style.small, value, {value_left, baseline}, hud_colour::kText);
-  fill_rectangle(image, ground, hud_colour::kChartGround, kInset);
-  fill_rectangle(image, {ground.x, ground.y + 0.5 * ground.height, plot.curve_width, 1.0},
-                 hud_colour::kChartLine);
+  canvas.draw_text(style.small,
+                   fitting(style.small, chart.label, value_left - area.x - style.gap()),
+                   {area.x, baseline}, colour);
+  canvas.draw_text(style.small, value, {value_left, baseline}, hud_colour::kText);
+  canvas.fill_rectangle(ground, hud_colour::kChartGround, kInset);
+  canvas.fill_rectangle({ground.x, ground.y + 0.5 * ground.height, plot.curve_width, 1.0},
+                        hud_colour::kChartLine);
   const double right = ground.x + ground.width - kInset;
-  draw_text(image, style.small, plot.upper,
-            {right - style.small.width(plot.upper), ground.y + style.small.size()},
-            hud_colour::kFaintText);
-  draw_text(image, style.small, plot.lower,
-            {right - style.small.width(plot.lower), ground.y + ground.height - kInset},
-            hud_colour::kFaintText);
+  canvas.draw_text(style.small, plot.upper,
+                   {right - style.small.width(plot.upper), ground.y + style.small.size()},
+                   hud_colour::kFaintText);
+  canvas.draw_text(style.small, plot.lower,
+                   {right - style.small.width(plot.lower), ground.y + ground.height - kInset},
+                   hud_colour::kFaintText);
   std::vector<PixelPoint> points;
   for (std::size_t i = 0; i < chart.values.size(); ++i) {
     points.push_back(point_in(plot, chart, i, chart.values[i]));
   }
-  draw_graph(image, points, std::max(1.8 * style.scale, 1.2), colour);
+  canvas.draw_graph(points, std::max(1.8 * style.scale, 1.2), colour);
   if (!points.empty() && std::isfinite(points.back().y)) {
-    fill_circle(image, points.back(), std::max(3.0 * style.scale, 2.0), colour);
+    canvas.fill_circle(points.back(), std::max(3.0 * style.scale, 2.0), colour);
   }
   if (chart.limit) {
-    draw_limit(chart, plot, style, image);
+    draw_limit(chart, plot, style, canvas);
   }
 }
 

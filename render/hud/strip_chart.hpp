@@ -13,7 +13,7 @@ namespace qsmpc {
 /// Draws `chart` into `area`: its label and newest value above, the history below, and its limit,
 /// if it has one, as a dashed line with its label.
 void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const Colour& colour,
-                      const HudStyle& style, Image& image);
+                      const HudStyle& style, Canvas& canvas);
 
 /// Where value `value` is drawn in the chart's slot `slot`; beyond the chart's range at its edge.
 [[nodiscard]] PixelPoint chart_point(const StripChart& chart, const PixelRectangle& area,

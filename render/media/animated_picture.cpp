@@ -45,8 +45,8 @@ class Converter {
 // The file, opened when the first picture tells its size.
 class PictureFile {
  public:
-  PictureFile(std::string target, std::string container, std::string what)
-      : target_(std::move(target)), container_(std::move(container)), what_(std::move(what)) {}
+  PictureFile(ByteFile& target, std::string container, std::string what)
+      : target_(target), container_(std::move(container)), what_(std::move(what)) {}
 
   [[nodiscard]] bool is_open() const { return output_.has_value(); }
 
@@ -80,7 +80,7 @@ class PictureFile {
   }
 
  private:
-  std::string target_;
+  ByteFile& target_;
   std::string container_;
   std::string what_;
   libav::Pointer<AVCodecContext> codec_;
@@ -94,8 +94,7 @@ int colour_count(int quality) {
   return kFewestColours + (kMostColours - kFewestColours) * share / kUsualQuality;
 }
 
-std::vector<std::uint32_t> best_palette(const std::string& source, int colours,
-                                        const std::string& what) {
+std::vector<std::uint32_t> best_palette(ByteFile& source, int colours, const std::string& what) {
   ColourCount count;
   Converter converter(AV_PIX_FMT_RGBA, what);
   std::vector<unsigned char> rgba;
@@ -107,7 +106,7 @@ std::vector<std::uint32_t> best_palette(const std::string& source, int colours,
   return count.best(colours);
 }
 
-void write_gif(const AnimatedPicture& wanted, const std::string& source, const std::string& target,
+void write_gif(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target,
                const std::string& what) {
   const std::vector<std::uint32_t> palette =
       best_palette(source, colour_count(wanted.quality), what);
@@ -144,7 +143,7 @@ void write_gif(const AnimatedPicture& wanted, const std::string& source, const s
   file.close();
 }
 
-void write_webp(const AnimatedPicture& wanted, const std::string& source, const std::string& target,
+void write_webp(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target,
                 const std::string& what) {
   // libwebp's own scale is steeper: its 75 looks like 60 of this one.
   constexpr double kStretch = 0.625;
@@ -169,8 +168,8 @@ void write_webp(const AnimatedPicture& wanted, const std::string& source, const 
 
 }  // namespace
 
-void write_animated_picture(const AnimatedPicture& wanted, const std::string& source,
-                            const std::string& target, const std::string& what) {
+void write_animated_picture(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target,
+                            const std::string& what) {
   switch (wanted.format) {
     case VideoFormat::kGif:
       return write_gif(wanted, source, target, what);

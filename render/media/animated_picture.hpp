@@ -3,19 +3,20 @@
 
 #include <string>
 
+#include "render/media/byte_file.hpp"
 #include "render/media/video_format.hpp"
 
 namespace qsmpc {
 
-/// Writes what the video at `source` shows, `frames_per_second` pictures a second, as a GIF or WebP
-/// that is shown again and again. One picture at a time is held in memory, and the file. `quality`:
-/// 0 … 100. Throws std::runtime_error "WHAT: the system's words".
+/// Writes what the video in `source` shows to `target`, `frames_per_second` pictures a second, as a
+/// GIF or WebP that is shown again and again. One picture at a time is held in memory. `quality`:
+/// 0 … 100. Throws what the files throw, else std::runtime_error "WHAT: the library's words".
 struct AnimatedPicture {
   VideoFormat format = VideoFormat::kGif;
   int frames_per_second = 0;
   int quality = kUsualQuality;
 };
-void write_animated_picture(const AnimatedPicture& wanted, const std::string& source,
-                            const std::string& target, const std::string& what);
+void write_animated_picture(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target,
+                            const std::string& what);
 
 }  // namespace qsmpc

@@ -2,17 +2,10 @@
 
 #include <cerrno>
 #include <cstdint>
-#include <memory>
 #include <stdexcept>
-
-#include <fcntl.h>
-#include <unistd.h>
 
 namespace qsmpc::libav {
 namespace {
-
-// "file:" keeps a colon in a path from being read as a protocol.
-std::string url_of(const std::string& path) { return "file:" + path; }
 
 class Dictionary {
  public:
@@ -40,40 +33,45 @@ class Dictionary {
   AVDictionary* dictionary_ = nullptr;
 };
 
-struct InputDeleter {
-  void operator()(AVFormatContext* format) const { avformat_close_input(&format); }
+// Throws what a file threw meanwhile, else what `code` says.
+int check_stream(int code, const std::exception_ptr& error, const std::string& what) {
+  if (error) std::rethrow_exception(error);
+  return check(code, what);
+}
+
+// A file of one video stream, being read.
+class InputFile {
+ public:
+  InputFile(ByteFile& file, std::string what)
+      : what_(std::move(what)), io_(file, ByteStream::Use::kRead, error_, what_) {
+    format_ = check_allocated(avformat_alloc_context(), what_);
+    format_->pb = io_.context();
+    // This frees the format where it fails.
+    check_stream(avformat_open_input(&format_, nullptr, nullptr, nullptr), error_, what_);
+    const int code = avformat_find_stream_info(format_, nullptr);
+    if (code < 0 || error_) avformat_close_input(&format_);
+    check_stream(code, error_, what_);
+  }
+  ~InputFile() { avformat_close_input(&format_); }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  [[nodiscard]] const AVStream& stream() const { return *format_->streams[0]; }
+
+  // Whether there was another packet.
+  bool read(AVPacket& packet) {
+    const int code = av_read_frame(format_, &packet);
+    if (code == AVERROR_EOF && !error_) return false;
+    check_stream(code, error_, what_);
+    return true;
+  }
+
+ private:
+  std::string what_;
+  std::exception_ptr error_;
+  ByteStream io_;
+  AVFormatContext* format_ = nullptr;
 };
-using InputPointer = std::unique_ptr<AVFormatContext, InputDeleter>;
-
-InputPointer open_input(const std::string& path, const std::string& what) {
-  AVFormatContext* format = nullptr;
-  check(avformat_open_input(&format, url_of(path).c_str(), nullptr, nullptr), what);
-  InputPointer input(format);
-  check(avformat_find_stream_info(format, nullptr), what);
-  return input;
-}
-
-// Whether there was another packet.
-bool read_packet(AVFormatContext& input, AVPacket& packet, const std::string& what) {
-  const int code = av_read_frame(&input, &packet);
-  if (code == AVERROR_EOF) {
-    return false;
-  }
-  check(code, what);
-  return true;
-}
-
-void flush_to_disk(const std::string& path, const std::string& what) {
-  const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0 || fsync(file) != 0) {
-    const int code = AVERROR(errno);
-    if (file >= 0) {
-      ::close(file);
-    }
-    check(code, what);
-  }
-  ::close(file);
-}
 
 }  // namespace
 
@@ -112,34 +110,54 @@ Pointer<AVFrame> allocate_frame(const AVCodecContext& codec, const std::string& 
   return frame;
 }
 
-OutputFile::OutputFile(const std::string& path, const Container& container, std::string what)
-    : path_(path),
+OutputFile::OutputFile(ByteFile& file, const Container& container, std::string what)
+    : file_(file),
       what_(std::move(what)),
       options_(container.options),
+      io_(std::make_unique<ByteStream>(file, ByteStream::Use::kWrite, error_, what_)),
       packet_(check_allocated(av_packet_alloc(), what_)) {
-  const std::string url = url_of(path);
-  check(avformat_alloc_output_context2(&format_, nullptr, container.name.c_str(), url.c_str()),
-        what_);
-  const int code = avio_open(&format_->pb, url.c_str(), AVIO_FLAG_WRITE);
-  stream_ = code < 0 ? nullptr : avformat_new_stream(format_, nullptr);
+  file_.clear();
+  check(avformat_alloc_output_context2(&format_, nullptr, container.name.c_str(), nullptr), what_);
+  format_->pb = io_->context();
+  format_->flags |= AVFMT_FLAG_CUSTOM_IO;
+  format_->opaque = this;
+  format_->io_open = open_again;
+  format_->io_close2 = close_again;
+  stream_ = avformat_new_stream(format_, nullptr);
   if (stream_ == nullptr) {
-    avio_closep(&format_->pb);
     avformat_free_context(format_);
-    check(code, what_);
     check(AVERROR(ENOMEM), what_);
   }
 }
 
-OutputFile::~OutputFile() {
-  avio_closep(&format_->pb);
-  avformat_free_context(format_);
+OutputFile::~OutputFile() { avformat_free_context(format_); }
+
+int OutputFile::open_again(AVFormatContext* format, AVIOContext** io, const char* /*url*/,
+                           int flags, AVDictionary** /*options*/) {
+  auto& self = *static_cast<OutputFile*>(format->opaque);
+  if ((flags & AVIO_FLAG_WRITE) != 0 || self.second_io_) return AVERROR(ENOSYS);
+  try {
+    self.second_io_ =
+        std::make_unique<ByteStream>(self.file_, ByteStream::Use::kRead, self.error_, self.what_);
+  } catch (...) {
+    return AVERROR(ENOMEM);
+  }
+  *io = self.second_io_->context();
+  return 0;
 }
+
+int OutputFile::close_again(AVFormatContext* format, AVIOContext* /*io*/) {
+  static_cast<OutputFile*>(format->opaque)->second_io_.reset();
+  return 0;
+}
+
+void OutputFile::check_written(int code) { check_stream(code, error_, what_); }
 
 void OutputFile::flush_always() { format_->flags |= AVFMT_FLAG_FLUSH_PACKETS; }
 
 void OutputFile::write_header() {
   Dictionary options(options_);
-  check(avformat_write_header(format_, options.get()), what_);
+  check_written(avformat_write_header(format_, options.get()));
   options.check_empty(what_);
 }
 
@@ -147,7 +165,7 @@ void OutputFile::write(AVPacket& packet, AVRational time_base) {
   av_packet_rescale_ts(&packet, time_base, stream_->time_base);
   packet.stream_index = stream_->index;
   packet.pos = -1;
-  check(av_interleaved_write_frame(format_, &packet), what_);
+  check_written(av_interleaved_write_frame(format_, &packet));
 }
 
 void OutputFile::encode(AVCodecContext& codec, const AVFrame* frame) {
@@ -164,17 +182,16 @@ void OutputFile::encode(AVCodecContext& codec, const AVFrame* frame) {
 }
 
 void OutputFile::close() {
-  check(av_write_trailer(format_), what_);
-  check(format_->pb->error, what_);
-  check(avio_closep(&format_->pb), what_);
-  flush_to_disk(path_, what_);
+  check_written(av_write_trailer(format_));
+  avio_flush(format_->pb);
+  check_written(format_->pb->error);
 }
 
-void copy_stream(const std::string& source, const std::string& target, const Container& container,
+void copy_stream(ByteFile& source, ByteFile& target, const Container& container,
                  const std::string& what) {
-  const InputPointer input = open_input(source, what);
+  InputFile input(source, what);
   OutputFile output(target, container, what);
-  const AVStream& from = *input->streams[0];
+  const AVStream& from = input.stream();
   AVStream& to = output.stream();
   check(avcodec_parameters_copy(to.codecpar, from.codecpar), what);
   to.codecpar->codec_tag = 0;
@@ -183,7 +200,7 @@ void copy_stream(const std::string& source, const std::string& target, const Con
   output.write_header();
   const Pointer<AVPacket> packet(check_allocated(av_packet_alloc(), what));
   std::int64_t begin = AV_NOPTS_VALUE;
-  while (read_packet(*input, *packet, what)) {
+  while (input.read(*packet)) {
     // Fragments cannot begin before 0, so reordered frames made the first one late.
     begin = begin == AV_NOPTS_VALUE ? packet->pts : begin;
     packet->pts -= begin;
@@ -193,13 +210,13 @@ void copy_stream(const std::string& source, const std::string& target, const Con
   output.close();
 }
 
-void for_each_picture(const std::string& path, const std::string& what,
+void for_each_picture(ByteFile& file, const std::string& what,
                       const std::function<void(const AVFrame&)>& action) {
-  const InputPointer input = open_input(path, what);
-  const AVCodecParameters& parameters = *input->streams[0]->codecpar;
+  InputFile input(file, what);
+  const AVCodecParameters& parameters = *input.stream().codecpar;
   const AVCodec* const decoder = avcodec_find_decoder(parameters.codec_id);
   if (decoder == nullptr) {
-    throw std::runtime_error(what + ": this FFmpeg cannot read \"" + path + "\"");
+    throw std::runtime_error(what + ": this FFmpeg cannot read what it wrote");
   }
   const Pointer<AVCodecContext> codec(check_allocated(avcodec_alloc_context3(decoder), what));
   check(avcodec_parameters_to_context(codec.get(), &parameters), what);
@@ -208,7 +225,7 @@ void for_each_picture(const std::string& path, const std::string& what,
   const Pointer<AVPacket> packet(check_allocated(av_packet_alloc(), what));
   bool more = true;
   while (more) {
-    more = read_packet(*input, *packet, what);
+    more = input.read(*packet);
     check(avcodec_send_packet(codec.get(), more ? packet.get() : nullptr), what);
     av_packet_unref(packet.get());
     int code = avcodec_receive_frame(codec.get(), frame.get());

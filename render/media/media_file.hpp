@@ -2,11 +2,15 @@
 // encode.
 #pragma once
 
+#include <exception>
 #include <functional>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "render/media/byte_file.hpp"
+#include "render/media/byte_stream.hpp"
 #include "render/media/libav.hpp"
 
 namespace qsmpc::libav {
@@ -38,11 +42,12 @@ struct Container {
   Settings options;
 };
 
-/// A file of one video stream, being written. All members throw std::runtime_error "WHAT: the
-/// system's words".
+/// A file of one video stream, being written. All members throw what the file throws, else
+/// std::runtime_error "WHAT: the library's words".
 class OutputFile {
  public:
-  OutputFile(const std::string& path, const Container& container, std::string what);
+  /// Clears `file`, which it uses as long as it lives.
+  OutputFile(ByteFile& file, const Container& container, std::string what);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -56,25 +61,34 @@ class OutputFile {
   void write(AVPacket& packet, AVRational time_base);
   /// Sends `frame` to `codec`, or the end of all where it is null, and writes what comes out.
   void encode(AVCodecContext& codec, const AVFrame* frame);
-  /// Writes the end and makes it durable.
+  /// Writes the end.
   void close();
 
  private:
-  std::string path_;
+  // To move an index to the front, the library reads what it wrote.
+  static int open_again(AVFormatContext* format, AVIOContext** io, const char* url, int flags,
+                        AVDictionary** options);
+  static int close_again(AVFormatContext* format, AVIOContext* io);
+  void check_written(int code);
+
+  ByteFile& file_;
   std::string what_;
   Settings options_;
+  std::exception_ptr error_;
+  std::unique_ptr<ByteStream> io_;
+  std::unique_ptr<ByteStream> second_io_;
   AVFormatContext* format_ = nullptr;
   AVStream* stream_ = nullptr;
   Pointer<AVPacket> packet_;
 };
 
-/// Copies the stream of the file at `source` into another file as it is; the first picture's time
-/// becomes 0.
-void copy_stream(const std::string& source, const std::string& target, const Container& container,
+/// Copies the stream of `source` into another file as it is; the first picture's time becomes 0.
+/// Throws like OutputFile.
+void copy_stream(ByteFile& source, ByteFile& target, const Container& container,
                  const std::string& what);
 
-/// Decodes the file at `path` from its beginning to its end.
-void for_each_picture(const std::string& path, const std::string& what,
+/// Decodes `file` from its beginning to its end. Throws like OutputFile.
+void for_each_picture(ByteFile& file, const std::string& what,
                       const std::function<void(const AVFrame&)>& action);
 
 }  // namespace qsmpc::libav

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cstddef>
+#include <stdexcept>
 
 namespace qsmpc {
 
@@ -33,6 +34,14 @@ std::optional<VideoFormat> video_format_of(const std::string& path) {
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return video_format(ending);
+}
+
+VideoFormat known_video_format(const std::string& path) {
+  if (const std::optional<VideoFormat> format = video_format_of(path)) return *format;
+  std::string known;
+  for (const std::string& name : video_format_names())
+    known += (known.empty() ? "." : ", .") + name;
+  throw std::invalid_argument("video \"" + path + "\": its name must end with one of " + known);
 }
 
 std::string video_codec(VideoFormat format) {

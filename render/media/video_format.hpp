@@ -23,6 +23,9 @@ inline constexpr int kBestQuality = 100;
 /// The format that the ending of `path` asks for, in whatever case; nothing where it is none.
 [[nodiscard]] std::optional<VideoFormat> video_format_of(const std::string& path);
 
+/// The same; throws std::invalid_argument with the known endings where it is none.
+[[nodiscard]] VideoFormat known_video_format(const std::string& path);
+
 /// The codec of such a file as ffprobe names it, e.g. "h264".
 [[nodiscard]] std::string video_codec(VideoFormat format);
 

@@ -1,11 +1,9 @@
 #include "render/media/video_writer.hpp"
 
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <stdexcept>
 
 #include "render/media/animated_picture.hpp"
@@ -19,21 +17,7 @@ int on_scale(int quality, double best, double worst) {
   return static_cast<int>(std::lround(best + (worst - best) * (kBestQuality - quality) / 100.0));
 }
 
-VideoFormat chosen_format(const std::string& path, const VideoOptions& options,
-                          const std::string& what) {
-  const std::optional<VideoFormat> format = options.format ? options.format : video_format_of(path);
-  if (!format) {
-    std::string known;
-    for (const std::string& name : video_format_names()) {
-      known += (known.empty() ? "." : ", .") + name;
-    }
-    throw std::invalid_argument(what + ": its name must end with one of " + known);
-  }
-  return *format;
-}
-
-void check_request(const std::string& what, const libav::EncoderSettings& wanted,
-                   const VideoOptions& options, VideoFormat format) {
+void check_request(const std::string& what, const VideoSettings& wanted) {
   const int fps = wanted.frames_per_second;
   if (wanted.width <= 0 || wanted.height <= 0 || wanted.width % 2 != 0 || wanted.height % 2 != 0) {
     throw std::invalid_argument(what + ": its size " + std::to_string(wanted.width) + "x" +
@@ -44,13 +28,13 @@ void check_request(const std::string& what, const libav::EncoderSettings& wanted
     throw std::invalid_argument(what + ": " + std::to_string(fps) +
                                 " frames a second is not positive");
   }
-  if (fps > most_frames_per_second(format)) {
+  if (fps > most_frames_per_second(wanted.format)) {
     throw std::invalid_argument(what + ": " + std::to_string(fps) +
                                 " frames a second are more than " +
-                                std::to_string(most_frames_per_second(format)));
+                                std::to_string(most_frames_per_second(wanted.format)));
   }
-  if (options.quality < 0 || options.quality > kBestQuality) {
-    throw std::invalid_argument(what + ": a quality of " + std::to_string(options.quality) +
+  if (wanted.quality < 0 || wanted.quality > kBestQuality) {
+    throw std::invalid_argument(what + ": a quality of " + std::to_string(wanted.quality) +
                                 " is not within 0 … 100");
   }
 }
@@ -68,8 +52,8 @@ struct Recipe {
   libav::Container finished;
 };
 
-Recipe recipe_of(VideoFormat format, const VideoOptions& options) {
-  switch (format) {
+Recipe recipe_of(const VideoSettings& options) {
+  switch (options.format) {
     case VideoFormat::kMp4:
       return {.encoder = "libx264",
               .options = {{"preset", options.preset},
@@ -103,20 +87,16 @@ Recipe recipe_of(VideoFormat format, const VideoOptions& options) {
 }  // namespace
 
 struct VideoWriter::Encoder {
-  std::string path;
+  ByteFile& partial;
+  VideoSettings settings;
   std::string what;
-  VideoFormat format;
-  int frames_per_second;
-  int quality;
-  Recipe recipe;
-  libav::Pointer<AVCodecContext> codec;
-  libav::Pointer<SwsContext> scaler;
-  libav::Pointer<AVFrame> frame;
-  std::unique_ptr<libav::OutputFile> output;
+  Recipe recipe{};
+  libav::Pointer<AVCodecContext> codec{};
+  libav::Pointer<SwsContext> scaler{};
+  libav::Pointer<AVFrame> frame{};
+  std::unique_ptr<libav::OutputFile> output{};
   std::int64_t frames = 0;
   bool failed = false;
-
-  [[nodiscard]] std::string partial_path() const { return path + ".partial"; }
 
   void open_converter() {
     frame = libav::allocate_frame(*codec, what);
@@ -130,7 +110,7 @@ struct VideoWriter::Encoder {
   }
 
   void open_output() {
-    output = std::make_unique<libav::OutputFile>(partial_path(), recipe.partial, what);
+    output = std::make_unique<libav::OutputFile>(partial, recipe.partial, what);
     AVStream& stream = output->stream();
     stream.time_base = codec->time_base;
     stream.avg_frame_rate = codec->framerate;
@@ -145,37 +125,33 @@ struct VideoWriter::Encoder {
     output.reset();
   }
 
-  void write_finished(const std::string& target) const {
-    if (is_animated_picture(format)) {
-      write_animated_picture(
-          {.format = format, .frames_per_second = frames_per_second, .quality = quality},
-          partial_path(), target, what);
+  void write_finished(ByteFile& target) const {
+    if (is_animated_picture(settings.format)) {
+      write_animated_picture({.format = settings.format,
+                              .frames_per_second = settings.frames_per_second,
+                              .quality = settings.quality},
+                             partial, target, what);
     } else {
-      libav::copy_stream(partial_path(), target, recipe.finished, what);
+      libav::copy_stream(partial, target, recipe.finished, what);
     }
   }
 };
 
-VideoWriter::VideoWriter(const std::string& path, int width, int height, int frames_per_second,
-                         const VideoOptions& options)
-    : encoder_(std::make_unique<Encoder>()) {
+VideoWriter::VideoWriter(ByteFile& partial, const VideoSettings& settings)
+    : encoder_(new Encoder{
+          .partial = partial, .settings = settings, .what = "video \"" + settings.name + "\""}) {
   Encoder& e = *encoder_;
-  e.path = path;
-  e.what = "video \"" + path + "\"";
-  e.format = chosen_format(path, options, e.what);
-  e.frames_per_second = frames_per_second;
-  e.quality = options.quality;
-  e.recipe = recipe_of(e.format, options);
-  const libav::EncoderSettings settings{.encoder = e.recipe.encoder,
-                                        .pixels = e.recipe.pixels,
-                                        .width = width,
-                                        .height = height,
-                                        .frames_per_second = frames_per_second,
-                                        .threads = options.threads,
-                                        .options = e.recipe.options};
-  check_request(e.what, settings, options, e.format);
+  check_request(e.what, settings);
+  e.recipe = recipe_of(settings);
   libav::silence_log();
-  e.codec = libav::open_encoder(settings, e.what);
+  e.codec = libav::open_encoder({.encoder = e.recipe.encoder,
+                                 .pixels = e.recipe.pixels,
+                                 .width = settings.width,
+                                 .height = settings.height,
+                                 .frames_per_second = settings.frames_per_second,
+                                 .threads = settings.threads,
+                                 .options = e.recipe.options},
+                                e.what);
   e.open_converter();
   e.open_output();
 }
@@ -191,8 +167,6 @@ VideoWriter::~VideoWriter() {
     encoder_->failed = true;
   }
 }
-
-VideoFormat VideoWriter::format() const { return encoder_->format; }
 
 void VideoWriter::add(const Image& image) {
   Encoder& e = *encoder_;
@@ -220,24 +194,18 @@ void VideoWriter::add(const Image& image) {
   }
 }
 
-void VideoWriter::finish() {
+void VideoWriter::finish(ByteFile& finished) {
   Encoder& e = *encoder_;
   if (e.output == nullptr || e.failed || e.frames == 0) {
     throw std::runtime_error(e.what + ": there is nothing to finish");
   }
-  const std::string aside = e.path + ".finished.partial";
   try {
     e.close_partial();
-    e.write_finished(aside);
-    if (std::rename(aside.c_str(), e.path.c_str()) != 0) {
-      libav::check(AVERROR(errno), e.what);
-    }
+    e.write_finished(finished);
   } catch (...) {
     e.failed = true;
-    std::remove(aside.c_str());
     throw;
   }
-  std::remove(e.partial_path().c_str());
 }
 
 }  // namespace qsmpc

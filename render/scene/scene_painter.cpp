@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <utility>
 
+#include "models/constants.hpp"
 #include "render/gl/gl_shapes.hpp"
 #include "render/gl/shadow.hpp"
 #include "render/palette.hpp"
@@ -124,7 +124,6 @@ void paint_driven_path(const Frame& frame, double scale) {
 }  // namespace
 
 PlanarRectangle world_region(const World& world) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   PlanarRectangle region{kInfinity, -kInfinity, kInfinity, -kInfinity};
   const auto include = [&region](double x, double y) {
     if (std::isfinite(x)) {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <mutex>
 #include <stdexcept>
 
 #include <mujoco/mujoco.h>
 
+#include "models/constants.hpp"
 #include "render/gl/shadow.hpp"
 #include "render/gl/solid_mesh.hpp"
 #include "render/scene/mujoco_guard.hpp"
@@ -220,7 +220,6 @@ struct Vehicle::Simulator {
   }
 
   void measure_length() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     std::array<double, 2> lower{kInfinity, kInfinity};
     std::array<double, 2> upper{-kInfinity, -kInfinity};
     for (int geom = 0; geom < model->ngeom; ++geom) {

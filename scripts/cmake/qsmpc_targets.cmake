@@ -12,7 +12,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives from inside Eigen and the standard library at -O3.
   target_compile_options(qsmpc_options INTERFACE
     -Wno-maybe-uninitialized -Wno-array-bounds -Wno-stringop-overflow -Wno-null-dereference
-    -Wno-restrict)
+    -Wno-restrict
+    # In a batch no source is the main file, the only one in which it is quiet about a class's
+    # private implementation with members from an anonymous namespace.
+    -Wno-subobject-linkage)
 endif()
 if(QSMPC_SANITIZE)
   # Left out are the checks of pointers before every access, which double the time to compile: the
@@ -23,6 +26,20 @@ if(QSMPC_SANITIZE)
   target_link_options(qsmpc_options INTERFACE -fsanitize=${QSMPC_SANITIZE})
 endif()
 
+# What nearly every source includes is parsed once: the libraries share one precompiled header, the
+# tests another. Sources include what they use all the same; scripts/check-style compiles them
+# without it.
+set(qsmpc_common_headers
+  <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional> <limits> <map> <memory>
+  <mutex> <optional> <stdexcept> <string> <string_view> <utility> <vector> <Eigen/Core>)
+
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+file(WRITE ${CMAKE_BINARY_DIR}/qsmpc_headers.cpp "")
+add_library(qsmpc_headers OBJECT ${CMAKE_BINARY_DIR}/qsmpc_headers.cpp)
+target_link_libraries(qsmpc_headers PRIVATE qsmpc_options Eigen3::Eigen)
+set_target_properties(qsmpc_headers PROPERTIES POSITION_INDEPENDENT_CODE ON)
+target_precompile_headers(qsmpc_headers PRIVATE ${qsmpc_common_headers})
+
 # qsmpc_library(NAME SOURCES… [ALONE sources…] LINK libraries…): one room as a static library.
 # ALONE: sources that no batch can hold, such as SIMD kernels, which Highway compiles once for every
 # instruction set; or that are edited so often that they should not wait for others.
@@ -32,4 +49,5 @@ function(qsmpc_library name)
   set_source_files_properties(${ARG_ALONE} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
   target_link_libraries(${name} PUBLIC qsmpc_options ${ARG_LINK})
   set_target_properties(${name} PROPERTIES POSITION_INDEPENDENT_CODE ON)
+  target_precompile_headers(${name} REUSE_FROM qsmpc_headers)
 endfunction()

@@ -8,7 +8,6 @@
 // 3 × truth + 0.001 open loop and 10 × truth + 0.001 closed loop (bicycle: below 0.5 where the
 // truth is below 0.01).
 #include <iostream>
-#include <limits>
 #include <random>
 #include <string>
 #include <vector>
@@ -19,13 +18,12 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 #include "controller/planning/planner.hpp"
+#include "models/constants.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "tests/support/simulated_truth.hpp"
 
 namespace qsmpc::testing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kTimeStep = 0.1;  // s
 constexpr int kHorizon = 8;
 constexpr std::uint64_t kSeed = 20240229;

@@ -17,12 +17,12 @@
 #include "harness/scenario/value_checks.hpp"
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/episode_video.hpp"
+#include "harness/video/video_file.hpp"
 #include "render/camera.hpp"
 #include "render/gl/gl_functions.hpp"
 #include "render/gl/offscreen_context.hpp"
 #include "render/gl/smoothing.hpp"
 #include "render/hud/hud.hpp"
-#include "render/media/video_writer.hpp"
 #include "render/palette.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/vehicle.hpp"
@@ -164,7 +164,10 @@ class PartByPart {
         vehicle_(trace.scenario.plant.mjcf, video.width, video.height),
         painter_(frames.world(), frames.region()),
         hud_(video.width, video.height),
-        writer_(path, video.width, video.height, video.fps) {}
+        writer_(path, {.format = known_video_format(path),
+                       .width = video.width,
+                       .height = video.height,
+                       .frames_per_second = video.fps}) {}
 
   void draw(int index, Parts& parts) {
     const Frame frame = frames_.at(static_cast<double>(index) / video_.fps);
@@ -203,7 +206,7 @@ class PartByPart {
   Hud hud_;
   SmoothingWorkspace workspace_;
   Image image_;
-  VideoWriter writer_;
+  VideoFile writer_;
 };
 
 bool run(const Options& options) {

@@ -8,7 +8,7 @@
 #include "tests/integration/process.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace integration_campaign_file_test {
 
 using ::testing::HasSubstr;
 
@@ -51,5 +51,5 @@ TEST(CampaignFiles, that_are_wrong_are_a_bad_input_with_every_problem) {
   EXPECT_EQ(json["errors"][0]["file"], file);
 }
 
-}  // namespace
+}  // namespace integration_campaign_file_test
 }  // namespace qsmpc::testing

@@ -23,7 +23,7 @@
 #include "tests/support/effort.hpp"
 
 namespace qsmpc {
-namespace {
+namespace campaign_test {
 
 namespace fs = std::filesystem;
 using ::testing::AllOf;
@@ -356,5 +356,5 @@ TEST(Campaign, wrong_usage_is_told_in_one_line) {
   }
 }
 
-}  // namespace
+}  // namespace campaign_test
 }  // namespace qsmpc

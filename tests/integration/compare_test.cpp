@@ -15,7 +15,7 @@
 #include "tests/integration/process.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace compare_test {
 
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
@@ -203,5 +203,5 @@ TEST(Compare, an_interrupt_leaves_nothing_under_a_final_name) {
   EXPECT_THAT(files_in(out), IsEmpty());
 }
 
-}  // namespace
+}  // namespace compare_test
 }  // namespace qsmpc::testing

@@ -15,7 +15,7 @@
 #include "tests/integration/process.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace predict_test {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
@@ -191,5 +191,5 @@ TEST(Predict, a_kill_during_the_simulation_leaves_nothing) {
   EXPECT_THAT(files_in(out), SizeIs(0));
 }
 
-}  // namespace
+}  // namespace predict_test
 }  // namespace qsmpc::testing

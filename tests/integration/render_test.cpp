@@ -17,7 +17,7 @@
 #include "tests/integration/process.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace render_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -189,5 +189,5 @@ TEST_F(WithoutOpenGl, all_else_of_a_run_works) {
   EXPECT_THAT(files_in(out), Not(::testing::Contains("episode.mp4")));
 }
 
-}  // namespace
+}  // namespace render_test
 }  // namespace qsmpc::testing

@@ -14,7 +14,7 @@
 #include "tests/integration/process.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace reproduce_test {
 
 namespace fs = std::filesystem;
 using ::testing::Contains;
@@ -132,5 +132,5 @@ TEST(Reproduce, help_lists_the_experiments) {
   EXPECT_THAT(result.output, HasSubstr("Example: "));
 }
 
-}  // namespace
+}  // namespace reproduce_test
 }  // namespace qsmpc::testing

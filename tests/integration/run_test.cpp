@@ -17,7 +17,7 @@
 #include "tests/integration/process.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace run_test {
 
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
@@ -290,5 +290,5 @@ TEST(Commands, a_folder_without_a_trace_is_a_bad_input) {
   }
 }
 
-}  // namespace
+}  // namespace run_test
 }  // namespace qsmpc::testing

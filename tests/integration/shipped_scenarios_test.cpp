@@ -17,7 +17,7 @@
 #include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace shipped_scenarios_test {
 
 /// What a vehicle of `system` can be: the model, and each shipped MuJoCo one.
 std::vector<std::string> plants_of(const std::string& system) {
@@ -130,5 +130,5 @@ TEST_P(ThesisExperiments, reach_the_target_without_entering_the_unsafe_set) {
 INSTANTIATE_TEST_SUITE_P(All, ThesisExperiments, ::testing::ValuesIn(experiments()),
                          [](const auto& tested) { return tested.param.name; });
 
-}  // namespace
+}  // namespace shipped_scenarios_test
 }  // namespace qsmpc::testing

@@ -11,7 +11,7 @@
 #include "tests/integration/campaign_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace integration_worst_episodes_test {
 
 namespace fs = std::filesystem;
 using testing::files_below;
@@ -110,5 +110,5 @@ TEST_F(WorstEpisodes, are_those_of_a_campaign_that_nobody_drives) {
   EXPECT_EQ(run_qsmpc({"report", out_, "--worst", "0"}).exit_code, 2);
 }
 
-}  // namespace
+}  // namespace integration_worst_episodes_test
 }  // namespace qsmpc

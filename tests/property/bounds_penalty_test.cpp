@@ -9,7 +9,7 @@
 #include "tests/support/simulated_truth.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace bounds_penalty_test {
 
 /// The bounds' penalties over all stages for particles of equal weights at each.
 double price_of_paths(const std::vector<Points>& states, const PlannerSettings& settings) {
@@ -73,5 +73,5 @@ TEST_P(BoundsPenalty, of_a_hundred_particles_is_near_that_of_paths) {
 INSTANTIATE_TEST_SUITE_P(loops, BoundsPenalty, ::testing::Bool(),
                          [](const auto& chosen) { return chosen.param ? "closed" : "open"; });
 
-}  // namespace
+}  // namespace bounds_penalty_test
 }  // namespace qsmpc::testing

@@ -16,7 +16,7 @@
 #include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace certificate_soundness_test {
 
 const int kPaths = by_effort(20000, 100000, 100000);
 constexpr int kShards = 8;  // so that the test runner can use several cores
@@ -134,5 +134,5 @@ TEST_P(Bounds, are_never_below_the_simulated_truth) {
 
 INSTANTIATE_TEST_SUITE_P(shards, Bounds, ::testing::Range(0, kShards));
 
-}  // namespace
+}  // namespace certificate_soundness_test
 }  // namespace qsmpc::testing

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc::testing {
-namespace {
+namespace dubins_closed_form_test {
 
 Eigen::Matrix3d correlated(double x, double y, double heading) {
   Eigen::Matrix3d root;
@@ -169,5 +169,5 @@ TEST(DubinsOptimum, is_just_below_the_least_of_a_fine_grid_of_inputs) {
   EXPECT_TRUE((optimum.inputs.array().abs() <= 2.0).all());
 }
 
-}  // namespace
+}  // namespace dubins_closed_form_test
 }  // namespace qsmpc::testing

@@ -5,12 +5,12 @@
 #include <vector>
 
 namespace qsmpc::testing {
-namespace {
+namespace marginal_w2 {
 
 // Three times √2.5.
 constexpr double kSamplingFactor = 3.0 * 1.6;
 
-}  // namespace
+}  // namespace marginal_w2
 
 double marginal_w2(const DiscreteMeasure& particles, const Points& draws, Eigen::Index axis) {
   std::vector<double> sorted(draws.row(axis).begin(), draws.row(axis).end());

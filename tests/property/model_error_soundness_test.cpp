@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
@@ -15,14 +14,13 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 #include "controller/prediction/model_error.hpp"
+#include "models/constants.hpp"
 #include "tests/property/marginal_w2.hpp"
 #include "tests/property/random_problem.hpp"
 #include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace model_error_soundness_test {
 const int kPaths = by_effort(10000, 50000, 50000);
 // Paths whose states are compared with the particles: each coordinate's are sorted.
 constexpr int kSorted = 10000;
@@ -407,5 +405,5 @@ TEST_P(ModelErrorBounds, hold_for_plants_with_the_error) {
 
 INSTANTIATE_TEST_SUITE_P(shards, ModelErrorBounds, ::testing::Range(0, kShards));
 
-}  // namespace
+}  // namespace model_error_soundness_test
 }  // namespace qsmpc::testing

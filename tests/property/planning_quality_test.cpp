@@ -11,7 +11,7 @@
 #include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planning_quality_test {
 
 class OpenLoopPlan : public ::testing::TestWithParam<std::tuple<int, double>> {};
 
@@ -65,5 +65,5 @@ INSTANTIATE_TEST_SUITE_P(
                        ::testing::Range<std::size_t>(0, places_among_blocks().size())),
     name_of);
 
-}  // namespace
+}  // namespace planning_quality_test
 }  // namespace qsmpc::testing

@@ -9,7 +9,7 @@
 #include "tests/support/planning_quality.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace policy_search_test {
 
 Eigen::MatrixXd wavy_inputs(int rows, int horizon) {
   return Eigen::MatrixXd::NullaryExpr(rows, horizon, [](Eigen::Index row, Eigen::Index k) {
@@ -88,5 +88,5 @@ TEST(SampledProblem, descends_to_the_optimum_of_the_closed_form) {
   EXPECT_NEAR(dubins_cost(exact, inputs).total(), dubins_optimum(exact, 8).cost, 0.1);
 }
 
-}  // namespace
+}  // namespace policy_search_test
 }  // namespace qsmpc::testing

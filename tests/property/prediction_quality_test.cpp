@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc::testing {
-namespace {
+namespace prediction_quality_test {
 
 // Of seven disjoint triples of seeds, the worst has 0.623.
 constexpr double kSquaredRatio = 0.68;
@@ -35,5 +35,5 @@ INSTANTIATE_TEST_SUITE_P(noises, PredictionQuality,
                          ::testing::Values(Eigen::Vector3d(0.01, 0.01, 0.001),
                                            Eigen::Vector3d(0.02, 0.02, 0.02)));
 
-}  // namespace
+}  // namespace prediction_quality_test
 }  // namespace qsmpc::testing

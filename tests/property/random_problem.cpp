@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+
+#include "models/constants.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace random_problem {
 constexpr double kTimeStep = 0.1;  // s
 
 double uniform(Generator& generator, double lower, double upper) {
@@ -162,7 +161,7 @@ void random_policy(Generator& generator, Problem& problem) {
                    .target = problem.belief.mean + uniform_vector(generator, dim, -1.0, 1.0)};
 }
 
-}  // namespace
+}  // namespace random_problem
 
 Problem random_problem(Generator& generator) {
   const Family family = random_family(generator);

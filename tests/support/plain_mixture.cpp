@@ -4,15 +4,14 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
 
+#include "models/constants.hpp"
+
 namespace qsmpc::testing {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // The rules of the split (mixture_split.cpp).
 constexpr double kLeastRatio = 2.0;
 constexpr double kMostRatio = 16.0;

@@ -8,10 +8,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
 #include "controller/measure/compression/mixture_cells.hpp"
 #include "controller/storage.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -81,10 +80,10 @@ struct MixtureSplitter::Work {
 
 MixtureSplitter::Work::Work(const Eigen::MatrixXd& covariance, int cells, int parts)
     : limit(cells) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-  axes = eigen.eigenvectors();
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  axes = eigen.vectors;
   frame.dim = static_cast<int>(covariance.rows());
-  frame.deviations = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  frame.deviations = eigen.values.cwiseMax(0.0).cwiseSqrt();
   frame.least_share = 1.0 / parts;
   centre.resize(frame.dim);
   for (Eigen::MatrixXd* matrix : {&mixture_covariance, &cells_covariance, &product})

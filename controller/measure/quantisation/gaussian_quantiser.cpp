@@ -6,10 +6,9 @@
 #include <numeric>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
 #include "controller/measure/quantisation/normal_lloyd.hpp"
 #include "controller/measure/quantisation/normal_quantiser.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -252,8 +251,8 @@ QuantiserKind quantiser_kind(std::string_view name) {
 
 GaussianQuantisation quantise(const Gaussian& gaussian, int budget, QuantiserKind kind) {
   check_gaussian(gaussian);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(gaussian.covariance);
-  const Eigen::VectorXd variances = eigen.eigenvalues().cwiseMax(0.0);
+  const SymmetricEigen eigen = symmetric_eigen(gaussian.covariance);
+  const Eigen::VectorXd variances = eigen.values.cwiseMax(0.0);
   const std::vector<int> levels = allot_levels(variances, budget);
   Standardised best = product(axis_factors(levels, 0), variances);
   best.levels = levels;
@@ -264,7 +263,7 @@ GaussianQuantisation quantise(const Gaussian& gaussian, int budget, QuantiserKin
       if (spread.lost.trace() < best.lost.trace()) best = std::move(spread);
     }
   }
-  const auto& basis = eigen.eigenvectors();
+  const auto& basis = eigen.vectors;
   return {.measure = {.locations = (basis * best.points).colwise() + gaussian.mean,
                       .weights = std::move(best.weights)},
           .w2 = std::sqrt(best.lost.trace()),

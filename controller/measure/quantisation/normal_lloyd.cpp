@@ -10,11 +10,10 @@
 #include <utility>
 #include <vector>
 
-#include <Eigen/QR>
-
 #include "controller/measure/compression/compression.hpp"
 #include "controller/measure/compression/nearest_centre.hpp"
 #include "controller/measure/quantisation/normal_quantiser.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -134,7 +133,7 @@ void descend(const Grid& grid, double least_gain, Clusters& clusters) {
 Eigen::MatrixXd oblique_basis(Eigen::Index dim) {
   const Eigen::VectorXd steps = Eigen::VectorXd::LinSpaced(dim, 1.0, static_cast<double>(dim));
   const Eigen::MatrixXd waves = (steps * steps.transpose()).array().sin();
-  return Eigen::HouseholderQR<Eigen::MatrixXd>(waves).householderQ();
+  return orthogonal_factor(waves);
 }
 
 /// The split tree in an oblique basis. Along the axes its cuts would follow those of the grid, and

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <mutex>
 #include <numbers>
@@ -11,11 +10,10 @@
 #include <boost/math/special_functions/erf.hpp>
 
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr int kNewtonLimit = 100;
 constexpr int kHalvingLimit = 60;
 constexpr double kStepTolerance = 1e-14;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 
@@ -26,11 +26,11 @@ void NoiseFreeCost::place(const Gaussian& belief) {
   const Eigen::Index dim = belief.mean.size();
   if (covariance_.size() == 0 || covariance_ != belief.covariance) {
     covariance_ = belief.covariance;
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance_);
+    const SymmetricEigen eigen = symmetric_eigen(covariance_);
     const Eigen::VectorXd reach =
-        (static_cast<double>(dim) * eigen.eigenvalues().cwiseMax(0.0)).cwiseSqrt();
+        (static_cast<double>(dim) * eigen.values.cwiseMax(0.0)).cwiseSqrt();
     offsets_.resize(dim, 2 * dim);
-    offsets_.leftCols(dim) = eigen.eigenvectors() * reach.asDiagonal();
+    offsets_.leftCols(dim) = eigen.vectors * reach.asDiagonal();
     offsets_.rightCols(dim) = -offsets_.leftCols(dim);
   }
   mean_ = belief.mean;

@@ -13,7 +13,7 @@ constexpr int kMostSteps = 8;
 // Halvings of one projected step.
 constexpr int kMostHalvings = 8;
 // Fraction of the promised decrease that a projected step must bring (Armijo).
-constexpr double kSufficient = 0.1;
+constexpr double kSufficientShare = 0.1;
 
 }  // namespace
 
@@ -79,7 +79,7 @@ bool BoxQp::advance(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradi
     }
     curved_.noalias() = hessian * trial_;
     const double value = trial_.dot(gradient) + 0.5 * trial_.dot(curved_);
-    if (value <= value_ + kSufficient * promised) {
+    if (value <= value_ + kSufficientShare * promised) {
       step.swap(trial_);
       slope_ = gradient + curved_;
       value_ = value;

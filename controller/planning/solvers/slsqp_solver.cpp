@@ -14,7 +14,7 @@ constexpr std::size_t kEnterPerDecision = 1;
 constexpr std::size_t kHeldPerDecision = 3;
 // NLopt begins with a Hessian of one. Decisions are scaled by the ranges of their bounds, and the
 // cost so that its first step is of this fraction of them.
-constexpr double kFirstMove = 0.2;
+constexpr double kSlsqpFirstMove = 0.2;
 // Times that a stalled run is begun again with half of its working set.
 constexpr int kMostThinnings = 6;
 // Runs that end without anything new to work on, because NLopt stopped short of feasibility: they
@@ -71,7 +71,7 @@ NloptEnd SlsqpSolver::run(const OcpProblem& problem, const SolverOptions& option
   answer_.evaluated = true;
   answer_.complete = false;
   const double steepest = reached_.gradient.cwiseProduct(scale_).cwiseAbs().maxCoeff();
-  const double factor = steepest > 0.0 ? kFirstMove / steepest : 1.0;
+  const double factor = steepest > 0.0 ? kSlsqpFirstMove / steepest : 1.0;
   reached_.value = std::numeric_limits<double>::infinity();
   reached_.violation = std::numeric_limits<double>::infinity();
   NloptRun nlopt{.method = NloptMethod::kSlsqp,

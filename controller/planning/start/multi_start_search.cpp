@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Shares of the way from the middle of an input's bounds to their ends, for each half.
-constexpr double kShares[] = {0.0, -0.9, -0.45, 0.45, 0.9};
+constexpr double kStartShares[] = {0.0, -0.9, -0.45, 0.45, 0.9};
 // Groups whose best start descends, and how far.
 constexpr std::size_t kDescents = 6;
 constexpr int kDescentEvaluations = 30;
@@ -30,9 +29,9 @@ MultiStartSearch::MultiStartSearch(const PlannerSettings& settings, NoiseFreeCos
   const int first = (horizon + 1) / 2;
   int group = 0;
   for (Eigen::Index input = 0; input < middle.size(); ++input) {
-    for (const double early : kShares) {
+    for (const double early : kStartShares) {
       if (input > 0 && early == 0.0 && horizon == 1) continue;
-      for (const double late : kShares) {
+      for (const double late : kStartShares) {
         // All inputs in the middle are a start of the first input's.
         if (input > 0 && early == 0.0 && late == 0.0) continue;
         Eigen::MatrixXd inputs = middle.replicate(1, horizon);

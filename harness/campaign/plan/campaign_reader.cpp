@@ -16,9 +16,7 @@
 namespace qsmpc {
 namespace {
 
-constexpr std::size_t kLongestName = 100;         // bytes; a title, and part of file names
 constexpr std::size_t kLongestDescription = 500;  // bytes; one line
-constexpr std::size_t kLongestPath = 1024;        // bytes
 constexpr std::size_t kLongestKey = 200;          // bytes; of a dotted path
 constexpr int kMostSeeds = 1'000'000'000;
 constexpr std::size_t kMostListedSeeds = 100'000;

@@ -6,7 +6,7 @@
 #include <cstddef>
 
 #include "harness/random/random_numbers.hpp"
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

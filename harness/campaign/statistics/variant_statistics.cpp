@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "harness/campaign/statistics/paired_difference.hpp"
-#include "harness/statistics/not_a_number.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

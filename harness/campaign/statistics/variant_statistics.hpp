@@ -119,7 +119,6 @@ class VariantTally {
 
 template <class EachSorted>
 Spread SpreadTally::result(const EachSorted& each_sorted) const {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const std::int64_t ranked = worst_is_ == WorstIs::kNotCounted ? 0 : worst_;
   SortedQuantiles quantiles(mean_.count() + ranked, spread_shares());
   if (worst_is_ == WorstIs::kLowest && ranked > 0) quantiles.add(-kInfinity, ranked);

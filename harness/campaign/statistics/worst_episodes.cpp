@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <tuple>
 #include <utility>
 
+#include "models/constants.hpp"
+
 namespace qsmpc {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double or_else(double value, double worst) { return std::isnan(value) ? worst : value; }
 

@@ -5,11 +5,9 @@
 #include <limits>
 #include <string>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
-
 #include "harness/errors.hpp"
 #include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -128,7 +126,7 @@ PeriodPull ForceShooting::solve(Simulation& simulation, const Eigen::VectorXd& d
   double miss = miss_of(reached);
   double step = 1.0;
   for (int run = 0; run < kMostRuns && miss > 1.0 && step > kShortestStep; ++run) {
-    const Eigen::VectorXd change = step * sensitivities.fullPivLu().solve(goal - reached);
+    const Eigen::VectorXd change = step * solve_fully_pivoted(sensitivities, goal - reached);
     if (!change.allFinite() || change.isZero(0.0)) break;
     const Eigen::VectorXd tried = after(simulation, start, best + change);
     // Broyden's update: the sensitivities agree with what was just seen.

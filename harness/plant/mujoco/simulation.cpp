@@ -8,11 +8,11 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
 #include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -129,7 +129,7 @@ void Simulation::set_forward_speed(int body, double speed) {
   const Eigen::Vector3d missing =
       (speed - forward_speed(body)) * body_rotation(*data_, body).col(0);
   Eigen::Map<Eigen::VectorXd> velocities(data_->qvel, model_->nv);
-  velocities += jacobian.completeOrthogonalDecomposition().solve(missing);
+  velocities += smallest_solution(jacobian, missing);
   for (const RollingWheel& wheel : rolling_) data_->qvel[wheel.dof] = speed / wheel.radius;
 }
 

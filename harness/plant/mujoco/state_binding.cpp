@@ -7,11 +7,11 @@
 #include <numbers>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
 #include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc {
 namespace {
@@ -43,10 +43,6 @@ BodyJacobian body_jacobian(const mjModel& model, mjData& data, int body) {
 
 double yaw_of(const Eigen::Matrix3d& rotation) {
   return std::atan2(rotation(1, 0), rotation(0, 0));
-}
-
-Eigen::VectorXd smallest_solution(const Eigen::MatrixXd& rows, const Eigen::VectorXd& values) {
-  return rows.completeOrthogonalDecomposition().solve(values);
 }
 
 }  // namespace
@@ -123,12 +119,10 @@ void StateBinding::check_rank(const NamedModel& named, mjData& data,
     if (group->empty()) continue;
     const Eigen::MatrixXd rows =
         group == &positions_ ? position_jacobian(data) : velocity_jacobian(data);
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr(rows.transpose());
-    qr.setThreshold(kRankThreshold);
-    if (qr.rank() == rows.rows()) continue;
-    const Eigen::Index last = qr.colsPermutation().indices()[qr.rank()];
+    const ColumnRank found = column_rank(rows.transpose(), kRankThreshold);
+    if (found.dependent < 0) continue;
     throw InputError({.file = named.file,
-                      .key = "state " + system.states[(*group)[last]].name,
+                      .key = "state " + system.states[(*group)[found.dependent]].name,
                       .found = "a quantity that nothing moves, or that another state determines",
                       .expected = "one that can be set by itself"});
   }

@@ -11,7 +11,7 @@
 #include "tests/unit/allocation/allocations.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_allocation_test {
 
 TEST(AllocationCount, sees_every_kind_of_allocation) {
   std::vector<double> numbers;
@@ -150,5 +150,5 @@ std::vector<Case> cases() {
 INSTANTIATE_TEST_SUITE_P(cases, PlannerAllocations, ::testing::ValuesIn(cases()),
                          [](const auto& information) { return name_of(information.param); });
 
-}  // namespace
+}  // namespace planner_allocation_test
 }  // namespace qsmpc::testing

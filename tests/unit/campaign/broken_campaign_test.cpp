@@ -6,7 +6,7 @@
 #include "tests/unit/campaign/campaign_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace broken_campaign_test {
 
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
@@ -273,5 +273,5 @@ TEST(HostileCampaign, many_wrong_variants_give_a_bounded_number_of_problems) {
   EXPECT_THAT(folder.problems(text), SizeIs(100));
 }
 
-}  // namespace
+}  // namespace broken_campaign_test
 }  // namespace qsmpc

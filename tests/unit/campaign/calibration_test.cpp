@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace calibration_test {
 
 const CalibrationBin& bin_of(const std::vector<CalibrationBin>& bins, double probability) {
   return bins[static_cast<std::size_t>(calibration_bin(probability))];
@@ -160,5 +160,5 @@ TEST(Calibration, finds_certificates_that_promise_half_of_what_is_true) {
   }
 }
 
-}  // namespace
+}  // namespace calibration_test
 }  // namespace qsmpc

@@ -7,7 +7,7 @@
 #include "tests/unit/campaign/campaign_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace campaign_documentation_test {
 
 using ::testing::HasSubstr;
 
@@ -76,5 +76,5 @@ TEST(HostileCampaign, a_damaged_file_is_loaded_or_refused_and_nothing_else) {
   EXPECT_GT(refused, 200);
 }
 
-}  // namespace
+}  // namespace campaign_documentation_test
 }  // namespace qsmpc

@@ -1,24 +1,21 @@
 // What a campaign file expands to.
 #include "harness/campaign/plan/campaign_file.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/campaign/campaign_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace campaign_campaign_file_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(CampaignFile, a_scenario_and_seeds_are_enough) {
   const CampaignFolder folder;
@@ -220,5 +217,5 @@ TEST(ShippedCampaigns, drive_what_they_say) {
             490);
 }
 
-}  // namespace
+}  // namespace campaign_campaign_file_test
 }  // namespace qsmpc

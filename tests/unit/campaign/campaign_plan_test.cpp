@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 namespace qsmpc {
-namespace {
+namespace campaign_plan_test {
 
 using ::testing::HasSubstr;
 
@@ -66,5 +66,5 @@ TEST(CampaignPlan, is_the_same_as_json) {
   EXPECT_EQ(json["trace_sample"], 3);
 }
 
-}  // namespace
+}  // namespace campaign_plan_test
 }  // namespace qsmpc

@@ -5,7 +5,7 @@
 #include "tests/support/example_trace.hpp"
 
 namespace qsmpc {
-namespace {
+namespace episode_row_test {
 
 TEST(EpisodeRow, has_a_period_for_every_step_that_the_plant_came_through) {
   Trace trace = testing::example_trace({.steps = 6});
@@ -47,5 +47,5 @@ TEST(EpisodeRow, is_a_failure_unless_the_target_was_reached_and_no_state_was_uns
   EXPECT_TRUE(is_failure({.outcome = "fault", .unsafe = false}));
 }
 
-}  // namespace
+}  // namespace episode_row_test
 }  // namespace qsmpc

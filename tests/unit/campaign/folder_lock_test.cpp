@@ -14,7 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace folder_lock_test {
 
 using ::testing::HasSubstr;
 
@@ -72,5 +72,5 @@ TEST(FolderLock, times_are_told_in_utc) {
 
 TEST(FolderLock, says_where_it_cannot_be) { EXPECT_THROW(FolderLock{"/no/such/folder"}, IoError); }
 
-}  // namespace
+}  // namespace folder_lock_test
 }  // namespace qsmpc

@@ -15,7 +15,7 @@
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace merge_test {
 
 namespace fs = std::filesystem;
 using testing::example_row;
@@ -195,5 +195,5 @@ TEST_F(Merge, never_writes_over_a_campaign) {
   EXPECT_EQ(StoreReader(out()).campaign().episodes, 8);
 }
 
-}  // namespace
+}  // namespace merge_test
 }  // namespace qsmpc

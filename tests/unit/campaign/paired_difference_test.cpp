@@ -10,7 +10,7 @@
 #include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
-namespace {
+namespace paired_difference_test {
 
 EpisodeRow row(std::uint64_t seed, const std::string& outcome, double cost,
                double clearance = 0.3) {
@@ -182,5 +182,5 @@ TEST(BootstrapMean, has_an_interval_that_covers_the_true_mean) {
   EXPECT_GE(missed, 1) << "an interval that is never wrong is too wide";
 }
 
-}  // namespace
+}  // namespace paired_difference_test
 }  // namespace qsmpc

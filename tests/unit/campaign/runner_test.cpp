@@ -16,7 +16,7 @@
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace runner_test {
 
 namespace fs = std::filesystem;
 using testing::quick_campaign;
@@ -237,5 +237,5 @@ TEST(CampaignRunner, an_update_removes_the_traces_of_what_it_drops) {
   EXPECT_FALSE(fs::exists(folder / "episodes/0/6"));
 }
 
-}  // namespace
+}  // namespace runner_test
 }  // namespace qsmpc

@@ -17,7 +17,7 @@
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace statistics_test {
 
 using Json = nlohmann::json;
 
@@ -214,5 +214,5 @@ TEST(CampaignCsv, has_every_episode_with_numbers_that_read_back_as_they_were) {
   EXPECT_NE(episodes_csv_line(variant, row).find(",0.30000000000000004,"), std::string::npos);
 }
 
-}  // namespace
+}  // namespace statistics_test
 }  // namespace qsmpc

@@ -13,7 +13,7 @@
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace status_test {
 
 using testing::example_row;
 using ::testing::HasSubstr;
@@ -87,5 +87,5 @@ TEST(Durations, are_told_in_their_two_largest_units) {
   EXPECT_EQ(duration_text(86400.0 * 2.5), "2 d 12 h");
 }
 
-}  // namespace
+}  // namespace status_test
 }  // namespace qsmpc

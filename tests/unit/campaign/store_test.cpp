@@ -16,7 +16,7 @@
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace store_test {
 
 using ::testing::ElementsAre;
 using testing::example_row;
@@ -366,5 +366,5 @@ TEST(Shards, divide_the_seeds_without_rest) {
   }
 }
 
-}  // namespace
+}  // namespace store_test
 }  // namespace qsmpc

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "harness/campaign/statistics/variant_pairs.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace variant_statistics_test {
 
 EpisodeRow row(const std::string& outcome, double cost, double clearance) {
   EpisodeRow result;
@@ -115,5 +113,5 @@ TEST(VariantPairs, compare_with_the_first_of_other_settings_and_of_another_plant
   EXPECT_STREQ(differs_by_name(DiffersBy::kPlant), "plant");
 }
 
-}  // namespace
+}  // namespace variant_statistics_test
 }  // namespace qsmpc

@@ -10,7 +10,7 @@
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace campaign_worst_episodes_test {
 
 EpisodeRow row(const std::string& outcome, bool unsafe, double clearance, double cost,
                std::uint64_t seed = 0) {
@@ -64,5 +64,5 @@ TEST(WorstEpisodes, are_taken_from_all_variants_of_a_store_and_as_many_as_asked_
   EXPECT_TRUE(worst_episodes(store, 0).empty());
 }
 
-}  // namespace
+}  // namespace campaign_worst_episodes_test
 }  // namespace qsmpc

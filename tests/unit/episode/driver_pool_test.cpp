@@ -12,7 +12,7 @@
 #include "harness/scenario/scenario_file.hpp"
 
 namespace qsmpc {
-namespace {
+namespace driver_pool_test {
 
 Scenario short_scenario(const std::string& choice, const std::string& name = "dubins_obstacles") {
   return load_scenario(name, {"controller.horizon=5",
@@ -100,5 +100,5 @@ TEST(DriverPool, gives_every_thread_and_scenario_its_own_episodes) {
   }
 }
 
-}  // namespace
+}  // namespace driver_pool_test
 }  // namespace qsmpc

@@ -16,7 +16,7 @@
 #include "harness/trace/summary.hpp"
 
 namespace qsmpc {
-namespace {
+namespace episode_test {
 
 /// The shipped default, made small enough to run many times.
 Scenario small_scenario(const std::vector<std::string>& more = {}) {
@@ -387,5 +387,5 @@ TEST(Episode, an_xml_file_that_mujoco_refuses_is_a_fault_in_its_own_words) {
   EXPECT_THAT(trace.fault, testing::HasSubstr("no_such_element"));
 }
 
-}  // namespace
+}  // namespace episode_test
 }  // namespace qsmpc

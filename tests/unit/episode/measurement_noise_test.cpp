@@ -12,7 +12,7 @@
 #include "harness/scenario/scenario_file.hpp"
 
 namespace qsmpc {
-namespace {
+namespace measurement_noise_test {
 
 /// A car in the plane that turns about a target for as long as the episode is, planned coarsely.
 Scenario driving_about(const std::string& sensor, const std::vector<std::string>& more = {}) {
@@ -164,5 +164,5 @@ TEST(MeasurementNoise, does_not_decide_the_outcome) {
   EXPECT_TRUE(seen_beyond_the_wall);
 }
 
-}  // namespace
+}  // namespace measurement_noise_test
 }  // namespace qsmpc

@@ -9,7 +9,7 @@
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace chart_marks_test {
 
 using testing::contains;
 using testing::occurrences;
@@ -57,5 +57,5 @@ TEST(ChartMarks, are_few_on_a_line_of_many_points) {
   EXPECT_EQ(occurrences(marks.substr(0, marks.find("/>")), "M"), 2 * 8) << "two strokes each";
 }
 
-}  // namespace
+}  // namespace chart_marks_test
 }  // namespace qsmpc

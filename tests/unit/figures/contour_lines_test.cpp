@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace contour_lines_test {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -64,5 +64,5 @@ TEST(ContourLines, there_are_none_of_a_level_that_is_not_reached) {
   EXPECT_TRUE(contour_lines(MatrixXd(0, 0), 0.0).empty());
 }
 
-}  // namespace
+}  // namespace contour_lines_test
 }  // namespace qsmpc

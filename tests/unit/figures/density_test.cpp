@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace density_test {
 
 using Eigen::Index;
 using Eigen::Matrix2Xd;
@@ -251,5 +251,5 @@ TEST(Density, refuses_samples_that_are_none) {
   EXPECT_THROW((void)density_contours(grid, {nan}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace density_test
 }  // namespace qsmpc

@@ -13,7 +13,7 @@
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace pdf_figure_test {
 
 using testing::contains;
 using testing::TemporaryFolder;
@@ -83,5 +83,5 @@ TEST(PdfFigure, refuses_what_is_no_figure) {
                std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace pdf_figure_test
 }  // namespace qsmpc

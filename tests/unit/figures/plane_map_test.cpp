@@ -7,10 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "harness/figures/palette.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace plane_map_test {
 
 using Eigen::Index;
 using Eigen::Matrix2Xd;
@@ -20,7 +21,6 @@ using testing::occurrences;
 using testing::tag_problem;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// 10 m x 10 m, so that a metre is 48 units: the map itself is 480 units wide.
 constexpr double kUnits = 48.0;
@@ -343,5 +343,5 @@ TEST(MapLabels, of_an_ellipse_stand_outside_of_it) {
   }
 }
 
-}  // namespace
+}  // namespace plane_map_test
 }  // namespace qsmpc

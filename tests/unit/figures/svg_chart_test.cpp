@@ -5,16 +5,16 @@
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace svg_chart_test {
 
 using testing::contains;
 using testing::occurrences;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 TEST(Axis, ticks_are_at_round_numbers_and_span_the_values) {
   const Axis axis = rounded_axis({0.13, 9.2}, 5);
@@ -119,5 +119,5 @@ TEST(ChartFigure, a_long_line_is_thinned_but_keeps_its_extremes) {
   EXPECT_TRUE(contains(html, " 10.0"));  // the peak reaches the top of the frame
 }
 
-}  // namespace
+}  // namespace svg_chart_test
 }  // namespace qsmpc

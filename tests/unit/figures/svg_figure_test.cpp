@@ -12,7 +12,7 @@
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace svg_figure_test {
 
 using testing::contains;
 using testing::occurrences;
@@ -164,5 +164,5 @@ TEST(ChartDrawing, names_stand_in_place_of_numbers) {
   EXPECT_FALSE(contains(svg, ">1.5<"));
 }
 
-}  // namespace
+}  // namespace svg_figure_test
 }  // namespace qsmpc

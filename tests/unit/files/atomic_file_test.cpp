@@ -8,7 +8,7 @@
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace atomic_file_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -126,5 +126,5 @@ TEST(MakeOutputFolder, says_what_is_in_the_way) {
   EXPECT_THAT(io_error_of([&] { make_output_folder(""); }), Not(HasSubstr("Success")));
 }
 
-}  // namespace
+}  // namespace atomic_file_test
 }  // namespace qsmpc

@@ -14,12 +14,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "render/media/png_file.hpp"
+#include "render/media/png_image.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace gl_library_test {
 
 using testing::HasSubstr;
 using testing::StartsWith;
@@ -42,7 +42,7 @@ void draw(const std::string& library, const std::string& path) {
   const Frame frame = example_frame();
   Image image;
   renderer.draw(frame, image);
-  write_png(path, image);
+  std::ofstream(path, std::ios::binary) << encode_png(image);
   const PixelPoint vehicle = renderer.locate(frame, {frame.pose.x, frame.pose.y}, 0.2).value();
   std::cout << vehicle.x << ' ' << vehicle.y << ' ' << gl_description() << '\n';
 }
@@ -163,7 +163,7 @@ TEST(gl_library, unknown_names_are_refused_with_the_known_ones) {
   }
 }
 
-}  // namespace
+}  // namespace gl_library_test
 
 int child_main(const std::string& what, const std::string& first, const std::string& second) {
   try {

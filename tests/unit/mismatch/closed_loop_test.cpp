@@ -12,7 +12,7 @@
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace closed_loop_test {
 
 EpisodeResult judged(const std::string& outcome, double cost, double clearance) {
   EpisodeResult result;
@@ -87,5 +87,5 @@ TEST(RunEpisodes, take_successive_seeds_and_do_not_depend_on_the_executor) {
             static_cast<std::size_t>(reference[1].steps));
 }
 
-}  // namespace
+}  // namespace closed_loop_test
 }  // namespace qsmpc

@@ -12,7 +12,7 @@
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace comparison_reader_test {
 
 using ::testing::HasSubstr;
 using testing::short_scenario;
@@ -145,5 +145,5 @@ TEST_F(ReadComparison, an_older_file_has_no_speed_and_no_p_values_but_its_sums) 
   EXPECT_EQ(loop.cost, written_.plants[1].closed_loop.cost);
 }
 
-}  // namespace
+}  // namespace comparison_reader_test
 }  // namespace qsmpc

@@ -16,7 +16,7 @@
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace comparison_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -291,5 +291,5 @@ TEST_F(WrittenComparison, where_one_file_cannot_be_written_none_is_left) {
   EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
-}  // namespace
+}  // namespace comparison_test
 }  // namespace qsmpc

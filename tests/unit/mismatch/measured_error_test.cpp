@@ -9,7 +9,7 @@
 #include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
-namespace {
+namespace measured_error_test {
 
 Eigen::MatrixXd normal_residuals(std::uint64_t seed, std::uint64_t unit, Eigen::Index periods,
                                  double deviation) {
@@ -164,5 +164,5 @@ TEST(MeasuredModelError, norms_grow_with_their_order_and_depend_on_the_seed_alon
   EXPECT_NE(measured_model_error({sample}, 5).higher[1], error.higher[1]);
 }
 
-}  // namespace
+}  // namespace measured_error_test
 }  // namespace qsmpc

@@ -13,7 +13,7 @@
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace path_ensemble_test {
 
 using testing::altered_plants;
 using testing::Planned;
@@ -274,5 +274,5 @@ TEST(SimulationSpeed, is_a_positive_number) {
   EXPECT_GT(simulation_speed(*plant, planned.source(), planned.scenario.time_step, 3), 0.0);
 }
 
-}  // namespace
+}  // namespace path_ensemble_test
 }  // namespace qsmpc

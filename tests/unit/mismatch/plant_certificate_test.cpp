@@ -11,7 +11,7 @@
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace mismatch_plant_certificate_test {
 
 using testing::altered_plants;
 using ::testing::IsEmpty;
@@ -81,5 +81,5 @@ TEST(PlantCertificates, with_the_measured_error_hold_for_the_car_on_wheels_on_ot
   }
 }
 
-}  // namespace
+}  // namespace mismatch_plant_certificate_test
 }  // namespace qsmpc

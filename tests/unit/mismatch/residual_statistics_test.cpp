@@ -8,7 +8,7 @@
 #include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
-namespace {
+namespace residual_statistics_test {
 
 Eigen::MatrixXd row(std::initializer_list<double> values) {
   Eigen::MatrixXd matrix(1, static_cast<Eigen::Index>(values.size()));
@@ -112,5 +112,5 @@ TEST(ResidualStatistics, of_nothing_and_of_what_never_changes_no_correlation_is_
   EXPECT_TRUE(std::isnan(constant.whiteness.p_value[0]));
 }
 
-}  // namespace
+}  // namespace residual_statistics_test
 }  // namespace qsmpc

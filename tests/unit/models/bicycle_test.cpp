@@ -2,15 +2,15 @@
 #include "models/dynamics/bicycle.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace bicycle_test {
 
 constexpr double kMass = 1412.0;
 constexpr double kInertia = 1536.7;
@@ -138,7 +138,6 @@ TEST_F(BicycleTest, stands_still_without_blowing_up) {
 }
 
 TEST_F(BicycleTest, box_around_the_pole_bounds_only_what_has_none) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   Eigen::VectorXd lower = Eigen::VectorXd::Constant(8, -1.0);
   Eigen::VectorXd upper = Eigen::VectorXd::Constant(8, 1.0);
   lower[Bicycle::kLongitudinalSpeed] = -16.0;
@@ -170,5 +169,5 @@ TEST_F(BicycleTest, lipschitz_refuses_a_gain_of_another_shape) {
   EXPECT_THROW((void)car_->lipschitz(Eigen::MatrixXd::Zero(6, 2)), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace bicycle_test
 }  // namespace qsmpc::testing

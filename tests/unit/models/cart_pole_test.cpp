@@ -10,7 +10,7 @@
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace cart_pole_test {
 
 using State = Eigen::Vector4d;
 
@@ -91,5 +91,5 @@ TEST(CartPole, lipschitz_refuses_a_gain_of_another_shape) {
   EXPECT_THROW((void)system->lipschitz(Eigen::MatrixXd::Zero(4, 1)), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace cart_pole_test
 }  // namespace qsmpc::testing

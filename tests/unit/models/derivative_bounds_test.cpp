@@ -1,16 +1,14 @@
 // Enclosures of first and second derivatives over boxes, of every system.
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Core>
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace derivative_bounds_test {
 // The Jacobians compared with are computed by other sums and products, with values of the order of
 // a hundred at most.
 constexpr double kRounding = 1e-12;
@@ -197,5 +195,5 @@ TEST_P(DerivativeBoundsOfEverySystem, what_is_no_box_is_refused) {
 INSTANTIATE_TEST_SUITE_P(systems, DerivativeBoundsOfEverySystem,
                          ::testing::ValuesIn(system_names()));
 
-}  // namespace
+}  // namespace derivative_bounds_test
 }  // namespace qsmpc::testing

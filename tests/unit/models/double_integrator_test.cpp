@@ -12,7 +12,7 @@
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace double_integrator_test {
 
 TEST(DoubleIntegrator, step_is_that_of_the_runge_kutta_method) {
   const DoubleIntegrator model{.time_step = 0.3};
@@ -58,5 +58,5 @@ TEST(DoubleIntegrator, lipschitz_refuses_a_gain_of_another_shape) {
   EXPECT_THROW((void)point->lipschitz(Eigen::MatrixXd::Zero(2, 1)), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace double_integrator_test
 }  // namespace qsmpc::testing

@@ -14,7 +14,7 @@
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace dubins_rk4_test {
 
 using State = Eigen::Vector3d;
 
@@ -149,5 +149,5 @@ TEST(DubinsRk4, senseless_speeds_and_gains_are_refused) {
   EXPECT_THROW((void)car->lipschitz(Eigen::MatrixXd::Zero(3, 1)), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace dubins_rk4_test
 }  // namespace qsmpc::testing

@@ -8,7 +8,7 @@
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace dubins_test {
 
 constexpr double kSpeed = 1.5;
 constexpr double kReach = kSpeed * kTimeStep;
@@ -98,5 +98,5 @@ TEST(Dubins, unicycle_structure_reproduces_the_step) {
   }
 }
 
-}  // namespace
+}  // namespace dubins_test
 }  // namespace qsmpc::testing

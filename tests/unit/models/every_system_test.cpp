@@ -8,7 +8,7 @@
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace every_system_test {
 
 // Central differences with step h have the error h² |f'''|/6 + ε |f|/h: about 1e-10 with values of
 // the order of ten, and a hundred times that is allowed.
@@ -136,5 +136,5 @@ TEST_P(EverySystem, lipschitz_constant_is_at_least_every_sampled_ratio) {
 
 INSTANTIATE_TEST_SUITE_P(systems, EverySystem, ::testing::ValuesIn(system_names()));
 
-}  // namespace
+}  // namespace every_system_test
 }  // namespace qsmpc::testing

@@ -4,17 +4,16 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
-namespace {
+#include "models/constants.hpp"
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace qsmpc {
+namespace interval_test {
 constexpr double kPi = std::numbers::pi;
 // What ends may exceed the exact ones by: a few units in the last place of values up to a hundred.
 constexpr double kRounding = 1e-13;
@@ -172,5 +171,5 @@ TEST(Interval, overflow_keeps_the_finite_end_on_the_right_side) {
   EXPECT_EQ(huge.upper(), kInfinity);
 }
 
-}  // namespace
+}  // namespace interval_test
 }  // namespace qsmpc

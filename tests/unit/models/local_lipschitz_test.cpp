@@ -12,7 +12,7 @@
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace local_lipschitz_test {
 
 /// x ↦ f(x, clamp(v + K x)) on a box of states.
 struct BoxedLoop {
@@ -124,5 +124,5 @@ TEST(LocalLipschitz, of_a_car_in_any_direction_is_close_to_its_global_constant) 
   EXPECT_LE(local, 1.05 * car->lipschitz(open_loop));
 }
 
-}  // namespace
+}  // namespace local_lipschitz_test
 }  // namespace qsmpc::testing

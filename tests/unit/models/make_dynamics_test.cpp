@@ -10,7 +10,7 @@
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc {
-namespace {
+namespace make_dynamics_test {
 
 using ::testing::HasSubstr;
 
@@ -71,5 +71,5 @@ TEST(MakeDynamics, parameters_left_out_take_their_defaults) {
   }
 }
 
-}  // namespace
+}  // namespace make_dynamics_test
 }  // namespace qsmpc

@@ -2,12 +2,13 @@
 #include "models/dynamics/second_order_jet.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
+
 namespace qsmpc {
-namespace {
+namespace second_order_jet_test {
 
 using Jet = SecondOrderJet<2>;
 
@@ -80,7 +81,6 @@ TEST_F(SecondOrderJetAtAPoint, square_root) {
 }
 
 TEST(SecondOrderJet, pole_makes_only_the_derivatives_that_meet_it_unbounded) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   const Jet x = Jet::variable(Interval(-1.0, 1.0), 0);
   const Jet y = Jet::variable(Interval(2.0, 3.0), 1);
   const Jet z = 1.0 / x + y;
@@ -91,5 +91,5 @@ TEST(SecondOrderJet, pole_makes_only_the_derivatives_that_meet_it_unbounded) {
   expect_value(z.hessian(0, 1), 0.0);
 }
 
-}  // namespace
+}  // namespace second_order_jet_test
 }  // namespace qsmpc

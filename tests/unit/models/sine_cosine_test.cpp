@@ -41,7 +41,7 @@ namespace qsmpc {
 HWY_EXPORT(sine_cosine_of);
 
 namespace testing {
-namespace {
+namespace sine_cosine_test {
 
 // Rounded results of the standard library's, which is within one unit of the truth itself.
 constexpr double kUnits = 2.0;
@@ -136,7 +136,7 @@ TEST(SineCosine, is_the_same_on_every_target_whatever_stands_beside_it) {
   }
 }
 
-}  // namespace
+}  // namespace sine_cosine_test
 }  // namespace testing
 }  // namespace qsmpc
 #endif

@@ -10,7 +10,7 @@
 #include "tests/unit/models/dynamics_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace models_vector_targets_test {
 
 struct Answers {
   StateBatch next;
@@ -82,5 +82,5 @@ TEST_P(EverySystemOnEveryTarget, columns_of_larger_batches_are_read_and_written_
 
 INSTANTIATE_TEST_SUITE_P(systems, EverySystemOnEveryTarget, ::testing::ValuesIn(system_names()));
 
-}  // namespace
+}  // namespace models_vector_targets_test
 }  // namespace qsmpc::testing

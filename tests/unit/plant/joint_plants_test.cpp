@@ -9,7 +9,7 @@
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc {
-namespace {
+namespace joint_plants_test {
 
 constexpr double kPeriod = 0.1;  // s
 constexpr int kPeriods = 20;
@@ -132,5 +132,5 @@ TEST(JointPlants, the_slider_is_the_double_integrator) {
   EXPECT_LT(plant_error(plant, 0.01, truth), 1e-13);
 }
 
-}  // namespace
+}  // namespace joint_plants_test
 }  // namespace qsmpc

@@ -10,16 +10,16 @@
 #include "harness/errors.hpp"
 #include "harness/plant/mujoco/mujoco_errors.hpp"
 #include "harness/plant/mujoco/mujoco_model.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace mujoco_plant_fault_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 InputError::Where refusal(const std::string& mjcf, double control_period = kControlPeriod) {
   try {
@@ -174,5 +174,5 @@ TEST_F(MujocoPlantFault, a_warning_goes_to_the_innermost_trap_of_its_own_thread)
   EXPECT_TRUE(outer.warnings().empty()) << "the loader's own trap collects its warnings";
 }
 
-}  // namespace
+}  // namespace mujoco_plant_fault_test
 }  // namespace qsmpc

@@ -11,7 +11,7 @@
 #include "tests/unit/plant/plant_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace mujoco_plant_motion_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
@@ -225,5 +225,5 @@ TEST(MujocoPlantMotion, is_the_same_bit_for_bit_on_another_plant_and_after_reset
   EXPECT_EQ(first, drive(*one));
 }
 
-}  // namespace
+}  // namespace mujoco_plant_motion_test
 }  // namespace qsmpc

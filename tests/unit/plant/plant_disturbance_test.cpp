@@ -13,7 +13,7 @@
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc {
-namespace {
+namespace plant_disturbance_test {
 
 const int kPeriods = testing::by_effort(500, 2000, 2000);
 
@@ -137,5 +137,5 @@ std::vector<Disturbed> disturbed_plants() {
 INSTANTIATE_TEST_SUITE_P(all, PlantDisturbance, ::testing::ValuesIn(disturbed_plants()),
                          [](const auto& test) { return test.param.name; });
 
-}  // namespace
+}  // namespace plant_disturbance_test
 }  // namespace qsmpc

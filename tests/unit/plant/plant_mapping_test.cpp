@@ -13,7 +13,7 @@
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc {
-namespace {
+namespace plant_mapping_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
@@ -255,5 +255,5 @@ TEST(PlantVariation, is_drawn_from_its_own_stream_with_the_given_deviations) {
   EXPECT_NEAR(std::sqrt(squares / kEpisodes), 0.05, 3.0 * 0.05 / std::sqrt(2.0 * kEpisodes));
 }
 
-}  // namespace
+}  // namespace plant_mapping_test
 }  // namespace qsmpc

@@ -12,7 +12,7 @@
 #include "tests/unit/plant/plant_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace plant_registry_test {
 
 Scenario dubins_scenario(const std::string& kind) {
   Scenario scenario;
@@ -79,5 +79,5 @@ TEST(PlantRegistry, refuses_what_it_cannot_make) {
   EXPECT_THROW((void)make_plant(scenario), InputError);
 }
 
-}  // namespace
+}  // namespace plant_registry_test
 }  // namespace qsmpc

@@ -14,7 +14,7 @@
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc {
-namespace {
+namespace wheeled_plants_test {
 
 constexpr double kPeriod = 0.1;  // s
 constexpr int kMinute = 600;     // periods
@@ -209,5 +209,5 @@ INSTANTIATE_TEST_SUITE_P(all, PushedCars,
                                                .variances = {0.01, 0.01, 0.001, 0.01, 0.01, 0.001},
                                                .speed = 8.0}));
 
-}  // namespace
+}  // namespace wheeled_plants_test
 }  // namespace qsmpc

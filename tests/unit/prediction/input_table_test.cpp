@@ -9,7 +9,7 @@
 #include "harness/errors.hpp"
 
 namespace qsmpc {
-namespace {
+namespace input_table_test {
 
 InputTableFormat two_inputs() {
   return {.inputs = {{.name = "steering", .unit = "rad"}, {.name = "acceleration", .unit = "m/s²"}},
@@ -132,5 +132,5 @@ TEST(InputTable, a_file_that_is_not_there_is_refused_by_its_name) {
   }
 }
 
-}  // namespace
+}  // namespace input_table_test
 }  // namespace qsmpc

@@ -17,7 +17,7 @@
 #include "tests/unit/prediction/prediction_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace prediction_output_test {
 
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
@@ -198,5 +198,5 @@ TEST(PredictionTable, marks_the_published_value_as_no_bound) {
   EXPECT_THAT(prediction_table(plain), ::testing::Not(HasSubstr("rate")));
 }
 
-}  // namespace
+}  // namespace prediction_output_test
 }  // namespace qsmpc

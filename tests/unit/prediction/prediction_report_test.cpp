@@ -10,7 +10,7 @@
 #include "tests/unit/prediction/prediction_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace prediction_report_test {
 
 using testing::small_scenario;
 
@@ -124,5 +124,5 @@ TEST(ContradictedStages, certificates_hold_and_one_that_does_not_is_told) {
   EXPECT_THAT(contradicted_stages(report), ::testing::ElementsAre(2, 3));
 }
 
-}  // namespace
+}  // namespace prediction_report_test
 }  // namespace qsmpc

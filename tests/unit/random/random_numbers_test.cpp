@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace random_numbers_test {
 
 constexpr int kCount = 20000;
 // Two-sided limit of a standard normal number that 1 of 10 000 exceeds: seeds are fixed, so that a
@@ -155,5 +155,5 @@ TEST(RandomNumbers, are_distributed_as_they_say) {
   EXPECT_LT(uniform_distance, limit);
 }
 
-}  // namespace
+}  // namespace random_numbers_test
 }  // namespace qsmpc

@@ -5,7 +5,7 @@
 #include "render/media/libav.hpp"
 
 namespace qsmpc {
-namespace {
+namespace decoded_video {
 
 Image rgb_image(const AVFrame& frame) {
   Image image{frame.width, frame.height, {}};
@@ -38,7 +38,7 @@ void receive_frames(AVCodecContext* codec, DecodedVideo& video) {
   }
 }
 
-}  // namespace
+}  // namespace decoded_video
 
 DecodedVideo decode_video(const std::string& path) {
   AVFormatContext* format = nullptr;

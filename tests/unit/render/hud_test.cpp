@@ -7,7 +7,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace hud_test {
 
 Image black_image(int width, int height) {
   return {width, height, std::vector<unsigned char>(static_cast<std::size_t>(3 * width * height))};
@@ -21,15 +21,21 @@ Frame talkative_frame() {
   return frame;
 }
 
+void draw_chart(const StripChart& chart, const PixelRectangle& area, const HudStyle& style,
+                Image& image) {
+  Canvas canvas(image);
+  draw_strip_chart(chart, area, {0.0F, 1.0F, 0.0F}, style, canvas);
+}
+
 TEST(strip_chart, limit_is_a_dashed_line_at_its_value) {
   const HudStyle style(1280, 720);
   StripChart chart{.label = "time", .values = {10.0, 20.0}, .slots = 50, .upper = 200.0};
   const PixelRectangle area{10.0, 10.0, 300.0, 110.0};
   Image with = black_image(320, 130);
   Image without = with;
-  draw_strip_chart(chart, area, {0.0F, 1.0F, 0.0F}, style, without);
+  draw_chart(chart, area, style, without);
   chart.limit = {.value = 150.0, .label = "limit"};
-  draw_strip_chart(chart, area, {0.0F, 1.0F, 0.0F}, style, with);
+  draw_chart(chart, area, style, with);
   const double y = chart_point(chart, area, style, 0, 150.0).y;
   EXPECT_LT(y, chart_point(chart, area, style, 0, 100.0).y);
   int bright = 0;
@@ -62,7 +68,7 @@ TEST(strip_chart, newest_value_is_where_its_point_says) {
                          .logarithmic = true};
   const PixelRectangle area{10.0, 10.0, 300.0, 110.0};
   Image image = black_image(320, 130);
-  draw_strip_chart(chart, area, {0.0F, 1.0F, 0.0F}, style, image);
+  draw_chart(chart, area, style, image);
   const PixelPoint place = chart_point(chart, area, style, 1, 1e-2);
   EXPECT_GT(pixel_at(image, place).green, 200);
   EXPECT_LT(pixel_at(image, {place.x + 40.0, place.y}).green, 60);
@@ -102,5 +108,5 @@ TEST(legend, keeps_to_its_width_and_lines) {
   EXPECT_NEAR(narrow.height(), 2.0 * style.row_height(), 1e-9);
 }
 
-}  // namespace
+}  // namespace hud_test
 }  // namespace qsmpc

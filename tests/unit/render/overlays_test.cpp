@@ -10,7 +10,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace overlays_test {
 
 // Thin lines and translucent surfaces take on a part of what is below.
 constexpr int kMixedColour = 90;
@@ -212,5 +212,5 @@ TEST(colours, of_risk_get_darker_and_are_the_same_beyond_their_ends) {
   EXPECT_EQ(luma(risk_colour(std::nan(""))), luma(risk_colour(1.0)));
 }
 
-}  // namespace
+}  // namespace overlays_test
 }  // namespace qsmpc

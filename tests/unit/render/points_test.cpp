@@ -7,7 +7,7 @@
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace points_test {
 
 ParticleStage weighted_row(std::size_t count) {
   ParticleStage stage;
@@ -71,5 +71,5 @@ TEST(points, of_every_size_lie_where_they_project) {
   }
 }
 
-}  // namespace
+}  // namespace points_test
 }  // namespace qsmpc

@@ -2,16 +2,16 @@
 
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <stdexcept>
 #include <thread>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace renderer_test {
 
 // Smoothing and the opacity of particles mix a little of the surroundings into a colour.
 constexpr int kSameColour = 60;
@@ -155,7 +155,6 @@ TEST(renderer, top_and_fixed_cameras_show_all_of_the_bounds) {
 }
 
 TEST(renderer, draws_without_bounds) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   World world;
   world.bounds = {-kInfinity, kInfinity, -kInfinity, kInfinity};
   world.obstacles = {{1.0, 2.0, -kInfinity, kInfinity}};
@@ -196,5 +195,5 @@ TEST(renderer, missing_vehicle_is_an_exception_and_leaves_no_log_file) {
   EXPECT_FALSE(std::filesystem::exists("MUJOCO_LOG.TXT"));
 }
 
-}  // namespace
+}  // namespace renderer_test
 }  // namespace qsmpc

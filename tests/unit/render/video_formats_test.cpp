@@ -10,13 +10,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "harness/video/video_file.hpp"
 #include "render/media/gif_palette.hpp"
-#include "render/media/video_writer.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace video_formats_test {
 
 using testing::HasSubstr;
 
@@ -30,17 +30,29 @@ constexpr Colour kBar{0.1F, 0.3F, 0.9F};
 Image test_image(int index) {
   Image image{kWidth, kHeight, {}};
   image.rgb.resize(3 * kWidth * kHeight);
-  fill_rectangle(image, {0.0, 0.0, kWidth, kHeight}, kGround);
-  fill_rectangle(image, {3.0 * index, 60.0, 20.0, 30.0}, kBar);
+  Canvas(image).fill_rectangle({0.0, 0.0, kWidth, kHeight}, kGround);
+  Canvas(image).fill_rectangle({3.0 * index, 60.0, 20.0, 30.0}, kBar);
   return image;
 }
 
-void write_video(const std::string& path, int frames, const VideoOptions& options = {}) {
-  VideoWriter video(path, kWidth, kHeight, kFps, options);
+VideoSettings settings(VideoFormat format, int quality = kUsualQuality) {
+  return {.format = format,
+          .width = kWidth,
+          .height = kHeight,
+          .frames_per_second = kFps,
+          .quality = quality};
+}
+
+void write_video(const std::string& path, int frames, const VideoSettings& wanted) {
+  VideoFile video(path, wanted);
   for (int i = 0; i < frames; ++i) {
     video.add(test_image(i % 40));
   }
   video.finish();
+}
+
+void write_video(const std::string& path, int frames) {
+  write_video(path, frames, settings(known_video_format(path)));
 }
 
 std::string bytes_of(const std::string& path) {
@@ -124,7 +136,7 @@ TEST(video_formats, killed_process_leaves_a_playable_webm) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    VideoWriter video(path, kWidth, kHeight, kFps);
+    VideoFile video(path, settings(known_video_format(path)));
     for (int i = 0; i < 60; ++i) {
       video.add(test_image(i % 40));
     }
@@ -169,7 +181,7 @@ TEST(video_formats, webp_shows_every_frame_for_its_time) {
 TEST(video_formats, killed_process_leaves_a_playable_video_beside_a_gif) {
   const std::string path = fresh_folder() / "video.gif";
   {
-    VideoWriter video(path, kWidth, kHeight, kFps);
+    VideoFile video(path, settings(known_video_format(path)));
     for (int i = 0; i < 7; ++i) {
       video.add(test_image(i));
     }
@@ -181,7 +193,7 @@ TEST(video_formats, killed_process_leaves_a_playable_video_beside_a_gif) {
 TEST(video_formats, format_follows_the_ending_unless_it_is_given) {
   const auto folder = fresh_folder();
   write_video(folder / "one.WEBM", 3);
-  write_video(folder / "two.bin", 3, {.format = VideoFormat::kMp4});
+  write_video(folder / "two.bin", 3, settings(VideoFormat::kMp4));
   EXPECT_THAT(decode_video(folder / "one.WEBM").codec, HasSubstr("vp9"));
   EXPECT_EQ(decode_video(folder / "two.bin").codec, "h264");
 }
@@ -201,9 +213,12 @@ TEST(video_formats, unknown_endings_are_refused_with_the_known_ones) {
 TEST(video_formats, qualities_out_of_range_and_gifs_too_fast_are_refused) {
   const auto folder = fresh_folder();
   for (const int quality : {-1, 101}) {
-    EXPECT_THROW(write_video(folder / "a.mp4", 1, {.quality = quality}), std::invalid_argument);
+    EXPECT_THROW(write_video(folder / "a.mp4", 1, settings(VideoFormat::kMp4, quality)),
+                 std::invalid_argument);
   }
-  EXPECT_THROW(VideoWriter(folder / "a.gif", kWidth, kHeight, 51), std::invalid_argument);
+  VideoSettings fast = settings(VideoFormat::kGif);
+  fast.frames_per_second = 51;
+  EXPECT_THROW(write_video(folder / "a.gif", 1, fast), std::invalid_argument);
   EXPECT_EQ(files_in(folder), 0);
 }
 
@@ -224,7 +239,7 @@ TEST_P(EveryFormat, lower_quality_is_a_smaller_file) {
   std::vector<std::uintmax_t> sizes;
   for (const int quality : {10, 60}) {
     const std::string path = folder / (std::to_string(quality) + "." + GetParam());
-    VideoWriter video(path, kWidth, kHeight, kFps, {.quality = quality});
+    VideoFile video(path, settings(known_video_format(path), quality));
     for (int i = 0; i < 6; ++i) {
       video.add(noisy_image(i));
     }
@@ -270,5 +285,5 @@ TEST(gif_palette, a_colour_that_is_missing_is_mixed_from_its_neighbours) {
   EXPECT_NEAR(sum / 256.0, 0.5, 0.2);
 }
 
-}  // namespace
+}  // namespace video_formats_test
 }  // namespace qsmpc

@@ -1,8 +1,13 @@
 #include "render/media/video_writer.hpp"
 
+#include <algorithm>
 #include <csignal>
+#include <cstdint>
 #include <fstream>
+#include <span>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,12 +15,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "render/media/png_file.hpp"
+#include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
+#include "harness/video/video_file.hpp"
+#include "render/media/png_image.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace video_writer_test {
 
 using testing::HasSubstr;
 
@@ -32,8 +40,12 @@ Image test_image(int index) {
     image.rgb[i + 1] = 60;
     image.rgb[i + 2] = 30;
   }
-  fill_rectangle(image, {3.0 * index, 60.0, 20.0, 30.0}, {0.1F, 0.3F, 0.9F});
+  Canvas(image).fill_rectangle({3.0 * index, 60.0, 20.0, 30.0}, {0.1F, 0.3F, 0.9F});
   return image;
+}
+
+VideoSettings settings(int width = kWidth, int height = kHeight) {
+  return {.width = width, .height = height, .frames_per_second = kFps};
 }
 
 template <typename Action>
@@ -49,7 +61,7 @@ std::string error_of(const Action& action) {
 TEST(video_writer, finished_video_is_whole_and_alone) {
   const auto folder = fresh_folder();
   const std::string path = folder / "a:b video.mp4";  // neither a protocol nor two words
-  VideoWriter video(path, kWidth, kHeight, kFps);
+  VideoFile video(path, settings());
   for (int i = 0; i < 25; ++i) {
     video.add(test_image(i));
   }
@@ -76,7 +88,7 @@ TEST(video_writer, finished_video_is_whole_and_alone) {
 
 TEST(video_writer, index_of_a_finished_video_comes_before_its_pictures) {
   const std::string path = fresh_folder() / "video.mp4";
-  VideoWriter video(path, kWidth, kHeight, kFps);
+  VideoFile video(path, settings());
   video.add(test_image(0));
   video.finish();
   std::ifstream file(path, std::ios::binary);
@@ -89,7 +101,7 @@ TEST(video_writer, index_of_a_finished_video_comes_before_its_pictures) {
 TEST(video_writer, unfinished_video_leaves_a_playable_partial_and_nothing_under_its_name) {
   const std::string path = fresh_folder() / "video.mp4";
   {
-    VideoWriter video(path, kWidth, kHeight, kFps);
+    VideoFile video(path, settings());
     for (int i = 0; i < 7; ++i) {
       video.add(test_image(i));
     }
@@ -103,7 +115,7 @@ TEST(video_writer, killed_process_leaves_a_playable_partial_and_nothing_under_it
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    VideoWriter video(path, kWidth, kHeight, kFps);
+    VideoFile video(path, settings());
     for (int i = 0; i < 120; ++i) {
       video.add(test_image(i % 40));
     }
@@ -119,27 +131,28 @@ TEST(video_writer, killed_process_leaves_a_playable_partial_and_nothing_under_it
 
 TEST(video_writer, refuses_odd_sizes) {
   const std::string path = fresh_folder() / "video.mp4";
-  EXPECT_THROW(VideoWriter(path, 161, 96, kFps), std::invalid_argument);
-  EXPECT_THAT(error_of([&] { VideoWriter(path, 160, 97, kFps); }), HasSubstr("160x97"));
+  EXPECT_THROW(VideoFile(path, settings(161, 96)), std::invalid_argument);
+  EXPECT_THAT(error_of([&] { VideoFile(path, settings(160, 97)); }), HasSubstr("160x97"));
   EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
 }
 
 TEST(video_writer, refuses_frames_of_another_size) {
-  VideoWriter video(fresh_folder() / "video.mp4", kWidth + 2, kHeight, kFps);
+  VideoFile video(fresh_folder() / "video.mp4", settings(kWidth + 2, kHeight));
   EXPECT_THROW(video.add(test_image(0)), std::invalid_argument);
 }
 
 TEST(video_writer, folder_that_does_not_exist_is_named_with_the_systems_words) {
   const std::string path = fresh_folder() / "missing" / "video.mp4";
-  const std::string error = error_of([&] { VideoWriter(path, kWidth, kHeight, kFps); });
+  const std::string error = error_of([&] { VideoFile(path, settings()); });
   EXPECT_THAT(error, HasSubstr(path));
   EXPECT_THAT(error, HasSubstr("No such file or directory"));
 }
 
 TEST(video_writer, unknown_preset_is_an_error) {
   const std::string path = fresh_folder() / "video.mp4";
-  EXPECT_THROW(VideoWriter(path, kWidth, kHeight, kFps, {.preset = "no such preset"}),
-               std::runtime_error);
+  VideoSettings wanted = settings();
+  wanted.preset = "no such preset";
+  EXPECT_THROW(VideoFile(path, wanted), std::runtime_error);
 }
 
 TEST(video_writer, file_that_cannot_grow_is_an_error_and_leaves_nothing_under_its_name) {
@@ -152,7 +165,7 @@ TEST(video_writer, file_that_cannot_grow_is_an_error_and_leaves_nothing_under_it
     const rlimit limit{4096, 4096};
     setrlimit(RLIMIT_FSIZE, &limit);
     const std::string error = error_of([&] {
-      VideoWriter video(path, kWidth, kHeight, kFps);
+      VideoFile video(path, settings());
       for (int i = 0; i < 200; ++i) {
         video.add(test_image(i % 40));
       }
@@ -170,25 +183,94 @@ TEST(video_writer, file_that_cannot_grow_is_an_error_and_leaves_nothing_under_it
 
 TEST(video_writer, finishing_without_frames_is_an_error) {
   const std::string path = fresh_folder() / "video.mp4";
-  VideoWriter video(path, kWidth, kHeight, kFps);
+  VideoFile video(path, settings());
   EXPECT_THROW(video.finish(), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(png_file, keeps_every_pixel) {
+// Bytes in memory, which may be lost after so many of them.
+class MemoryFile final : public ByteFile {
+ public:
+  explicit MemoryFile(std::int64_t room = 1 << 24) : room_(room) {}
+
+  void clear() override { bytes_.clear(); }
+  std::int64_t size() override { return static_cast<std::int64_t>(bytes_.size()); }
+  void write_at(std::int64_t position, std::span<const std::uint8_t> bytes) override {
+    const auto end = static_cast<std::size_t>(position) + bytes.size();
+    if (end > static_cast<std::size_t>(room_)) throw IoError("no room in memory");
+    bytes_.resize(std::max(bytes_.size(), end));
+    std::copy(bytes.begin(), bytes.end(), bytes_.begin() + position);
+  }
+  std::size_t read_at(std::int64_t position, std::span<std::uint8_t> out) override {
+    const auto count = std::min<std::int64_t>(size() - position, static_cast<int>(out.size()));
+    std::copy_n(bytes_.begin() + position, std::max<std::int64_t>(count, 0), out.begin());
+    return static_cast<std::size_t>(std::max<std::int64_t>(count, 0));
+  }
+
+  [[nodiscard]] std::string_view bytes() const {
+    return {reinterpret_cast<const char*>(bytes_.data()), bytes_.size()};
+  }
+
+ private:
+  std::int64_t room_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+class EveryKeptFormat : public testing::TestWithParam<VideoFormat> {};
+
+TEST_P(EveryKeptFormat, needs_no_file_system) {
+  MemoryFile partial;
+  MemoryFile finished;
+  VideoSettings wanted = settings();
+  wanted.format = GetParam();
+  {
+    VideoWriter video(partial, wanted);
+    for (int i = 0; i < 12; ++i) video.add(test_image(i));
+    video.finish(finished);
+  }
+  const std::string path = fresh_folder() / ("video." + video_format_name(GetParam()));
+  write_file(path, finished.bytes());
+  // FFmpeg 5 writes animated WebP and cannot read it.
+  if (GetParam() != VideoFormat::kWebp) {
+    EXPECT_EQ(decode_video(path).frames, 12);
+  }
+  EXPECT_GT(finished.size(), 100);
+}
+
+TEST_P(EveryKeptFormat, what_a_file_throws_reaches_the_caller) {
+  VideoSettings wanted = settings();
+  wanted.format = GetParam();
+  for (const std::int64_t room : {10, 3000}) {
+    MemoryFile full(room);
+    MemoryFile enough;
+    const auto write = [&](ByteFile& partial, ByteFile& finished) {
+      VideoWriter video(partial, wanted);
+      for (int i = 0; i < 40; ++i) video.add(test_image(i));
+      video.finish(finished);
+    };
+    EXPECT_THAT(error_of([&] { write(full, enough); }), HasSubstr("no room in memory")) << room;
+    MemoryFile narrow(room / 10);
+    EXPECT_THROW(write(enough, narrow), IoError) << room;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, EveryKeptFormat,
+                         testing::Values(VideoFormat::kMp4, VideoFormat::kWebm, VideoFormat::kGif,
+                                         VideoFormat::kWebp));
+
+TEST(png_image, keeps_every_pixel) {
   const std::string path = fresh_folder() / "picture.png";
   const Image image = test_image(3);
-  write_png(path, image);
+  write_file(path, encode_png(image));
   EXPECT_EQ(decode_video(path).first.rgb, image.rgb);
 }
 
-TEST(png_file, errors_name_the_path) {
-  const std::string path = fresh_folder() / "missing" / "picture.png";
-  const std::string error = error_of([&] { write_png(path, test_image(0)); });
-  EXPECT_THAT(error, HasSubstr(path));
-  EXPECT_THAT(error, HasSubstr("No such file or directory"));
-  EXPECT_THROW(write_png(path, Image{}), std::invalid_argument);
+TEST(png_image, refuses_data_that_do_not_fit_the_size) {
+  EXPECT_THROW((void)encode_png(Image{}), std::invalid_argument);
+  Image image = test_image(0);
+  image.rgb.pop_back();
+  EXPECT_THROW((void)encode_png(image), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace video_writer_test
 }  // namespace qsmpc

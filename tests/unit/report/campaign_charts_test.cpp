@@ -11,7 +11,7 @@
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace campaign_charts_test {
 
 using testing::contains;
 using testing::occurrences;
@@ -220,5 +220,5 @@ TEST(LogarithmicAxis, may_be_the_one_across) {
   EXPECT_TRUE(contains(svg, "L272.0 ")) << "10⁻² is halfway";
 }
 
-}  // namespace
+}  // namespace campaign_charts_test
 }  // namespace qsmpc

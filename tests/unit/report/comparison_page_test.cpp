@@ -13,7 +13,7 @@
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace comparison_page_test {
 
 using testing::contains;
 using testing::occurrences;
@@ -118,5 +118,5 @@ TEST(ComparisonFigures, stages_without_an_unsafe_path_are_upper_limits) {
   EXPECT_EQ(chart.series[2].lower, (std::vector<double>{0.1}));
 }
 
-}  // namespace
+}  // namespace comparison_page_test
 }  // namespace qsmpc

@@ -17,7 +17,7 @@
 #include "tests/support/example_trace.hpp"
 
 namespace qsmpc {
-namespace {
+namespace episode_data_test {
 
 using testing::example_trace;
 
@@ -130,5 +130,5 @@ TEST(EpisodeData, ellipses_have_the_moments_of_the_particles) {
   EXPECT_EQ(five, (std::vector<float>{1.5F, 3.0F, 0.75F, 1.5F, 3.0F}));
 }
 
-}  // namespace
+}  // namespace episode_data_test
 }  // namespace qsmpc

@@ -12,7 +12,7 @@
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc {
-namespace {
+namespace episode_page_test {
 
 using testing::contains;
 using testing::example_trace;
@@ -239,5 +239,5 @@ TEST(EpisodePage, the_same_trace_gives_the_same_page) {
   EXPECT_EQ(episode_page(trace, with_video()), episode_page(trace, with_video()));
 }
 
-}  // namespace
+}  // namespace episode_page_test
 }  // namespace qsmpc

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace figure_files_test {
 
 using testing::TemporaryFolder;
 
@@ -70,5 +70,5 @@ TEST(WriteFigures, where_one_cannot_be_written_none_has_its_name) {
   EXPECT_TRUE(names_in(folder.path() + "/figures").empty());
 }
 
-}  // namespace
+}  // namespace figure_files_test
 }  // namespace qsmpc

@@ -1,15 +1,15 @@
 #include "harness/report/packed_numbers.hpp"
 
-#include <limits>
 #include <stdexcept>
 #include <string_view>
 
 #include <gtest/gtest.h>
 
 #include "harness/text/base64.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
-namespace {
+namespace packed_numbers_test {
 
 std::string base64_of(std::string_view text) {
   return base64({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -38,10 +38,9 @@ TEST(PackedNumbers, are_little_endian) {
 }
 
 TEST(PackedNumbers, keep_what_is_not_finite) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   EXPECT_EQ(packed_floats({kInfinity}), base64_of(std::string_view("\x00\x00\x80\x7F", 4)));
   EXPECT_EQ(packed_floats({1e300}), packed_floats({kInfinity}));
 }
 
-}  // namespace
+}  // namespace packed_numbers_test
 }  // namespace qsmpc

@@ -12,7 +12,7 @@
 #include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace drive_rows_test {
 
 using ::testing::DoubleEq;
 using ::testing::ElementsAre;
@@ -131,5 +131,5 @@ TEST(SampleStatistics, of_nothing_are_not_a_number) {
   EXPECT_TRUE(std::isnan(standard_error_of({1.0})));
 }
 
-}  // namespace
+}  // namespace drive_rows_test
 }  // namespace qsmpc::testing

@@ -15,7 +15,7 @@
 #include "tests/support/effort.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace experiment_test {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -199,5 +199,5 @@ TEST(PublishedWay, of_a_drive_has_the_sound_value_of_its_certificates) {
   }
 }
 
-}  // namespace
+}  // namespace experiment_test
 }  // namespace qsmpc::testing

@@ -12,7 +12,7 @@
 #include "harness/reproduction/results_table.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace results_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -135,5 +135,5 @@ TEST(Machine, has_a_processor_cores_and_a_compiler) {
   EXPECT_THAT(machine.compiler, ::testing::AnyOf(HasSubstr("gcc "), HasSubstr("clang ")));
 }
 
-}  // namespace
+}  // namespace results_test
 }  // namespace qsmpc::testing

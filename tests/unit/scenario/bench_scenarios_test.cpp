@@ -6,7 +6,7 @@
 #include "harness/scenario/scenario_file.hpp"
 
 namespace qsmpc {
-namespace {
+namespace bench_scenarios_test {
 
 TEST(BenchScenarios, all_load_and_are_driven_without_a_simulator) {
   int files = 0;
@@ -24,5 +24,5 @@ TEST(BenchScenarios, all_load_and_are_driven_without_a_simulator) {
   EXPECT_GE(files, 2);
 }
 
-}  // namespace
+}  // namespace bench_scenarios_test
 }  // namespace qsmpc

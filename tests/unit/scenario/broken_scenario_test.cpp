@@ -5,7 +5,7 @@
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace broken_scenario_test {
 
 using ::testing::HasSubstr;
 
@@ -309,5 +309,5 @@ TEST(BrokenScenarios, a_zero_covariance_and_a_zero_cost_are_accepted) {
   EXPECT_EQ(scenario.controller.cost.input(0, 0), 0.0);
 }
 
-}  // namespace
+}  // namespace broken_scenario_test
 }  // namespace qsmpc

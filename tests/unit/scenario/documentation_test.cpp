@@ -7,7 +7,7 @@
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace documentation_test {
 
 // The dotted paths of everything that is not a mapping.
 void collect_keys(const YamlNode& node, const std::string& path, std::vector<std::string>& keys) {
@@ -64,5 +64,5 @@ TEST(Documentation, names_every_system_with_its_states_inputs_and_constants) {
   }
 }
 
-}  // namespace
+}  // namespace documentation_test
 }  // namespace qsmpc

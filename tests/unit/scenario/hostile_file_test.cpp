@@ -8,7 +8,7 @@
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace hostile_file_test {
 
 std::string repeated(const std::string& piece, std::size_t bytes) {
   std::string text;
@@ -122,5 +122,5 @@ TEST(HostileFile, a_damaged_file_is_loaded_or_refused_and_nothing_else) {
   EXPECT_GT(refused, 1000);
 }
 
-}  // namespace
+}  // namespace hostile_file_test
 }  // namespace qsmpc

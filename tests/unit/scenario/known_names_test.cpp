@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace known_names_test {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -39,5 +39,5 @@ TEST(ExpectedNames, says_the_suggestion_before_the_list) {
   EXPECT_EQ(expected_names("zzzzzz", {"chase", "top"}), "one of chase, top");
 }
 
-}  // namespace
+}  // namespace known_names_test
 }  // namespace qsmpc

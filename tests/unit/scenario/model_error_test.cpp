@@ -10,7 +10,7 @@
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace scenario_model_error_test {
 
 using ::testing::HasSubstr;
 
@@ -218,5 +218,5 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"a_list", "model_error: [1, 2, 3]\n", "model_error", "a mapping"}),
     name_of);
 
-}  // namespace
+}  // namespace scenario_model_error_test
 }  // namespace qsmpc

@@ -12,7 +12,7 @@
 #include "harness/scenario/shipped_files.hpp"
 
 namespace qsmpc {
-namespace {
+namespace plant_choice_test {
 
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
@@ -67,5 +67,5 @@ TEST(PlantChoice, a_path_is_taken_from_the_working_folder) {
   EXPECT_EQ(scenario.plant.kind, "mujoco");
 }
 
-}  // namespace
+}  // namespace plant_choice_test
 }  // namespace qsmpc

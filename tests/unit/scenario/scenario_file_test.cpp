@@ -1,8 +1,6 @@
 // Loading, defaults, overrides and writing back.
 #include "harness/scenario/scenario_file.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -10,15 +8,14 @@
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "harness/scenario/shipped_files.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace scenario_file_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Scenario minimal_with(const std::vector<std::string>& overrides) {
   return parse_scenario(minimal_text, {.file = "t.yaml", .overrides = overrides});
@@ -431,5 +428,5 @@ TEST(Overrides, a_hostile_key_is_refused) {
   EXPECT_EQ(refusal_of(minimal_text, {key + "=1"}).file, "--set");
 }
 
-}  // namespace
+}  // namespace scenario_file_test
 }  // namespace qsmpc

@@ -7,7 +7,7 @@
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc {
-namespace {
+namespace shipped_files_test {
 
 // QSMPC_MODELS for as long as it lives.
 class ModelsVariable {
@@ -76,5 +76,5 @@ TEST(FindMjcf, a_shipped_file_is_named_without_the_path_of_this_machine) {
   EXPECT_EQ(mjcf_name(""), "");
 }
 
-}  // namespace
+}  // namespace shipped_files_test
 }  // namespace qsmpc

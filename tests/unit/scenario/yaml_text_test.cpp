@@ -10,7 +10,7 @@
 #include "harness/scenario/yaml_tree.hpp"
 
 namespace qsmpc {
-namespace {
+namespace yaml_text_test {
 
 // Plain text that is neither a number nor true or false may come back quoted.
 void expect_same(const YamlNode& a, const YamlNode& b) {
@@ -111,5 +111,5 @@ TEST(YamlFlow, a_key_longer_than_a_plain_one_may_be_reads_back) {
   expect_same(tree, parse_yaml(yaml_flow(tree), "flow"));
 }
 
-}  // namespace
+}  // namespace yaml_text_test
 }  // namespace qsmpc

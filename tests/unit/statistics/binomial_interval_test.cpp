@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace binomial_interval_test {
 
 /// P(X ≥ least) for X ~ Binomial(n, p), term by term.
 double upper_tail(int n, int least, double p) {
@@ -46,5 +46,5 @@ TEST(ClopperPearson, counts_that_cannot_be_are_refused) {
   EXPECT_THROW(static_cast<void>(clopper_pearson(1, 2, 1.0)), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace binomial_interval_test
 }  // namespace qsmpc

@@ -9,7 +9,7 @@
 #include "harness/random/random_numbers.hpp"
 
 namespace qsmpc {
-namespace {
+namespace exceedance_test {
 
 TEST(Exceedance, nothing_certified_and_nothing_happened_is_no_evidence) {
   EXPECT_EQ(exceedance_p_value({{.events = 0, .certified = 0.0}}), 1.0);
@@ -98,5 +98,5 @@ TEST(Exceedance, refuses_what_cannot_be) {
                std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace exceedance_test
 }  // namespace qsmpc

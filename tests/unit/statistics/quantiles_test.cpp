@@ -9,7 +9,7 @@
 #include "harness/statistics/sample_statistics.hpp"
 
 namespace qsmpc {
-namespace {
+namespace quantiles_test {
 
 TEST(SortedQuantiles, are_the_values_at_the_nearest_ranks) {
   SortedQuantiles quantiles(10, {0.0, 0.05, 0.1, 0.11, 0.5, 0.95, 1.0});
@@ -84,5 +84,5 @@ TEST(RunningMean, says_what_it_cannot_know) {
   EXPECT_TRUE(std::isnan(running.standard_error()));
 }
 
-}  // namespace
+}  // namespace quantiles_test
 }  // namespace qsmpc

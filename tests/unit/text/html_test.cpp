@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace html_test {
 
 TEST(EscapeHtml, markup_characters_become_references) {
   EXPECT_EQ(escape_html("<a href=\"x\" title='y'>&</a>"),
@@ -36,5 +36,5 @@ TEST(UrlBeside, nothing_but_a_file_beside_the_page_can_be_named) {
   EXPECT_EQ(url_beside("https://a.b/c?d#\"é"), "./https%3A%2F%2Fa.b%2Fc%3Fd%23%22%C3%A9");
 }
 
-}  // namespace
+}  // namespace html_test
 }  // namespace qsmpc

@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
-namespace {
+#include "models/constants.hpp"
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace qsmpc {
+namespace number_format_test {
 
 TEST(FormatNumber, ordinary_numbers_are_plain_decimals) {
   EXPECT_EQ(format_number(0.0), "0");
@@ -68,5 +68,5 @@ TEST(PlainInTable, holds_for_zero_and_ordinary_sizes) {
   }
 }
 
-}  // namespace
+}  // namespace number_format_test
 }  // namespace qsmpc

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace executor_test {
 
 TEST(Executor, runs_every_task_exactly_once) {
   for (const int threads : {1, 2, 5}) {
@@ -104,5 +104,5 @@ TEST(Executor, needs_a_thread) {
   EXPECT_THROW((void)executor_of(-3), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace executor_test
 }  // namespace qsmpc

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace residuals_test {
 
 /// A unit mass that moves by the model's period and is then off by `bias`.
 Trace biased_trace(const Dynamics& model, const Eigen::Vector2d& bias, int steps) {
@@ -51,5 +51,5 @@ TEST(OneStepResiduals, of_nothing_are_none) {
   EXPECT_EQ(one_step_residuals(Trace(), *model).cols(), 0);
 }
 
-}  // namespace
+}  // namespace residuals_test
 }  // namespace qsmpc

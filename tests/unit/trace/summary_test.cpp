@@ -10,7 +10,7 @@
 #include "harness/scenario/scenario_file.hpp"
 
 namespace qsmpc {
-namespace {
+namespace summary_test {
 
 /// Straight on at 1.5 m/s from (0, 0) with heading 0: a period of the model is 0.15 m along x.
 Trace straight_trace(int steps) {
@@ -165,5 +165,5 @@ TEST(Summary, an_episode_that_broke_before_it_began_has_one_too) {
   EXPECT_TRUE(json["video"].is_null());
 }
 
-}  // namespace
+}  // namespace summary_test
 }  // namespace qsmpc

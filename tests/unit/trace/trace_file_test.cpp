@@ -29,7 +29,7 @@ extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 #endif
 
 namespace qsmpc {
-namespace {
+namespace trace_file_test {
 
 namespace fs = std::filesystem;
 using testing::example_trace;
@@ -435,5 +435,5 @@ TEST(OutcomeName, every_outcome_has_a_name_that_leads_back_to_it) {
   EXPECT_THROW(static_cast<void>(outcome_from_name("won")), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace trace_file_test
 }  // namespace qsmpc

@@ -13,7 +13,7 @@
 #include "tests/unit/video/straight_episode.hpp"
 
 namespace qsmpc {
-namespace {
+namespace episode_frames_test {
 
 using testing::HasSubstr;
 
@@ -247,5 +247,5 @@ TEST(overlays, lists_name_what_is_shown) {
               shipped.path);
 }
 
-}  // namespace
+}  // namespace episode_frames_test
 }  // namespace qsmpc

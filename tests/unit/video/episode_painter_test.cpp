@@ -9,7 +9,7 @@
 #include "tests/unit/video/straight_episode.hpp"
 
 namespace qsmpc {
-namespace {
+namespace episode_painter_test {
 
 constexpr VideoLayout kSmall{.width = 640, .height = 360};
 
@@ -89,5 +89,5 @@ TEST(episode_painter, refuses_cameras_that_are_none) {
   EXPECT_THROW(EpisodePainter{pictures}, std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace episode_painter_test
 }  // namespace qsmpc

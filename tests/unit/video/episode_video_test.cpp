@@ -12,7 +12,7 @@
 #include "tests/unit/video/straight_episode.hpp"
 
 namespace qsmpc {
-namespace {
+namespace episode_video_test {
 
 using testing::HasSubstr;
 
@@ -184,5 +184,5 @@ TEST(episode_video, still_is_a_picture_of_the_size_asked_for) {
   EXPECT_EQ(still.height, 180);
 }
 
-}  // namespace
+}  // namespace episode_video_test
 }  // namespace qsmpc

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace ordered_drawing_test {
 
 OrderedDrawing::Drawer number_drawer() {
   return [](int index, Image& out) { out.width = index; };
@@ -128,5 +128,5 @@ TEST(ordered_drawing, needs_a_thread) {
   EXPECT_THROW(OrderedDrawing({.total = 1, .threads = 0}, number_drawer), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace ordered_drawing_test
 }  // namespace qsmpc

@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace video_timings_test {
 
 std::string written(const testing::TemporaryFolder& folder, const std::string& text) {
   std::string path = folder / "video.json";
@@ -50,5 +50,5 @@ TEST(video_timings, what_is_no_such_file_is_refused_with_its_name) {
   EXPECT_THROW((void)read_video_timings(folder / "folder.json"), InputError);
 }
 
-}  // namespace
+}  // namespace video_timings_test
 }  // namespace qsmpc

@@ -1,21 +1,19 @@
 #include "controller/certification/affine_surrogate.hpp"
 
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "models/dynamics/dubins.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace affine_surrogate_test {
 
 TEST(AffineSurrogate, law_is_that_of_simulated_paths) {
   Generator generator(111);
@@ -230,5 +228,5 @@ TEST(AffineSurrogate, curvature_in_an_input_needs_the_core) {
   EXPECT_GT(stages[1].leaving, 0.0);
 }
 
-}  // namespace
+}  // namespace affine_surrogate_test
 }  // namespace qsmpc::testing

@@ -2,20 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "controller/certification/affine_surrogate.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace certificate_test {
 
 std::vector<StageCertificate> certificates_of(const Planner& planner, const Gaussian& belief,
                                               const Plan& plan) {
@@ -356,5 +354,5 @@ TEST(Certificate, says_one_for_a_plan_of_a_broken_model) {
   }
 }
 
-}  // namespace
+}  // namespace certificate_test
 }  // namespace qsmpc::testing

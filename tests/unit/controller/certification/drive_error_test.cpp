@@ -12,7 +12,7 @@
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace drive_error_test {
 
 // Rounding of sums and products of few terms of order one.
 constexpr double kRounding = 1e-14;
@@ -204,5 +204,5 @@ TEST(DriveSurrogate, cuts_each_periods_error_off_where_its_own_norms_say) {
               cut.bound.largest()[Dubins::kHeading] + own.bound.largest()[Dubins::kHeading], 1e-12);
 }
 
-}  // namespace
+}  // namespace drive_error_test
 }  // namespace qsmpc::testing

@@ -1,6 +1,5 @@
 // What a model error changes of budgets, surrogates and certificates.
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -9,13 +8,12 @@
 #include "controller/certification/error_budget.hpp"
 #include "controller/certification/error_truncation.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 #include "models/dynamics/dubins.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace certification_plant_certificate_test {
 // Rounding of sums and products of few terms of order one.
 constexpr double kRounding = 1e-14;
 
@@ -306,5 +304,5 @@ TEST(PlantCertificate, grows_with_the_error_and_with_what_is_unknown_of_it) {
   }
 }
 
-}  // namespace
+}  // namespace certification_plant_certificate_test
 }  // namespace qsmpc::testing

@@ -13,7 +13,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace saturation_test {
 
 /// A clamp under N(mean, deviation²).
 struct Clamp {
@@ -200,5 +200,5 @@ TEST(Saturation, largest_residual_is_that_of_a_fine_grid) {
   }
 }
 
-}  // namespace
+}  // namespace saturation_test
 }  // namespace qsmpc::testing

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace smoothed_bound_test {
 constexpr int kSamples = 200000;
 // Five standard errors of a mean of kSamples numbers in [0, 1] are at most 0.0056.
 constexpr double kFiveStandardErrors = 0.0056;
@@ -210,5 +208,5 @@ TEST(Smoothed, says_one_where_nothing_is_known) {
   EXPECT_EQ(smoothed_probability({centre.locations, centre.weights, one}, wall, 0.1), 1.0);
 }
 
-}  // namespace
+}  // namespace smoothed_bound_test
 }  // namespace qsmpc::testing

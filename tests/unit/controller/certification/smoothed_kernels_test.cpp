@@ -3,19 +3,17 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "controller/certification/smoothed_bound.hpp"
 #include "controller/measure/normal/bivariate_normal.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace smoothed_kernels_test {
 // The scalar formula's own allowance for the far tails and its rounding of numbers up to one.
 constexpr double kScalarError = 1e-15;
 
@@ -119,5 +117,5 @@ TEST(RectangleEstimate, is_near_the_probability) {
   }
 }
 
-}  // namespace
+}  // namespace smoothed_kernels_test
 }  // namespace qsmpc::testing

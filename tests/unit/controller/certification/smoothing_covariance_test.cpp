@@ -7,7 +7,7 @@
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace smoothing_covariance_test {
 
 TEST(Smoothing, is_a_part_of_the_surrogate) {
   Generator generator(115);
@@ -116,5 +116,5 @@ TEST(Smoothing, is_independent_of_the_error_and_of_the_rest) {
   }
 }
 
-}  // namespace
+}  // namespace smoothing_covariance_test
 }  // namespace qsmpc::testing

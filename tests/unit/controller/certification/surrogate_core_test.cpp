@@ -8,7 +8,7 @@
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace surrogate_core_test {
 
 using Event = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
@@ -93,5 +93,5 @@ TEST(SurrogateCore, narrow_one_is_left_more_often_and_has_smaller_errors) {
   }
 }
 
-}  // namespace
+}  // namespace surrogate_core_test
 }  // namespace qsmpc::testing

@@ -10,7 +10,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace unicycle_residual_test {
 
 constexpr UnicycleStructure kUnicycle{.reach = 0.15, .input_gain = 0.1};
 
@@ -151,5 +151,5 @@ TEST(UnicycleResidual, carried_residuals_match_simulation) {
   }
 }
 
-}  // namespace
+}  // namespace unicycle_residual_test
 }  // namespace qsmpc::testing

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,13 +10,12 @@
 #include "controller/certification/affine_surrogate.hpp"
 #include "controller/measure/normal/bivariate_normal.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace unsafe_region_bound_test {
 constexpr int kSamples = 20000;
 
 bool inside(const Box& box, const Eigen::VectorXd& point) {
@@ -376,5 +374,5 @@ TEST(PartBounds, known_example_has_the_known_figures) {
   EXPECT_LT(markov, 1e-3);
 }
 
-}  // namespace
+}  // namespace unsafe_region_bound_test
 }  // namespace qsmpc::testing

@@ -2,18 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace worst_case_test {
 constexpr double kRounding = 1e-13;  // sums of a few numbers of at most one
 
 /// min over λ ≥ 0 of λ r² + Σ π (1 − λ d²)₊, the dual: piecewise linear and convex in λ, so that
@@ -152,5 +150,5 @@ TEST(ThesisProbability, takes_the_norm_of_the_face_distances_and_ignores_obstacl
   EXPECT_EQ(worst_case_probability(point, room, 0.0), 1.0);
 }
 
-}  // namespace
+}  // namespace worst_case_test
 }  // namespace qsmpc::testing

@@ -2,19 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <gtest/gtest.h>
 
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace bivariate_normal_test {
 
 Eigen::Matrix2d covariance_of(double first, double second, double correlation) {
   const double cross = correlation * first * second;
@@ -192,5 +190,5 @@ TEST(BivariateNormal, error_bound_holds_up_to_dependent_coordinates) {
   }
 }
 
-}  // namespace
+}  // namespace bivariate_normal_test
 }  // namespace qsmpc::testing

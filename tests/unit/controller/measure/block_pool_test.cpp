@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc::testing {
-namespace {
+namespace block_pool_test {
 
 TEST(BlockPool, blocks_are_apart_and_begin_a_cache_line) {
   std::mt19937_64 generator(5);
@@ -54,5 +54,5 @@ TEST(BlockPool, what_is_given_back_is_used_again_for_as_much_or_hardly_less) {
   }
 }
 
-}  // namespace
+}  // namespace block_pool_test
 }  // namespace qsmpc::testing

@@ -8,7 +8,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace compression_test {
 
 // Sums of some hundred terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -169,5 +169,5 @@ TEST(Compression, refuses_what_is_no_measure) {
   EXPECT_THROW((void)compress(unequal, 3), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace compression_test
 }  // namespace qsmpc::testing

@@ -11,7 +11,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace gaussian_quantiser_test {
 
 // Sums of up to a thousand terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -202,5 +202,5 @@ TEST(GaussianQuantiser, refuses_what_is_no_gaussian) {
   EXPECT_THROW((void)allot_levels(Eigen::Vector2d(1.0, nan), 10), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace gaussian_quantiser_test
 }  // namespace qsmpc::testing

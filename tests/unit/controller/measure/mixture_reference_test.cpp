@@ -8,7 +8,7 @@
 #include "tests/unit/controller/measure/mixture_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace mixture_reference_test {
 
 // Weights, shares and positions are of the order of one. Moments of a cell are differences of
 // moments of the cells it was cut from, so that what rounding leaves grows with their number.
@@ -76,5 +76,5 @@ TEST(MixtureReference, agrees_on_clusters_that_are_far_apart) {
   }
 }
 
-}  // namespace
+}  // namespace mixture_reference_test
 }  // namespace qsmpc::testing

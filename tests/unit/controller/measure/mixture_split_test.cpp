@@ -16,7 +16,7 @@
 #include "tests/unit/controller/measure/mixture_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace mixture_split_test {
 
 // Sums of some thousand terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -237,5 +237,5 @@ TEST(MixtureSplit, refuses_senseless_arguments) {
   EXPECT_THROW(MixtureSplitter(Eigen::MatrixXd::Identity(9, 9), 1, 1), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace mixture_split_test
 }  // namespace qsmpc::testing

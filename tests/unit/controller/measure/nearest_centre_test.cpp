@@ -5,7 +5,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace nearest_centre_test {
 
 TEST(NearestCentre, finds_what_comparing_all_centres_finds_while_they_move) {
   Generator generator(71);
@@ -56,5 +56,5 @@ TEST(NearestCentre, a_point_stays_where_no_centre_is_strictly_nearer) {
   EXPECT_EQ(assignment, (std::vector<int>{0, 1}));
 }
 
-}  // namespace
+}  // namespace nearest_centre_test
 }  // namespace qsmpc::testing

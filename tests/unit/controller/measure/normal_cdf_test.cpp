@@ -40,7 +40,7 @@ namespace qsmpc {
 HWY_EXPORT(normal_values_of);
 
 namespace testing {
-namespace {
+namespace normal_cdf_test {
 
 // As stated in normal_cdf-inl.hpp.
 constexpr double kError = 1e-15;
@@ -124,7 +124,7 @@ TEST(NormalValues, not_a_number_is_not_hidden) {
   }
 }
 
-}  // namespace
+}  // namespace normal_cdf_test
 }  // namespace testing
 }  // namespace qsmpc
 #endif

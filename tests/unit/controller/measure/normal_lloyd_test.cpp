@@ -13,7 +13,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace normal_lloyd_test {
 
 // Masses and means are sums over some 1e5 cells.
 constexpr double kRounding = 1e-11;
@@ -144,5 +144,5 @@ TEST(SpreadQuantiser, refuses_what_is_no_gaussian_and_no_budget) {
   EXPECT_THROW((void)quantise(indefinite, 10, QuantiserKind::kLloyd), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace normal_lloyd_test
 }  // namespace qsmpc::testing

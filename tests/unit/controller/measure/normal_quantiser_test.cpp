@@ -1,17 +1,15 @@
 #include "controller/measure/quantisation/normal_quantiser.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace normal_quantiser_test {
 
 struct KnownDistortion {
   int count;
@@ -149,5 +147,5 @@ TEST(NormalDistribution, tails_keep_their_relative_accuracy) {
   EXPECT_EQ(normal_density_moment(kInfinity), 0.0);
 }
 
-}  // namespace
+}  // namespace normal_quantiser_test
 }  // namespace qsmpc

@@ -9,7 +9,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace quantiser_sampling_test {
 
 /// √E min |x − c_n|² from samples, and its standard error.
 struct Estimate {
@@ -89,5 +89,5 @@ TEST(QuantiserSampling, w2_of_spread_points_is_a_bound_and_not_far_from_the_dist
   }
 }
 
-}  // namespace
+}  // namespace quantiser_sampling_test
 }  // namespace qsmpc::testing

@@ -12,7 +12,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace soft_compression_test {
 
 // Sums of some hundred terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -146,5 +146,5 @@ TEST(SoftCompression, refuses_bad_settings_and_what_is_no_measure) {
   }
 }
 
-}  // namespace
+}  // namespace soft_compression_test
 }  // namespace qsmpc::testing

@@ -12,7 +12,7 @@
 #include "tests/unit/controller/measure/reference_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace measure_vector_targets_test {
 
 constexpr int kSizes[] = {1, 2, 3, 5, 7, 8, 9, 16, 17, 100, 101, 1023};
 
@@ -190,5 +190,5 @@ TEST(VectorTargets, whole_predictions_with_cost_and_gradient_are_equal_bit_for_b
   }
 }
 
-}  // namespace
+}  // namespace measure_vector_targets_test
 }  // namespace qsmpc::testing

@@ -14,7 +14,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace wasserstein_test {
 
 // Sums of some hundred squares of the order of ten, and a root where W2 is of the order of one.
 constexpr double kRounding = 1e-12;
@@ -238,5 +238,5 @@ TEST(Wasserstein, too_large_a_problem_is_refused) {
   EXPECT_THROW((void)wasserstein2(large, large), std::length_error);
 }
 
-}  // namespace
+}  // namespace wasserstein_test
 }  // namespace qsmpc::testing

@@ -12,7 +12,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace angular_target_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kHeading = 2;
@@ -141,5 +141,5 @@ TEST(AngularTarget, angles_that_are_no_states_are_refused) {
   EXPECT_THROW(Planner(*car, heading_settings({-1})), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace angular_target_test
 }  // namespace qsmpc::testing

@@ -2,18 +2,16 @@
 #include "controller/planning/cost/expected_bounds.hpp"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/support/executors.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace expected_bounds_test {
 
 SafeSet room() {
   SafeSet room = unbounded_safe_set(3);
@@ -200,5 +198,5 @@ TEST(ExpectedBounds, smoothing_ends_as_particles_grow_in_number) {
   EXPECT_GT(smoothing_of(100, 6), smoothing_of(100, 2));
 }
 
-}  // namespace
+}  // namespace expected_bounds_test
 }  // namespace qsmpc::testing

@@ -8,7 +8,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace first_guess_test {
 
 /// The comparison that a planner makes, by itself.
 class Guesses {
@@ -107,5 +107,5 @@ TEST(FirstGuess, a_plan_that_leads_into_a_block_is_given_up) {
   EXPECT_LE(plan.cost.total(), other.plan(above).cost.total());
 }
 
-}  // namespace
+}  // namespace first_guess_test
 }  // namespace qsmpc::testing

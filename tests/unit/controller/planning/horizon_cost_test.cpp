@@ -12,7 +12,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace horizon_cost_test {
 
 // Central differences with h = 1e-6: rounding is ε·cost/h ≈ 2e-10 of the cost, truncation h² less.
 constexpr double kDifferenceStep = 1e-6;
@@ -315,5 +315,5 @@ TEST(HorizonCost, one_step_from_a_belief_is_exact_but_for_the_belief_quantiser) 
               0.5 * expected_square(known, settings.cost.state, settings.cost.target), 1e-11);
 }
 
-}  // namespace
+}  // namespace horizon_cost_test
 }  // namespace qsmpc::testing

@@ -7,7 +7,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace multi_start_search_test {
 
 using Clock = std::chrono::steady_clock;
 
@@ -99,5 +99,5 @@ TEST(PlannerValleys, a_cold_start_takes_the_deeper_of_two) {
   EXPECT_NEAR(plan.cost.total(), below, 0.01 * below);
 }
 
-}  // namespace
+}  // namespace multi_start_search_test
 }  // namespace qsmpc::testing

@@ -9,7 +9,7 @@
 #include "tests/unit/controller/measure/reference_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace particle_gradient_test {
 
 // Central differences: truncation h² of the third derivatives, rounding ε/h of the values.
 constexpr double kStep = 1e-6;
@@ -161,5 +161,5 @@ TEST(HorizonCostByGain, gradient_equals_central_differences) {
   }
 }
 
-}  // namespace
+}  // namespace particle_gradient_test
 }  // namespace qsmpc::testing

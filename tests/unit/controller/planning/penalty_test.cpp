@@ -1,17 +1,15 @@
 #include "controller/planning/cost/penalty.hpp"
 
 #include <cmath>
-#include <limits>
 #include <tuple>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace penalty_test {
 // Central differences of a function with bounded second derivative (weights · 1/ℓ² ≈ 2e3): the
 // rounding ε·|f|/h is about 1e-7 of the gradient's scale; kinks are kept 1e-4 away.
 constexpr double kDifferenceStep = 1e-6;
@@ -143,5 +141,5 @@ TEST(ThesisPenalty, is_flat_inside_an_obstacle_with_a_halo_of_one) {
   }
 }
 
-}  // namespace
+}  // namespace penalty_test
 }  // namespace qsmpc::testing

@@ -9,7 +9,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_constraints_test {
 
 constexpr double kKept = 1e-6;  // m; up to here the planner counts a bound as kept
 
@@ -99,5 +99,5 @@ TEST(PlannerConstraints, other_solvers_report_no_violation) {
   EXPECT_GT(worst_of(plan, settings.safe_set), 0.0);
 }
 
-}  // namespace
+}  // namespace planner_constraints_test
 }  // namespace qsmpc::testing

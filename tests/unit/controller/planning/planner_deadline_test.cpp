@@ -6,7 +6,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_deadline_test {
 
 constexpr double kNoTime = 1e-9;     // s; over before anything can begin
 constexpr double kAllTime = 3600.0;  // s
@@ -82,5 +82,5 @@ TEST(PlannerDeadline, one_that_is_never_reached_changes_no_bit) {
   }
 }
 
-}  // namespace
+}  // namespace planner_deadline_test
 }  // namespace qsmpc::testing

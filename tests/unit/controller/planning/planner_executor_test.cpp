@@ -8,7 +8,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_executor_test {
 
 void expect_same_plan(const Plan& one, const Plan& other) {
   EXPECT_EQ(one.policy.inputs, other.policy.inputs);
@@ -49,5 +49,5 @@ TEST(PlannerExecutor, plans_are_equal_bit_for_bit_however_tasks_are_run) {
   }
 }
 
-}  // namespace
+}  // namespace planner_executor_test
 }  // namespace qsmpc::testing

@@ -6,7 +6,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_gain_test {
 
 // Both stop within this of the bottom of their valley, relatively: the solver's tolerance is 1e-6
 // an iteration, and a round of new assignments is worth 1e-5.
@@ -108,5 +108,5 @@ TEST(PlannerGain, open_loop_has_nothing_to_optimise) {
   EXPECT_EQ(plan.policy.inputs, plain.plan(dubins_belief()).policy.inputs);
 }
 
-}  // namespace
+}  // namespace planner_gain_test
 }  // namespace qsmpc::testing

@@ -8,7 +8,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_recovery_test {
 
 std::unique_ptr<const Dynamics> bicycle() { return make_dynamics("bicycle", {}, 0.1); }
 
@@ -131,5 +131,5 @@ TEST(PlannerRecovery, a_bicycle_at_its_pole_is_no_exception) {
   }
 }
 
-}  // namespace
+}  // namespace planner_recovery_test
 }  // namespace qsmpc::testing

@@ -13,7 +13,7 @@
 #include "tests/unit/controller/measure/reference_cases.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_reference_test {
 
 // Relative to the values' scale: rounding of some ten thousand operations, grown along the horizon.
 constexpr double kTolerance = 1e-9;
@@ -108,5 +108,5 @@ TEST(ReferenceCases, meet_walls_obstacles_and_input_bounds) {
   }
 }
 
-}  // namespace
+}  // namespace planner_reference_test
 }  // namespace qsmpc::testing

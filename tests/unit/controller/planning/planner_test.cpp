@@ -10,7 +10,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace planner_test {
 
 TEST(Planner, plan_is_consistent_with_itself) {
   const auto car = dubins_car();
@@ -276,5 +276,5 @@ TEST(Planner, refuses_prescribed_inputs_that_it_could_not_apply) {
   }
 }
 
-}  // namespace
+}  // namespace planner_test
 }  // namespace qsmpc::testing

@@ -1,20 +1,18 @@
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
 #include "controller/planning/solvers/box_qp.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/solver_problems.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace projected_bfgs_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::unique_ptr<OcpSolver> projected_bfgs() {
   return make_solver("lbfgs", {.bounding = "bounded"});
@@ -255,5 +253,5 @@ TEST(ProjectedBfgs, takes_no_constraints) {
   EXPECT_THROW(projected_bfgs()->minimise(problem, VectorXd::Zero(2), {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace projected_bfgs_test
 }  // namespace qsmpc::testing

@@ -1,17 +1,15 @@
 #include "controller/planning/safe_set.hpp"
 
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+namespace safe_set_test {
 // Differences of numbers of the order of one.
 constexpr double kRounding = 1e-14;
 // The grid of a search. Next to the nearest point of a set of boxes, or of their complement, lies a
@@ -156,5 +154,5 @@ TEST(SafeSet, senseless_boxes_are_refused) {
   EXPECT_THROW(check_safe_set(room), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace safe_set_test
 }  // namespace qsmpc::testing

@@ -10,7 +10,7 @@
 #include "tests/unit/controller/planning/solver_problems.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace slsqp_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -319,5 +319,5 @@ TEST_F(Slsqp, groups_must_be_as_many_as_constraints) {
   EXPECT_THROW(solver_->minimise(problem, VectorXd::Zero(2), {}), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace slsqp_test
 }  // namespace qsmpc::testing

@@ -8,11 +8,12 @@
 #include <gtest/gtest.h>
 
 #include "controller/planning/solvers/ocp_solver.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/solver_problems.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace solver_test {
 
 using Eigen::VectorXd;
 
@@ -97,7 +98,6 @@ TEST_P(EverySolver, leaves_a_start_at_the_bounds) {
 }
 
 TEST_P(EverySolver, bounds_may_be_infinite_on_either_side_and_an_entry_may_be_fixed) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   OcpProblem problem = boxed_bowl(VectorXd{{3.0, -5.0, 7.0, 0.7, 2.0, 0.1}});
   problem.lower = VectorXd{{-kInfinity, 1.0, 1.0, -kInfinity, 0.4, -1.0}};
   problem.upper = VectorXd{{kInfinity, kInfinity, kInfinity, 0.5, 0.4, 1.0}};
@@ -227,5 +227,5 @@ TEST(SolverStatus, every_status_has_a_name) {
   EXPECT_STREQ(solver_status_name(SolverStatus::kNumericalTrouble), "numerical_trouble");
 }
 
-}  // namespace
+}  // namespace solver_test
 }  // namespace qsmpc::testing

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace prediction_model_error_test {
 
 // Rounding of sums of few terms.
 constexpr double kRounding = 1e-14;
@@ -87,5 +87,5 @@ TEST(model_error, without_samples_it_is_refused) {
   EXPECT_THROW((void)model_error_of(Eigen::MatrixXd(3, 0)), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace prediction_model_error_test
 }  // namespace qsmpc

@@ -8,7 +8,7 @@
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace policy_test {
 
 /// x⁺ = Ax + Bu: what the linear-quadratic regulator is exact for.
 class LinearSystem final : public Dynamics {
@@ -172,5 +172,5 @@ TEST(Policy, nominal_states_follow_the_noise_free_steps) {
   }
 }
 
-}  // namespace
+}  // namespace policy_test
 }  // namespace qsmpc::testing

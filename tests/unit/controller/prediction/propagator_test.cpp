@@ -15,7 +15,7 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::testing {
-namespace {
+namespace propagator_test {
 
 // Sums of some thousand terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -346,5 +346,5 @@ TEST(MakePropagator, refuses_unknown_names_and_senseless_settings) {
   EXPECT_THROW((void)make_propagator("noise_free", settings), std::invalid_argument);
 }
 
-}  // namespace
+}  // namespace propagator_test
 }  // namespace qsmpc::testing

@@ -1,0 +1,45 @@
+// Video files, written so that whatever happens there is either a whole file or none under the name
+// asked for, and something playable beside it.
+//
+//   qsmpc::VideoFile video("a.mp4", {.width = 1280, .height = 720, .frames_per_second = 30});
+//   for (…) { renderer.draw(frame, image); video.add(image); }
+//   video.finish();
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "render/frame.hpp"
+#include "render/media/video_writer.hpp"
+
+namespace qsmpc {
+
+/// Writes PATH.partial, which stays playable if the process is killed, and turns it into PATH at
+/// the end. What cannot be written is an IoError with the file's path and the system's words.
+class VideoFile {
+ public:
+  /// `settings.name` becomes `path`. Throws like VideoWriter, and IoError. PATH.partial is there
+  /// only once the settings are found to be right.
+  VideoFile(std::string path, VideoSettings settings);
+
+  /// Without `finish` nothing is left under the final name; PATH.partial keeps what was added.
+  ~VideoFile();
+  VideoFile(const VideoFile&) = delete;
+  VideoFile& operator=(const VideoFile&) = delete;
+
+  /// Adds the next frame. Throws like VideoWriter, and IoError.
+  void add(const Image& image);
+
+  /// Writes PATH, flushed to disk, and removes PATH.partial. At least one frame must have been
+  /// added. Throws like VideoWriter, and IoError; PATH is then as it was before.
+  void finish();
+
+ private:
+  class Bytes;
+
+  std::string path_;
+  std::unique_ptr<Bytes> partial_;
+  std::unique_ptr<VideoWriter> writer_;
+};
+
+}  // namespace qsmpc

@@ -1,0 +1,50 @@
+// Decompositions of small dense matrices, each compiled once: an Eigen decomposition costs every
+// source that names it ten seconds of compilation.
+#pragma once
+
+#include <Eigen/Core>
+
+namespace qsmpc {
+
+/// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix: M vᵢ = λᵢ vᵢ.
+struct SymmetricEigen {
+  Eigen::VectorXd values;   ///< n
+  Eigen::MatrixXd vectors;  ///< n x n, vᵢ in column i
+};
+
+/// Of a symmetric matrix (n x n, finite), of which the lower triangle is read.
+[[nodiscard]] SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix);
+
+/// The eigenvalues alone, ascending; not a number where the iteration has not converged.
+[[nodiscard]] Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& matrix);
+
+/// The largest singular value of `matrix`.
+[[nodiscard]] double spectral_norm(const Eigen::MatrixXd& matrix);
+
+/// The least-squares solution x of `matrix` · x = `values` with the smallest norm (complete
+/// orthogonal decomposition).
+[[nodiscard]] Eigen::VectorXd smallest_solution(const Eigen::MatrixXd& matrix,
+                                                const Eigen::VectorXd& values);
+
+/// The solution of a symmetric semidefinite system `matrix` · x = `values` (LDLᵀ, pivoted).
+[[nodiscard]] Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& matrix,
+                                              const Eigen::VectorXd& values);
+
+/// A solution of the square system `matrix` · x = `values` by Gaussian elimination with full
+/// pivoting.
+[[nodiscard]] Eigen::VectorXd solve_fully_pivoted(const Eigen::MatrixXd& matrix,
+                                                  const Eigen::VectorXd& values);
+
+/// The rank of a matrix, and a column that the others determine.
+struct ColumnRank {
+  Eigen::Index rank = 0;
+  Eigen::Index dependent = -1;  ///< of the columns; -1 where all of them are independent
+};
+
+/// Pivots below `threshold` times the largest count as zero.
+[[nodiscard]] ColumnRank column_rank(const Eigen::MatrixXd& matrix, double threshold);
+
+/// The orthogonal factor Q of matrix = Q R.
+[[nodiscard]] Eigen::MatrixXd orthogonal_factor(const Eigen::MatrixXd& matrix);
+
+}  // namespace qsmpc
