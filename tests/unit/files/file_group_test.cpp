@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace file_group_test {
 
 using ::testing::ElementsAre;
 using testing::TemporaryFolder;
@@ -59,5 +59,5 @@ TEST(FileGroup, a_commit_without_a_seal_keeps_older_files_that_it_does_not_reach
   EXPECT_TRUE(exists(folder / "last"));
 }
 
-}  // namespace
+}  // namespace file_group_test
 }  // namespace qsmpc

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace csv_test {
 
 TEST(CsvField, quotes_a_field_that_needs_it) {
   EXPECT_EQ(csv_field("plain text"), "plain text");
@@ -12,5 +12,5 @@ TEST(CsvField, quotes_a_field_that_needs_it) {
   EXPECT_EQ(csv_field("two\nlines"), "\"two\nlines\"");
 }
 
-}  // namespace
+}  // namespace csv_test
 }  // namespace qsmpc

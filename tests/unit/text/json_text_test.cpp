@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 namespace qsmpc {
-namespace {
+namespace json_text_test {
 
 using Json = nlohmann::ordered_json;
 
@@ -24,5 +24,5 @@ TEST(JsonText, numbers_that_are_not_finite_are_null) {
   EXPECT_EQ(json_text(Json(std::numeric_limits<double>::infinity())), "null\n");
 }
 
-}  // namespace
+}  // namespace json_text_test
 }  // namespace qsmpc

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace number_parse_test {
 
 TEST(ParseInteger, takes_the_whole_text_or_nothing) {
   EXPECT_EQ(parse_integer<int>("-12"), -12);
@@ -32,5 +32,5 @@ TEST(ParseDecimal, refuses_everything_else) {
   }
 }
 
-}  // namespace
+}  // namespace number_parse_test
 }  // namespace qsmpc

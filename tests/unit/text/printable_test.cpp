@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace printable_test {
 
 TEST(Printable, replaces_control_characters_by_spaces) {
   EXPECT_EQ(printable("a\nb\x1B[31m\x7F"), "a b [31m ");
@@ -19,5 +19,5 @@ TEST(Printable, cuts_no_character_in_half) {
   EXPECT_EQ(printable("ab€cd", 4), "ab…");
 }
 
-}  // namespace
+}  // namespace printable_test
 }  // namespace qsmpc

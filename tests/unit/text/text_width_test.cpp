@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace text_width_test {
 
 TEST(TextLayout, lines_are_broken_at_spaces_and_never_within_a_character) {
   using Lines = std::vector<std::string>;
@@ -26,5 +26,5 @@ TEST(Padded, fills_up_to_the_columns_and_counts_characters) {
   EXPECT_EQ(padded("abcd", 3), "abcd");
 }
 
-}  // namespace
+}  // namespace text_width_test
 }  // namespace qsmpc

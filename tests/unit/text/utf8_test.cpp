@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace utf8_test {
 
 using std::string_literals::operator""s;
 
@@ -55,5 +55,5 @@ TEST(ControlCharacter, is_below_the_space_or_delete) {
   EXPECT_FALSE(is_control_character('\x80'));
 }
 
-}  // namespace
+}  // namespace utf8_test
 }  // namespace qsmpc

@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace workers_test {
 
 TEST(AvailableThreads, are_at_least_one_and_bound_what_is_asked_for) {
   EXPECT_GE(available_threads(), 1);
@@ -91,5 +91,5 @@ TEST(Workers, destroying_them_waits_and_drops_what_they_threw) {
   EXPECT_EQ(ended, 3);
 }
 
-}  // namespace
+}  // namespace workers_test
 }  // namespace qsmpc
