@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 namespace qsmpc {
-namespace {
+namespace chi_squared_test {
 
 TEST(ChiSquaredTail, of_two_degrees_is_exponential) {
   for (const double value : {0.0, 1.0, 30.0}) {
@@ -25,5 +25,5 @@ TEST(ChiSquaredTail, refuses_what_cannot_be) {
   EXPECT_THROW((void)chi_squared_tail(1.0, 0), std::domain_error);
 }
 
-}  // namespace
+}  // namespace chi_squared_test
 }  // namespace qsmpc

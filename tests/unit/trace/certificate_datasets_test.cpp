@@ -10,7 +10,7 @@
 #include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc {
-namespace {
+namespace certificate_datasets_test {
 
 using ::testing::ElementsAre;
 using testing::TemporaryFolder;
@@ -69,5 +69,5 @@ TEST(CostFields, hold_every_part_once) {
   EXPECT_THAT(cost_part_names(), ElementsAre("state", "input", "terminal", "box", "obstacle"));
 }
 
-}  // namespace
+}  // namespace certificate_datasets_test
 }  // namespace qsmpc
