@@ -15,6 +15,7 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
+#include "harness/cli/scenario_arguments.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/mismatch/comparison.hpp"
@@ -130,9 +131,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command->footer(kCompareExample);
   const auto arguments = std::make_shared<CompareArguments>();
   ComparisonOptions& options = arguments->options;
-  command
-      ->add_option("scenario", arguments->scenario, "a scenario file, or the name of a shipped one")
-      ->required();
+  add_scenario_argument(*command, arguments->scenario);
   command->add_option("--plant", options.plants, "NAME: a plant to compare, as often as wanted")
       ->allow_extra_args(false);
   command->add_option("--episodes", options.episodes, "of each plant; default: 50")
@@ -150,8 +149,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
       ->add_option("--model-error-plant", options.error_plant,
                    "NAME: of which plant; default: the one named last")
       ->needs(error_file);
-  command->add_option("--set", arguments->overrides, "KEY=VALUE: replaces a key of the scenario")
-      ->allow_extra_args(false);
+  add_set_option(*command, arguments->overrides);
   command->add_option("--seed", arguments->seed,
                       "of the first episode and of the paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-compare");

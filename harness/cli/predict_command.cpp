@@ -13,6 +13,7 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
+#include "harness/cli/scenario_arguments.hpp"
 #include "harness/episode/assembly.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/prediction/input_table.hpp"
@@ -120,11 +121,8 @@ void add_predict_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("predict", kPredictHelp);
   command->footer(kPredictExample);
   const auto arguments = std::make_shared<PredictArguments>();
-  command
-      ->add_option("scenario", arguments->scenario, "a scenario file, or the name of a shipped one")
-      ->required();
-  command->add_option("--set", arguments->overrides, "KEY=VALUE: replaces a key of the scenario")
-      ->allow_extra_args(false);
+  add_scenario_argument(*command, arguments->scenario);
+  add_set_option(*command, arguments->overrides);
   command->add_option("--inputs", arguments->inputs,
                       "FILE (CSV): inputs to predict for; default: planned ones");
   command

@@ -16,6 +16,7 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
+#include "harness/cli/scenario_arguments.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -111,11 +112,8 @@ void add_run_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("run", kRunHelp);
   command->footer(kRunExample);
   const auto arguments = std::make_shared<RunArguments>();
-  command
-      ->add_option("scenario", arguments->scenario, "a scenario file, or the name of a shipped one")
-      ->required();
-  command->add_option("--set", arguments->overrides, "KEY=VALUE: replaces a key of the scenario")
-      ->allow_extra_args(false);
+  add_scenario_argument(*command, arguments->scenario);
+  add_set_option(*command, arguments->overrides);
   command->add_option("--seed", arguments->seed, "of all random numbers; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");

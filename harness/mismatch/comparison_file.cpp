@@ -11,7 +11,9 @@
 #include "harness/files/file_group.hpp"
 #include "harness/mismatch/comparison_json.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/coordinate_labels.hpp"
+#include "harness/trace/file_header.hpp"
 #include "harness/trace/rows.hpp"
 
 namespace qsmpc {
@@ -19,8 +21,6 @@ namespace {
 
 using Layout = std::vector<DatasetSpec>;
 using Type = DatasetSpec::Type;
-
-constexpr const char* kStateNorm = "Euclidean norm of the state";
 
 struct ComparisonSizes {
   CoordinateLabels states;
@@ -191,12 +191,12 @@ void add_horizon(Layout& layout, const std::string& group, const ComparisonSizes
 }
 
 void write_header(Hdf5File& file, const Comparison& comparison) {
-  file.set_text("/", "kind", "comparison");
-  file.set_integer("/", "schema", kComparisonSchema);
-  file.set_text("/", "version", comparison.version);
-  file.set_text("/", "scenario", comparison.scenario_text);
-  file.set_text("/", "scenario_name", comparison.scenario.name);
-  file.set_unsigned("/", "seed", comparison.scenario.seed);
+  write_file_header(file, {.kind = "comparison",
+                           .schema = kComparisonSchema,
+                           .version = comparison.version,
+                           .scenario_text = comparison.scenario_text,
+                           .scenario_name = comparison.scenario.name,
+                           .seed = comparison.scenario.seed});
   std::vector<std::string> names;
   for (const PlantComparison& plant : comparison.plants) names.push_back(plant.name);
   file.set_texts("/plants", "names", names);

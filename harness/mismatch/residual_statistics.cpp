@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <boost/math/distributions/chi_squared.hpp>
-
+#include "harness/statistics/chi_squared.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc {
@@ -33,12 +32,6 @@ LaggedProducts lagged_products(const std::vector<Eigen::MatrixXd>& centred, Eige
     products.pairs += static_cast<double>(pairs);
   }
   return products;
-}
-
-double chi_squared_tail(double value, int degrees) {
-  if (!std::isfinite(value)) return kNotANumber;
-  const boost::math::chi_squared_distribution<double> law(degrees);
-  return boost::math::cdf(boost::math::complement(law, value));
 }
 
 Whiteness whiteness_of(const std::vector<Eigen::MatrixXd>& centred, Eigen::Index dim) {

@@ -2,14 +2,17 @@
 
 #include <cstddef>
 #include <memory>
+#include <utility>
 
 #include "harness/episode/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/prediction/prediction_json.hpp"
 #include "harness/scenario/scenario_file.hpp"
-#include "harness/trace/certificate_fields.hpp"
+#include "harness/trace/certificate_datasets.hpp"
 #include "harness/trace/coordinate_labels.hpp"
+#include "harness/trace/cost_fields.hpp"
+#include "harness/trace/file_header.hpp"
 #include "harness/trace/rows.hpp"
 
 namespace qsmpc {
@@ -68,7 +71,7 @@ void add_plan(Layout& layout, const Labels& n) {
   layout.push_back({.path = "/plan/cost",
                     .axes = {"part"},
                     .units = {"1"},
-                    .columns = {"state", "input", "terminal", "box", "obstacle"},
+                    .columns = cost_part_names(),
                     .comment = "expected cost by part"});
 }
 
@@ -116,35 +119,7 @@ void add_particles(Layout& layout, const Labels& n) {
 }
 
 void add_certificate(Layout& layout) {
-  layout.push_back({.path = "/certificate/budget",
-                    .row_shape = {kBudgetColumns.size()},
-                    .axes = {"stage", "source"},
-                    .units = {kStateNorm},
-                    .columns = budget_column_names(),
-                    .comment = kBudgetMeaning});
-  layout.push_back({.path = kModelErrorPath,
-                    .axes = {"stage"},
-                    .units = {kStateNorm},
-                    .comment = kModelErrorMeaning});
-  layout.push_back({.path = kDynamicsPath,
-                    .axes = {"stage"},
-                    .units = {kStateNorm},
-                    .comment = kDynamicsMeaning});
-  layout.push_back({.path = "/certificate/lipschitz",
-                    .axes = {"stage"},
-                    .units = {"1"},
-                    .comment = kLipschitzMeaning});
-  for (const CertificateField& field : kCertificateFields) {
-    layout.push_back({.path = certificate_path(field),
-                      .axes = {"stage"},
-                      .units = {"1"},
-                      .comment = field.meaning});
-  }
-  layout.push_back({.path = "/certificate/kind",
-                    .type = Type::kText,
-                    .axes = {"stage"},
-                    .units = {"1"},
-                    .comment = kKindMeaning});
+  for (DatasetSpec& spec : certificate_layout()) layout.push_back(std::move(spec));
   layout.push_back({.path = "/certificate/horizon",
                     .axes = {"plan"},
                     .units = {"1"},
@@ -174,12 +149,12 @@ void add_monte_carlo(Layout& layout) {
 }
 
 void write_header(Hdf5File& file, const PredictionReport& report) {
-  file.set_text("/", "kind", "prediction");
-  file.set_integer("/", "schema", kPredictionSchema);
-  file.set_text("/", "version", report.version);
-  file.set_text("/", "scenario", report.scenario_text);
-  file.set_text("/", "scenario_name", report.scenario.name);
-  file.set_unsigned("/", "seed", report.scenario.seed);
+  write_file_header(file, {.kind = "prediction",
+                           .schema = kPredictionSchema,
+                           .version = report.version,
+                           .scenario_text = report.scenario_text,
+                           .scenario_name = report.scenario.name,
+                           .seed = report.scenario.seed});
   file.set_text("/", "inputs", report.inputs_given ? "given" : "planned");
   file.set_text("/", "solver_status", report.solver_status);
 }
@@ -199,9 +174,7 @@ void write_plan(Hdf5File& file, const PredictionReport& report) {
   std::vector<double> gains;
   for (const Eigen::MatrixXd& gain : policy.gains) append_to(gains, by_rows(gain));
   file.append("/plan/gains", gains);
-  const CostParts& cost = report.cost;
-  file.append("/plan/cost",
-              std::vector<double>{cost.state, cost.input, cost.terminal, cost.box, cost.obstacle});
+  file.append("/plan/cost", cost_row(report.cost));
 }
 
 void write_particles(Hdf5File& file, const Prediction& prediction) {
@@ -220,18 +193,7 @@ void write_particles(Hdf5File& file, const Prediction& prediction) {
 }
 
 void write_certificate(Hdf5File& file, const PredictionReport& report) {
-  std::vector<double> budgets;
-  for (const StageBudget& stage : report.budgets) {
-    for (const BudgetField& field : kBudgetColumns) budgets.push_back(stage.*field.member);
-  }
-  file.append("/certificate/budget", budgets);
-  file.append(kModelErrorPath, column_of(report.budgets, &StageBudget::model));
-  file.append(kDynamicsPath, column_of(report.budgets, &StageBudget::dynamics));
-  file.append("/certificate/lipschitz", column_of(report.budgets, &StageBudget::lipschitz));
-  for (const CertificateField& field : kCertificateFields) {
-    file.append(certificate_path(field), column_of(report.certificates, field.member));
-  }
-  file.append("/certificate/kind", column_of(report.certificates, &StageCertificate::kind));
+  append_certificates(file, report.budgets, report.certificates);
   file.append("/certificate/horizon", std::vector<double>{report.horizon_bound});
 }
 

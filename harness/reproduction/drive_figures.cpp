@@ -135,21 +135,25 @@ PlaneMap drive_map(const std::string& title, const Sample& sample) {
   return map;
 }
 
+/// A chart of `coordinate` over time, still empty.
+Chart coordinate_chart(const std::string& kind, const Coordinate& coordinate) {
+  return {.title = kind + ": " + coordinate.name,
+          .x_label = kTimeLabel,
+          .y_label = coordinate.name + " (" + coordinate.unit + ")"};
+}
+
 std::vector<Chart> input_charts(const std::vector<NamedSample>& samples) {
   const Scenario& scenario = samples.front().sample->scenario;
   const std::vector<Coordinate> inputs = model_of(scenario)->description().inputs;
   std::vector<Chart> charts;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    charts.push_back({.title = "Input: " + inputs[i].name,
-                      .x_label = kTimeLabel,
-                      .y_label = inputs[i].name + " (" + inputs[i].unit + ")",
-                      .series = first_drives(samples, Mark::kSteps,
-                                             [&](const EpisodeDigest& episode) {
-                                               return row_of(episode.inputs, row);
-                                             }),
-                      .rules = {{.name = "bounds", .value = scenario.controller.input_lower[row]},
-                                {.name = "", .value = scenario.controller.input_upper[row]}}});
+    Chart& chart = charts.emplace_back(coordinate_chart("Input", inputs[i]));
+    chart.series = first_drives(samples, Mark::kSteps, [&](const EpisodeDigest& episode) {
+      return row_of(episode.inputs, row);
+    });
+    chart.rules = {{.name = "bounds", .value = scenario.controller.input_lower[row]},
+                   {.name = "", .value = scenario.controller.input_upper[row]}};
   }
   return charts;
 }
@@ -160,14 +164,11 @@ std::vector<Chart> state_charts(const std::vector<NamedSample>& samples) {
   std::vector<Chart> charts;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    charts.push_back({.title = "State: " + states[i].name,
-                      .x_label = kTimeLabel,
-                      .y_label = states[i].name + " (" + states[i].unit + ")",
-                      .series = first_drives(samples, Mark::kLine,
-                                             [&](const EpisodeDigest& episode) {
-                                               return row_of(episode.states, row);
-                                             }),
-                      .rules = {{.name = "target", .value = scenario.target.state[row]}}});
+    Chart& chart = charts.emplace_back(coordinate_chart("State", states[i]));
+    chart.series = first_drives(samples, Mark::kLine, [&](const EpisodeDigest& episode) {
+      return row_of(episode.states, row);
+    });
+    chart.rules = {{.name = "target", .value = scenario.target.state[row]}};
   }
   return charts;
 }

@@ -1,9 +1,7 @@
 #include "harness/scenario/scenario_file.hpp"
 
 #include <filesystem>
-#include <system_error>
 
-#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/overrides.hpp"
 #include "harness/scenario/scenario_reader.hpp"
 #include "harness/scenario/shipped_files.hpp"
@@ -27,17 +25,7 @@ std::string folder_of(const std::string& path) { return fs::path(path).parent_pa
 }  // namespace
 
 std::string find_scenario(const std::string& path_or_name) {
-  std::error_code error;
-  if (fs::is_regular_file(path_or_name, error)) return path_or_name;
-  if (const auto shipped = find_shipped_scenario(path_or_name)) return *shipped;
-  const std::string extension = fs::path(path_or_name).extension().string();
-  const bool is_path = path_or_name.find('/') != std::string::npos || extension == ".yaml" ||
-                       extension == ".yml" || fs::exists(path_or_name, error);
-  if (is_path) return path_or_name;
-  throw InputError({.file = path_or_name,
-                    .found = "no such file or shipped scenario",
-                    .expected = "the path of a scenario file, or " +
-                                expected_names(path_or_name, shipped_scenario_names())});
+  return find_file_or_shipped(path_or_name, ShippedKind::kScenario);
 }
 
 Scenario load_scenario(const std::string& path_or_name, const std::vector<std::string>& overrides) {

@@ -12,9 +12,6 @@
 
 namespace qsmpc {
 
-inline constexpr NumberRange kNotNegative{.least = 0.0};
-inline constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
-
 /// The symmetric, positive semidefinite matrix under `key`, of the size of `fallback`; `fallback`
 /// where there is none, or another one, which is noted.
 [[nodiscard]] Eigen::MatrixXd semidefinite(Section& section, const std::string& key,

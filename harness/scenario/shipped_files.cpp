@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "harness/errors.hpp"
+#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 #include "harness/text/printable.hpp"
 
@@ -111,6 +112,23 @@ std::optional<std::string> find_shipped_scenario(const std::string& name) {
 
 std::optional<std::string> find_shipped_campaign(const std::string& name) {
   return find_shipped(kCampaigns, name);
+}
+
+std::string find_file_or_shipped(const std::string& path_or_name, ShippedKind kind) {
+  const bool is_scenario = kind == ShippedKind::kScenario;
+  const char* const folder = is_scenario ? kScenarios : kCampaigns;
+  if (is_file(path_or_name)) return path_or_name;
+  if (const auto shipped = find_shipped(folder, path_or_name)) return *shipped;
+  std::error_code error;
+  const std::string extension = fs::path(path_or_name).extension().string();
+  const bool is_path = path_or_name.find('/') != std::string::npos || extension == ".yaml" ||
+                       extension == ".yml" || fs::exists(path_or_name, error);
+  if (is_path) return path_or_name;
+  const std::string what = is_scenario ? "scenario" : "campaign";
+  throw InputError({.file = path_or_name,
+                    .found = "no such file or shipped " + what,
+                    .expected = "the path of a " + what + " file, or " +
+                                expected_names(path_or_name, shipped_names(folder))});
 }
 
 std::string find_mjcf(const std::string& name, const std::string& scenario_folder) {

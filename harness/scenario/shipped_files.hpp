@@ -40,6 +40,14 @@ using ShippedCampaign = ShippedFile;
 /// The path of the shipped campaign called `name`, or nothing.
 [[nodiscard]] std::optional<std::string> find_shipped_campaign(const std::string& name);
 
+/// Files that are shipped by name.
+enum class ShippedKind { kScenario, kCampaign };
+
+/// `path_or_name` where it is a file, else the path of the shipped file of that name, else again
+/// `path_or_name` where it looks like a path, so that reading it says what is wrong with it.
+/// Throws InputError where it is none of them.
+[[nodiscard]] std::string find_file_or_shipped(const std::string& path_or_name, ShippedKind kind);
+
 /// Absolute path of the MuJoCo XML file `name`: an absolute path as it is, else relative to
 /// `scenario_folder`, else among the shipped ones. Empty if there is no such file.
 [[nodiscard]] std::string find_mjcf(const std::string& name, const std::string& scenario_folder);

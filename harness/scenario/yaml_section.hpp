@@ -50,6 +50,7 @@ struct NumberRange {
   bool above_least = false;  ///< whether `least` itself is refused
 };
 
+inline constexpr NumberRange kNotNegative{.least = 0.0};
 inline constexpr NumberRange kPositive{.least = 0.0, .above_least = true};
 
 inline constexpr std::size_t kLongestName = 100;   ///< bytes; a title, and part of file names

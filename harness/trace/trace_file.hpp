@@ -44,7 +44,6 @@ class TraceWriter {
   void append_motion(std::span<const MotionSample> motion);
   void append_vectors(const StepRecord& record);
   void append_particles(const StepRecord& record);
-  void append_certificates(const StepRecord& record);
   void append_timing(const StepTiming& timing);
   void check_sizes(const StepRecord& record) const;
 

@@ -2,9 +2,12 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 
+#include "harness/trace/certificate_datasets.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/coordinate_labels.hpp"
+#include "harness/trace/cost_fields.hpp"
 
 namespace qsmpc {
 namespace {
@@ -102,10 +105,10 @@ void add_belief_and_plan(std::vector<DatasetSpec>& layout, const TraceSizes& n) 
                     .columns = n.states.names,
                     .comment = "nominal states, the present one first"});
   layout.push_back({.path = "/plan/cost",
-                    .row_shape = {5},
+                    .row_shape = {cost_part_names().size()},
                     .axes = {"step", "part"},
                     .units = {"1"},
-                    .columns = {"state", "input", "terminal", "box", "obstacle"}});
+                    .columns = cost_part_names()});
   layout.push_back({.path = "/plan/status",
                     .type = Type::kText,
                     .axes = {"step"},
@@ -149,43 +152,6 @@ void add_particles(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .comment = slices});
 }
 
-void add_certificate(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
-  layout.push_back({.path = "/certificate/budget",
-                    .row_shape = {n.horizon + 1, kBudgetColumns.size()},
-                    .axes = {"step", "stage", "source"},
-                    .units = {kStateNorm},
-                    .columns = budget_column_names(),
-                    .comment = kBudgetMeaning});
-  layout.push_back({.path = kModelErrorPath,
-                    .row_shape = {n.horizon + 1},
-                    .axes = {"step", "stage"},
-                    .units = {kStateNorm},
-                    .comment = kModelErrorMeaning});
-  layout.push_back({.path = kDynamicsPath,
-                    .row_shape = {n.horizon + 1},
-                    .axes = {"step", "stage"},
-                    .units = {kStateNorm},
-                    .comment = kDynamicsMeaning});
-  layout.push_back({.path = "/certificate/lipschitz",
-                    .row_shape = {n.horizon + 1},
-                    .axes = {"step", "stage"},
-                    .units = {"1"},
-                    .comment = kLipschitzMeaning});
-  for (const CertificateField& field : kCertificateFields) {
-    layout.push_back({.path = certificate_path(field),
-                      .row_shape = {n.horizon},
-                      .axes = {"step", "stage"},
-                      .units = {"1"},
-                      .comment = field.meaning});
-  }
-  layout.push_back({.path = "/certificate/kind",
-                    .type = Type::kText,
-                    .row_shape = {n.horizon},
-                    .axes = {"step", "stage"},
-                    .units = {"1"},
-                    .comment = kKindMeaning});
-}
-
 void add_timing(std::vector<DatasetSpec>& layout) {
   for (const char* const phase :
        {"quantise", "propagate", "optimise", "certify", "total", "simulate"}) {
@@ -205,7 +171,7 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
   add_plant(layout, sizes);
   add_belief_and_plan(layout, sizes);
   add_particles(layout, sizes);
-  add_certificate(layout, sizes);
+  for (DatasetSpec& spec : certificate_layout(sizes.horizon)) layout.push_back(std::move(spec));
   add_timing(layout);
   return layout;
 }

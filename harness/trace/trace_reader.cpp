@@ -9,6 +9,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "models/constants.hpp"
 #include "harness/trace/certificate_fields.hpp"
+#include "harness/trace/cost_fields.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
 
@@ -185,12 +186,8 @@ void TraceReader::read_plan() {
     step.plan_inputs = Columns(row_of(inputs, k, input_dim_ * horizon_), input_dim_, horizon_);
     step.plan_states =
         Columns(row_of(states, k, state_dim_ * (horizon_ + 1)), state_dim_, horizon_ + 1);
-    const double* const cost = row_of(costs, k, 5);
-    step.cost = {.state = cost[0],
-                 .input = cost[1],
-                 .terminal = cost[2],
-                 .box = cost[3],
-                 .obstacle = cost[4]};
+    const double* const cost = row_of(costs, k, std::ssize(kCostFields));
+    for (std::size_t n = 0; n < kCostFields.size(); ++n) step.cost.*kCostFields[n].member = cost[n];
     step.solver_status = statuses[k];
     step.fallback = fallbacks[k] != 0;
     step.iterations = static_cast<int>(iterations[k]);

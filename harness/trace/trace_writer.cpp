@@ -5,7 +5,9 @@
 
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
-#include "harness/trace/certificate_fields.hpp"
+#include "harness/trace/certificate_datasets.hpp"
+#include "harness/trace/cost_fields.hpp"
+#include "harness/trace/file_header.hpp"
 #include "harness/trace/rows.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
@@ -17,12 +19,12 @@ void require(bool condition, const char* what) {
   if (!condition) throw std::invalid_argument(std::string("step record: ") + what);
 }
 
-void write_header(Hdf5File& file, const Trace& header) {
-  file.set_integer("/", "schema", kTraceSchema);
-  file.set_text("/", "version", header.version);
-  file.set_text("/", "scenario", header.scenario_text);
-  file.set_text("/", "scenario_name", header.scenario.name);
-  file.set_unsigned("/", "seed", header.seed);
+void write_trace_header(Hdf5File& file, const Trace& header) {
+  write_file_header(file, {.schema = kTraceSchema,
+                           .version = header.version,
+                           .scenario_text = header.scenario_text,
+                           .scenario_name = header.scenario.name,
+                           .seed = header.seed});
   // What a reader shall see if nothing is ever added.
   file.set_text("/", "outcome", outcome_name(Outcome::kInterrupted));
   file.set_text("/", "fault", "");
@@ -36,7 +38,7 @@ TraceWriter::TraceWriter(std::string path, const Trace& header)
       state_dim_(header.scenario.initial_state.mean.size()),
       input_dim_(header.scenario.controller.input_lower.size()),
       horizon_(header.scenario.controller.horizon) {
-  write_header(file_, header);
+  write_trace_header(file_, header);
   for (const DatasetSpec& spec : trace_layout(header.scenario)) file_.create_dataset(spec);
   file_.flush();
   file_.begin_streaming();
@@ -49,7 +51,7 @@ void TraceWriter::append(const StepRecord& record, std::span<const MotionSample>
   append_motion(motion);
   append_vectors(record);
   append_particles(record);
-  append_certificates(record);
+  append_certificates(file_, record.budgets, record.certificates);
   append_timing(record.timing);
   // The time is the step's seal: it reaches the file only after everything else of the step, and
   // the reader believes as many steps as there are times.
@@ -110,9 +112,7 @@ void TraceWriter::append_vectors(const StepRecord& record) {
   // A stage is a column in memory and a row in the file.
   file_.append("/plan/inputs", by_rows(record.plan_inputs.transpose()));
   file_.append("/plan/states", by_rows(record.plan_states.transpose()));
-  const CostParts& cost = record.cost;
-  file_.append("/plan/cost",
-               std::vector<double>{cost.state, cost.input, cost.terminal, cost.box, cost.obstacle});
+  file_.append("/plan/cost", cost_row(record.cost));
   file_.append("/plan/status", std::vector<std::string>{record.solver_status});
   file_.append("/plan/fallback", std::vector<std::int64_t>{record.fallback ? 1 : 0});
   file_.append("/plan/iterations", std::vector<std::int64_t>{record.iterations});
@@ -131,21 +131,6 @@ void TraceWriter::append_particles(const StepRecord& record) {
   file_.append("/particles/locations", locations);
   file_.append("/particles/weights", weights);
   file_.append("/particles/offsets", offsets);
-}
-
-void TraceWriter::append_certificates(const StepRecord& record) {
-  std::vector<double> budgets;
-  for (const StageBudget& stage : record.budgets) {
-    for (const BudgetField& field : kBudgetColumns) budgets.push_back(stage.*field.member);
-  }
-  file_.append("/certificate/budget", budgets);
-  file_.append(kModelErrorPath, column_of(record.budgets, &StageBudget::model));
-  file_.append(kDynamicsPath, column_of(record.budgets, &StageBudget::dynamics));
-  file_.append("/certificate/lipschitz", column_of(record.budgets, &StageBudget::lipschitz));
-  for (const CertificateField& field : kCertificateFields) {
-    file_.append(certificate_path(field), column_of(record.certificates, field.member));
-  }
-  file_.append("/certificate/kind", column_of(record.certificates, &StageCertificate::kind));
 }
 
 void TraceWriter::append_timing(const StepTiming& timing) {

@@ -6,7 +6,6 @@
 
 #include "harness/campaign/plan/campaign_expansion.hpp"
 #include "harness/campaign/plan/campaign_reader.hpp"
-#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
@@ -29,17 +28,7 @@ Campaign read_file(const std::string& path, Problems& problems) {
 }  // namespace
 
 std::string find_campaign(const std::string& path_or_name) {
-  if (is_file(path_or_name)) return path_or_name;
-  if (const auto shipped = find_shipped_campaign(path_or_name)) return *shipped;
-  std::error_code error;
-  const std::string extension = fs::path(path_or_name).extension().string();
-  const bool is_path = path_or_name.find('/') != std::string::npos || extension == ".yaml" ||
-                       extension == ".yml" || fs::exists(path_or_name, error);
-  if (is_path) return path_or_name;
-  throw InputError({.file = path_or_name,
-                    .found = "no such file or shipped campaign",
-                    .expected = "the path of a campaign file, or " +
-                                expected_names(path_or_name, shipped_campaign_names())});
+  return find_file_or_shipped(path_or_name, ShippedKind::kCampaign);
 }
 
 Campaign load_campaign(const std::string& path_or_name) {
