@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc {
 namespace {

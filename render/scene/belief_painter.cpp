@@ -13,18 +13,17 @@
 namespace qsmpc {
 namespace {
 
-constexpr double kReferenceHeight = 720.0;  // pixels, for which the sizes below are
-constexpr double kNearScale = 150.0;        // pixels a metre, from which on marks have full size
-constexpr double kLeastShrinking = 0.55;    // of full size
-constexpr double kPlanWidth = 2.2;          // pixels
-constexpr double kCasingWidth = 5.0;        // pixels
-constexpr double kNodeSize = 8.5;           // pixels
-constexpr double kWholeStageSize = 68.0;    // pixels across, a particle that has all the weight
-constexpr double kLeastSize = 3.6;          // pixels
-constexpr double kLargestSize = 18.0;       // pixels
-constexpr double kRawSize = 1.9;            // pixels
-constexpr double kEllipseWidth = 1.5;       // pixels
-constexpr double kTubeEdgeWidth = 3.5;      // pixels
+constexpr double kNearScale = 150.0;      // pixels a metre, from which on marks have full size
+constexpr double kLeastShrinking = 0.55;  // of full size
+constexpr double kPlanWidth = 2.2;        // pixels
+constexpr double kCasingWidth = 5.0;      // pixels
+constexpr double kNodeSize = 8.5;         // pixels
+constexpr double kWholeStageSize = 68.0;  // pixels across, a particle that has all the weight
+constexpr double kLeastSize = 3.6;        // pixels
+constexpr double kLargestSize = 18.0;     // pixels
+constexpr double kRawSize = 1.9;          // pixels
+constexpr double kEllipseWidth = 1.5;     // pixels
+constexpr double kTubeEdgeWidth = 3.5;    // pixels
 constexpr std::size_t kMostEllipses = 7;
 constexpr int kEllipseSides = 48;
 constexpr float kParticleOpacity = 0.82F;

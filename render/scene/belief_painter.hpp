@@ -10,6 +10,9 @@ namespace qsmpc {
 /// m above the ground, of all marks on it: paths, particles, ellipses, tube.
 inline constexpr double kMarkHeight = 0.01;
 
+/// Pixels, height of the picture for which widths and sizes of marks are stated.
+inline constexpr double kReferenceHeight = 720.0;
+
 /// The point of `ellipse` at `angle` (rad): 0 is the end of its first axis.
 [[nodiscard]] PlanarPoint on_ellipse(const PlanarEllipse& ellipse, double angle);
 

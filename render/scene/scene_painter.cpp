@@ -15,22 +15,21 @@
 namespace qsmpc {
 namespace {
 
-constexpr double kObstacleHeight = 0.40;    // m
-constexpr double kEdgeClearance = 0.004;    // m, or lines are half hidden by their own box
-constexpr double kWallHeight = 0.10;        // m
-constexpr double kWallThickness = 0.06;     // m
-constexpr double kStripeSpacing = 0.35;     // m, of the unsafe set's stripes
-constexpr double kStripedReach = 3.0;       // m beyond the region, where stripes end
-constexpr double kMostStripes = 120.0;      // across the region
-constexpr double kPostHeight = 0.75;        // m, the target's flag
-constexpr double kPostSide = 0.018;         // m
-constexpr double kTubeHeight = 0.35;        // m
-constexpr double kGroundReach = 500.0;      // m beyond the region
-constexpr double kGridReach = 40.0;         // cells beyond the region
-constexpr double kFogBegin = 2.2;           // of the camera's distance
-constexpr double kFogEnd = 9.0;             // of the camera's distance
-constexpr double kReferenceHeight = 720.0;  // pixels, for which widths are
-constexpr double kPathWidth = 4.0;          // pixels
+constexpr double kObstacleHeight = 0.40;  // m
+constexpr double kEdgeClearance = 0.004;  // m, or lines are half hidden by their own box
+constexpr double kWallHeight = 0.10;      // m
+constexpr double kWallThickness = 0.06;   // m
+constexpr double kStripeSpacing = 0.35;   // m, of the unsafe set's stripes
+constexpr double kStripedReach = 3.0;     // m beyond the region, where stripes end
+constexpr double kMostStripes = 120.0;    // across the region
+constexpr double kPostHeight = 0.75;      // m, the target's flag
+constexpr double kPostSide = 0.018;       // m
+constexpr double kTubeHeight = 0.35;      // m
+constexpr double kGroundReach = 500.0;    // m beyond the region
+constexpr double kGridReach = 40.0;       // cells beyond the region
+constexpr double kFogBegin = 2.2;         // of the camera's distance
+constexpr double kFogEnd = 9.0;           // of the camera's distance
+constexpr double kPathWidth = 4.0;        // pixels
 
 PlanarRectangle grown(const PlanarRectangle& area, double margin) {
   return {area.x_lower - margin, area.x_upper + margin, area.y_lower - margin,
