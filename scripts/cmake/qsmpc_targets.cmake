@@ -68,6 +68,7 @@ function(qsmpc_library name)
     set(group controller)
   else()
     set(group harness)
+    target_link_libraries(${name} PRIVATE Eigen3::Eigen fmt::fmt)  # the precompiled header's
   endif()
   target_compile_options(${name} PRIVATE ${qsmpc_${group}_options})
   target_precompile_headers(${name} REUSE_FROM qsmpc_${group}_headers)
