@@ -57,11 +57,11 @@ DecodedVideo decode_video(const std::string& path) {
   const libav::Pointer<AVPacket> packet(av_packet_alloc());
   while (av_read_frame(format, packet.get()) >= 0) {
     libav::check(avcodec_send_packet(codec.get(), packet.get()), path);
-    receive_frames(codec.get(), video);
+    decoded_video::receive_frames(codec.get(), video);
     av_packet_unref(packet.get());
   }
   libav::check(avcodec_send_packet(codec.get(), nullptr), path);
-  receive_frames(codec.get(), video);
+  decoded_video::receive_frames(codec.get(), video);
   avformat_close_input(&format);
   return video;
 }
