@@ -10,7 +10,7 @@
 #include "harness/campaign/store/store_reader.hpp"
 
 namespace qsmpc::testing {
-namespace campaign_fixture {
+namespace {
 
 namespace fs = std::filesystem;
 
@@ -65,7 +65,7 @@ std::string without_timings(const std::string& csv) {
   return text;
 }
 
-}  // namespace campaign_fixture
+}  // namespace
 
 std::string short_campaign(const TemporaryFolder& folder, int seeds, const std::string& extra) {
   return folder.file("short.yaml", fmt::format("name: short\n"

@@ -15,7 +15,7 @@
 #include <unistd.h>
 
 namespace qsmpc::testing {
-namespace process {
+namespace {
 
 [[noreturn]] void become_qsmpc(const std::vector<std::string>& arguments,
                                const ProcessOptions& options, const std::string& out,
@@ -40,7 +40,7 @@ namespace process {
   _exit(126);
 }
 
-}  // namespace process
+}  // namespace
 
 ProcessResult run_qsmpc(const std::vector<std::string>& arguments, const ProcessOptions& options) {
   const TemporaryFolder folder;

@@ -5,12 +5,12 @@
 #include <vector>
 
 namespace qsmpc::testing {
-namespace marginal_w2 {
+namespace {
 
 // Three times √2.5.
 constexpr double kSamplingFactor = 3.0 * 1.6;
 
-}  // namespace marginal_w2
+}  // namespace
 
 double marginal_w2(const DiscreteMeasure& particles, const Points& draws, Eigen::Index axis) {
   std::vector<double> sorted(draws.row(axis).begin(), draws.row(axis).end());

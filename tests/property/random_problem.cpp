@@ -7,7 +7,7 @@
 #include "models/constants.hpp"
 
 namespace qsmpc::testing {
-namespace random_problem {
+namespace {
 constexpr double kTimeStep = 0.1;  // s
 
 double uniform(Generator& generator, double lower, double upper) {
@@ -161,7 +161,7 @@ void random_policy(Generator& generator, Problem& problem) {
                    .target = problem.belief.mean + uniform_vector(generator, dim, -1.0, 1.0)};
 }
 
-}  // namespace random_problem
+}  // namespace
 
 Problem random_problem(Generator& generator) {
   const Family family = random_family(generator);

@@ -152,14 +152,14 @@ Policy SampledProblem::policy_of(const Eigen::MatrixXd& inputs) const {
   return policy;
 }
 
-double SampledProblem::price(const Policy& policy) {
+double SampledProblem::evaluate(const Policy& policy) {
   forward(policy);
   return value_;
 }
 
-double SampledProblem::price(const Eigen::MatrixXd& inputs) { return price(policy_of(inputs)); }
+double SampledProblem::evaluate(const Eigen::MatrixXd& inputs) { return evaluate(policy_of(inputs)); }
 
-double SampledProblem::price(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
+double SampledProblem::evaluate(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
   const Policy policy = policy_of(inputs);
   forward(policy);
   backward(policy, gradient);

@@ -163,8 +163,6 @@ TEST(gl_library, unknown_names_are_refused_with_the_known_ones) {
   }
 }
 
-}  // namespace gl_library_test
-
 int child_main(const std::string& what, const std::string& first, const std::string& second) {
   try {
     if (what == "--draw") {
@@ -182,13 +180,14 @@ int child_main(const std::string& what, const std::string& first, const std::str
   }
 }
 
+}  // namespace gl_library_test
 }  // namespace qsmpc
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   if (argc > 1) {
     const auto argument = [&](int i) -> std::string { return i < argc ? argv[i] : ""; };
-    return qsmpc::child_main(argument(1), argument(2), argument(3));
+    return qsmpc::gl_library_test::child_main(argument(1), argument(2), argument(3));
   }
   return RUN_ALL_TESTS();
 }

@@ -5,7 +5,7 @@
 #include "render/media/libav.hpp"
 
 namespace qsmpc {
-namespace decoded_video {
+namespace {
 
 Image rgb_image(const AVFrame& frame) {
   Image image{frame.width, frame.height, {}};
@@ -38,7 +38,7 @@ void receive_frames(AVCodecContext* codec, DecodedVideo& video) {
   }
 }
 
-}  // namespace decoded_video
+}  // namespace
 
 DecodedVideo decode_video(const std::string& path) {
   AVFormatContext* format = nullptr;
@@ -57,11 +57,11 @@ DecodedVideo decode_video(const std::string& path) {
   const libav::Pointer<AVPacket> packet(av_packet_alloc());
   while (av_read_frame(format, packet.get()) >= 0) {
     libav::check(avcodec_send_packet(codec.get(), packet.get()), path);
-    decoded_video::receive_frames(codec.get(), video);
+    receive_frames(codec.get(), video);
     av_packet_unref(packet.get());
   }
   libav::check(avcodec_send_packet(codec.get(), nullptr), path);
-  decoded_video::receive_frames(codec.get(), video);
+  receive_frames(codec.get(), video);
   avformat_close_input(&format);
   return video;
 }

@@ -5,7 +5,7 @@
 #include <vector>
 
 namespace qsmpc::testing {
-namespace page_checks {
+namespace {
 
 /// Position of the '>' that ends the tag at `begin`, quotes respected; npos if there is none.
 std::size_t tag_end(const std::string& html, std::size_t begin) {
@@ -24,7 +24,7 @@ std::string tag_name(const std::string& tag) {
   return tag.substr(0, end);
 }
 
-}  // namespace page_checks
+}  // namespace
 
 std::string tag_problem(const std::string& html) {
   const std::set<std::string> never_closed = {"meta"};
