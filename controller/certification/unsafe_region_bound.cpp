@@ -273,8 +273,8 @@ class ReachSearch {
   double least_value_ = kInfinity;
 };
 
-/// Where `value` is least by golden sections over [first, first · ratio], in the logarithm. One
-/// valley is expected; where there are more, what is found is the bottom of one.
+/// Where `value` is least by golden sections over [first, first · ratio], in the logarithm. It is
+/// expected to be unimodal; where it is not, the result is one of its local minima.
 template <class Value>
 double least_on_logarithmic_scale(const Value& value, double first, double ratio, int steps) {
   const double golden = 0.5 * (std::sqrt(5.0) - 1.0);

@@ -180,7 +180,7 @@ bool Planner::begin(const Gaussian& belief, Round& round) {
   start_solver(*inputs_.solver, warm);
   if (gain_search_) start_solver(*gain_search_->solver, warm);
   if (!warm && minima_) {
-    start_in_deepest_valley(belief, round);
+    start_from_best_candidate(belief, round);
   } else if (!warm && round.evaluated) {
     std::swap(current_, candidate_);  // the constant inputs, which won
     freeze_assignments(current_->prediction, current_->policy);
@@ -231,9 +231,9 @@ void Planner::set_policy(const Gaussian& belief, const Eigen::MatrixXd& inputs, 
   policies_.make(belief.mean, inputs, gain_change_, plan.policy);
 }
 
-/// Makes `current_` the best of the plans at the bottoms of the valleys, and of itself if it has
-/// been evaluated, as the prediction prices them, and holds its assignments.
-void Planner::start_in_deepest_valley(const Gaussian& belief, Round& round) {
+/// Makes `current_` the cheapest, as predicted with noise, of the multi-start search's candidates
+/// and of itself if it has been evaluated, and freezes its assignments.
+void Planner::start_from_best_candidate(const Gaussian& belief, Round& round) {
   bool held = round.evaluated;
   for (const Eigen::MatrixXd* const inputs : minima_->search(policies_, round.deadline)) {
     if (round.evaluated && Clock::now() >= round.deadline) break;
@@ -404,7 +404,7 @@ void Planner::flatten(const Policy& policy, Eigen::VectorXd& z) {
   z.head(policy.inputs.size()) = policy.inputs.reshaped();
 }
 
-/// Predicts under plan.policy with assignments of its own, holds them, and prices them.
+/// Predicts under plan.policy with assignments of its own, freezes them, and evaluates the cost.
 void Planner::predict_and_evaluate(Plan& plan) {
   const auto start = Clock::now();
   predict(dynamics_, *propagator_, belief_.measure, plan.policy, settings_.run, scratch_,

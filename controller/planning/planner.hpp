@@ -126,7 +126,7 @@ class Planner {
   [[nodiscard]] bool constant_is_clearly_cheaper(const Gaussian& belief, Round& round);
   [[nodiscard]] double evaluate_frozen(const Plan& plan);
   void set_policy(const Gaussian& belief, const Eigen::MatrixXd& inputs, Plan& plan);
-  void start_in_deepest_valley(const Gaussian& belief, Round& round);
+  void start_from_best_candidate(const Gaussian& belief, Round& round);
   void optimise(const Gaussian& belief, Round& round);
   [[nodiscard]] bool optimise(const Gaussian& belief, Search& search, int rounds, Round& round);
   [[nodiscard]] bool run_solver(Search& search, Round& round);

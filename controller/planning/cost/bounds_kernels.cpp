@@ -12,7 +12,7 @@ namespace qsmpc {
 namespace HWY_NAMESPACE {
 
 /// E h(r + s z) for a ratio r = distance/ℓ, its derivative by r, and that by s, divided by s.
-struct Hinge {
+struct SmoothedHinge {
   Vector value;
   Vector slope;
   Vector widening;
@@ -35,7 +35,7 @@ HWY_INLINE SquaredHinge squared_hinge_of_normal(Vector mean, Vector spread) {
 /// With t = 1 − r, h = ½ t²₊ − ½ (t − 1)²₊. Most particles are far from most faces, and of those
 /// that are not most are far from where h becomes straight; nothing is computed for what leaves
 /// nothing.
-HWY_INLINE Hinge hinge_of_normal(Vector ratio, Vector spread) {
+HWY_INLINE SmoothedHinge hinge_of_normal(Vector ratio, Vector spread) {
   const VectorTag d;
   const Vector t = constant(1.0) - ratio;
   const Vector reach = constant(kFarDeviations) * spread;
@@ -93,8 +93,8 @@ FaceCost face_cost_loop(const PenaltyTable::Face& bounds, const SmoothedCoordina
   Sum by_variance;
   for_vectors(size, [&](std::size_t i, auto load_at, auto store_at, std::size_t part) HWY_ATTR {
     const Vector at = share * load_at(x + i) + offset;
-    const Hinge low = hinge_of_normal((at - lower) * inverse_length, spread);
-    const Hinge high = hinge_of_normal((upper - at) * inverse_length, spread);
+    const SmoothedHinge low = hinge_of_normal((at - lower) * inverse_length, spread);
+    const SmoothedHinge high = hinge_of_normal((upper - at) * inverse_length, spread);
     const Vector weight = factor * load_at(weights + i);
     const Vector slope = weight * inverse_length * (low.slope - high.slope);
     value.add(part, weight * (low.value + high.value));

@@ -1,7 +1,7 @@
 // Changes of variables that let a solver without constraints keep a box: z = z(θ), θ free.
 //
 // Where both bounds are finite, z runs through a sigmoid between them; where one is, a softplus
-// leaves it; where none is, z = θ. The penalty leaves z = θ everywhere and prices the excess.
+// leaves it; where none is, z = θ. The penalty leaves z = θ everywhere and penalises the excess.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@ namespace qsmpc {
 enum class InputBounding {
   kSigmoid,  ///< z = lower + (upper − lower) / (1 + e^−θ): Eq. 5-3, for any bounds
   kTanh,     ///< z = middle + half the range · tanh θ
-  kPenalty,  ///< z = θ, at a price quadratic in the excess
+  kPenalty,  ///< z = θ, with a penalty quadratic in the excess
 };
 
 class BoundedInputs {

@@ -31,7 +31,7 @@ void LbfgsSolver::run(const OcpProblem& problem, const SolverOptions& options, M
                       Trial& trial) {
   const BoundedInputs bounded(bounding_, problem.lower, problem.upper);
   const bool penalised = bounding_ == InputBounding::kPenalty;
-  // The last evaluation is kept for the price of the clamped result.
+  // The last evaluation is kept for the cost of the clamped result.
   const int limit = std::max(1, options.max_evaluations - (penalised ? 1 : 0));
   bool exhausted = false;
   double weight = 0.0;

@@ -62,7 +62,7 @@ const std::vector<SolverEntry>& input_boundings() {
       {"sigmoid", "inputs through a sigmoid (Eq. 5-3), NLopt's limited-memory BFGS"},
       {"tanh", "inputs through a hyperbolic tangent, NLopt's limited-memory BFGS"},
       {"penalty",
-       "excess over the bounds evaluated, the result clamped, NLopt's limited-memory BFGS"},
+       "excess over the bounds penalised, the result clamped, NLopt's limited-memory BFGS"},
   };
   return table;
 }

@@ -1,8 +1,8 @@
 // Where the optimisation of a plan starts.
 //
-// The cost has a valley for each way round each obstacle. The shifted previous plan is the first
-// choice; constant inputs, evaluated without noise, show whether another valley may be clearly
-// deeper.
+// The cost has a local minimum for each way round each obstacle. The shifted previous plan is the
+// first choice; constant inputs, evaluated without noise, show whether another minimum may be
+// clearly lower.
 #pragma once
 
 #include <cstddef>

@@ -13,7 +13,7 @@ constexpr double kStartShares[] = {0.0, -0.9, -0.45, 0.45, 0.9};
 constexpr std::size_t kDescents = 6;
 constexpr int kDescentEvaluations = 30;
 constexpr double kDescentTolerance = 1e-5;
-// Valleys that are returned, and the relative difference in cost that makes two of them different.
+// Local minima that are returned, and the relative difference in cost that makes two distinct.
 constexpr std::size_t kMostMinima = 3;
 constexpr double kSameMinimum = 1e-3;
 

@@ -1,10 +1,10 @@
-// Cold starts among obstacles.
+// Multi-start search for cold starts among obstacles.
 //
-// The cost has a valley for each way round each obstacle, and a descent ends in the one in which it
-// starts. Inputs that are constant over each half of the horizon are evaluated in all combinations;
-// the best of each first half descends a little; the bottoms of different valleys are what a plan
-// may start from. All of this without noise: it is to find valleys, not to tell which of two like
-// ones is the deeper.
+// The cost has a local minimum for each way round each obstacle, and a descent finds the one of the
+// basin that it starts in. Inputs that are constant over each half of the horizon are evaluated in
+// all combinations; the best of each first half descends a little; distinct local minima become the
+// candidates for a plan's start. The search works without noise: it finds minima, and does not
+// decide which of two similar ones is lower.
 #pragma once
 
 #include <chrono>
@@ -25,9 +25,9 @@ class MultiStartSearch {
   /// `cost` must stay alive.
   MultiStartSearch(const PlannerSettings& settings, NoiseFreeCost& cost);
 
-  /// Inputs (input_dim x horizon, within the bounds) in different valleys of the cost for the
-  /// belief at which it has been placed, the cheapest first; at least one set of inputs, even after
-  /// `deadline`. Valid until the next search.
+  /// Inputs (input_dim x horizon, within the bounds) near distinct local minima of the cost, for
+  /// the belief at which it has been placed, the cheapest first; at least one set of inputs, even
+  /// after `deadline`. Valid until the next search.
   const std::vector<const Eigen::MatrixXd*>& search(PolicyMaker& policies,
                                                     std::chrono::steady_clock::time_point deadline);
 

@@ -15,7 +15,11 @@
 namespace qsmpc {
 namespace plant_disturbance_test {
 
-const int kPeriods = testing::by_effort(500, 2000, 2000);
+/// Periods driven: a disturbance by force shoots for its effect, several simulations a period. The
+/// limits below follow the number.
+int periods_of(bool force) {
+  return force ? testing::by_effort(100, 500, 2000) : testing::by_effort(500, 2000, 2000);
+}
 
 struct Disturbed {
   std::string name;
@@ -46,6 +50,7 @@ class PlantDisturbance : public ::testing::TestWithParam<Disturbed> {};
 
 TEST_P(PlantDisturbance, has_the_planned_covariance) {
   const Disturbed& plant = GetParam();
+  const int periods = periods_of(plant.force);
   const Eigen::MatrixXd covariance = covariance_of(plant);
   const Eigen::Index dim = covariance.rows();
   MujocoPlantSetup setup = shipped_setup(plant.system, plant.mjcf);
@@ -56,7 +61,7 @@ TEST_P(PlantDisturbance, has_the_planned_covariance) {
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(dim);
   Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(dim, dim);
   Eigen::VectorXd misses = Eigen::VectorXd::Zero(dim);
-  for (int k = 0; k < kPeriods; ++k) {
+  for (int k = 0; k < periods; ++k) {
     const auto step = static_cast<std::uint64_t>(k);
     const Eigen::VectorXd random =
         2.0 * uniform_sample(4, {.seed = 5, .stream = RandomStream::kInput, .step = step}).array() -
@@ -79,17 +84,17 @@ TEST_P(PlantDisturbance, has_the_planned_covariance) {
   // All entries of mean and covariance are within their limits with 99 % together (Bonferroni).
   const double entries = static_cast<double>(dim * (dim + 3)) / 2.0;
   const double limit = boost::math::quantile(boost::math::normal(), 1.0 - 0.01 / (2.0 * entries));
-  const Eigen::VectorXd mean = sum / kPeriods;
-  const Eigen::MatrixXd found = squares / kPeriods - mean * mean.transpose();
+  const Eigen::VectorXd mean = sum / periods;
+  const Eigen::MatrixXd found = squares / periods - mean * mean.transpose();
   for (Eigen::Index i = 0; i < dim; ++i) {
-    EXPECT_LE(std::abs(mean[i]), limit * std::sqrt(covariance(i, i) / kPeriods)) << i;
+    EXPECT_LE(std::abs(mean[i]), limit * std::sqrt(covariance(i, i) / periods)) << i;
     for (Eigen::Index j = 0; j <= i; ++j) {
       const double deviation = std::sqrt(
-          (covariance(i, i) * covariance(j, j) + covariance(i, j) * covariance(i, j)) / kPeriods);
+          (covariance(i, i) * covariance(j, j) + covariance(i, j) * covariance(i, j)) / periods);
       EXPECT_LE(std::abs(found(i, j) - covariance(i, j)), limit * deviation) << i << ' ' << j;
     }
     RecordProperty("relative_miss_" + std::to_string(i),
-                   std::to_string(std::sqrt(misses[i] / kPeriods / covariance(i, i))));
+                   std::to_string(std::sqrt(misses[i] / periods / covariance(i, i))));
   }
 }
 
