@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "controller/measure/wasserstein.hpp"
-#include "models/constants.hpp"
 #include "harness/statistics/sample_statistics.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <memory>
 
-#include "models/constants.hpp"
 #include "harness/statistics/sample_statistics.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

@@ -11,8 +11,8 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "harness/figures/palette.hpp"
-#include "models/constants.hpp"
 #include "harness/trace/residuals.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

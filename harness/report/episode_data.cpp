@@ -12,8 +12,8 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
-#include "models/constants.hpp"
 #include "harness/text/json_text.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

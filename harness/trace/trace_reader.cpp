@@ -7,11 +7,11 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
-#include "models/constants.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/cost_fields.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc {
 namespace {

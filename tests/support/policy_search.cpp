@@ -157,7 +157,9 @@ double SampledProblem::evaluate(const Policy& policy) {
   return value_;
 }
 
-double SampledProblem::evaluate(const Eigen::MatrixXd& inputs) { return evaluate(policy_of(inputs)); }
+double SampledProblem::evaluate(const Eigen::MatrixXd& inputs) {
+  return evaluate(policy_of(inputs));
+}
 
 double SampledProblem::evaluate(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
   const Policy policy = policy_of(inputs);
