@@ -47,11 +47,11 @@ install_packages() {
 # build PRESET [options of cmake --build]: configures and builds a preset of CMakePresets.json.
 build() {
   say "Building the preset '$1' into build/$1"
-  cmake --preset "$1" >"build-$1.log" 2>&1 || {
-    tail -n 25 "build-$1.log" >&2
-    fail "cmake could not configure; see build-$1.log, or remove build/$1 and try again"
+  mkdir -p build
+  cmake --preset "$1" >"build/$1.log" 2>&1 || {
+    tail -n 25 "build/$1.log" >&2
+    fail "cmake could not configure; see build/$1.log, or remove build/$1 and try again"
   }
-  rm -f "build-$1.log"
   cmake --build --preset "$1" "${@:2}" -- --quiet ||
     fail "the build failed; the compiler's first error is above"
 }

@@ -1,5 +1,6 @@
 #include "harness/threads/executor.hpp"
 
+#include <atomic>
 #include <memory>
 #include <stdexcept>
 
@@ -7,13 +8,44 @@
 #include <tbb/task_arena.h>
 
 namespace qsmpc {
+namespace {
+
+/// How work goes to other threads and comes back, where the thread sanitizer can see it: TBB, which
+/// orders all of this by itself, is not compiled with it.
+class Handover {
+ public:
+#if defined(__SANITIZE_THREAD__)
+  Handover() { given_.store(true, std::memory_order_release); }
+  void take() { (void)given_.load(std::memory_order_acquire); }
+  void give_back() { done_.fetch_add(1, std::memory_order_acq_rel); }
+  void end() { (void)done_.load(std::memory_order_acquire); }
+
+ private:
+  std::atomic<bool> given_ = false;
+  std::atomic<int> done_ = 0;
+#else
+  void take() {}
+  void give_back() {}
+  void end() {}
+#endif
+};
+
+}  // namespace
 
 Executor executor_of(int threads) {
   if (threads < 1) throw std::invalid_argument("threads: at least one is needed");
   if (threads == 1) return run_in_turn;
   auto arena = std::make_shared<tbb::task_arena>(threads);
   return [arena](int count, TaskRef task) {
-    arena->execute([&] { tbb::parallel_for(0, count, [&](int n) { task(n); }); });
+    Handover handover;
+    arena->execute([&] {
+      tbb::parallel_for(0, count, [&](int n) {
+        handover.take();
+        task(n);
+        handover.give_back();
+      });
+    });
+    handover.end();
   };
 }
 
