@@ -11,7 +11,7 @@
 #include <memory>
 #include <type_traits>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Refers to something callable with a task's number; must not outlive it. Never allocates.
 class TaskRef {
@@ -70,4 +70,4 @@ void for_chunks(const Executor& run, std::ptrdiff_t particles, const Task& task)
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

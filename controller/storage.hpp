@@ -6,7 +6,7 @@
 #include <new>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Gives out memory from the beginning of a cache line on, so that vectors as wide as a line never
 /// reach over two.
@@ -78,4 +78,4 @@ class Arena {
   std::size_t most_ = 0;   // given between two resets
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -4,7 +4,7 @@
 
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string describe(const InputError::Where& where) {
@@ -25,4 +25,4 @@ std::string describe(const InputError::Where& where) {
 InputError::InputError(Where where)
     : std::runtime_error(describe(where)), where_(std::move(where)) {}
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A wrong input: a file that does not say what it should. Exit code 2.
 /// `what()` is one line: "FILE:LINE: KEY: found F, expected E". Parts not known are left out.
@@ -37,4 +37,4 @@ class IoError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

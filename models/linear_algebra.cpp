@@ -7,7 +7,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(matrix);
@@ -50,4 +50,4 @@ Eigen::MatrixXd orthogonal_factor(const Eigen::MatrixXd& matrix) {
   return Eigen::HouseholderQR<Eigen::MatrixXd>(matrix).householderQ();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// Eigenvalues, ascending, and orthonormal eigenvectors of a symmetric matrix: M vᵢ = λᵢ vᵢ.
 struct SymmetricEigen {
@@ -47,4 +47,4 @@ struct ColumnRank {
 /// The orthogonal factor Q of matrix = Q R.
 [[nodiscard]] Eigen::MatrixXd orthogonal_factor(const Eigen::MatrixXd& matrix);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
@@ -134,4 +134,4 @@ std::optional<PixelPoint> project(const View& view, const SpacePoint& point) {
   return PixelPoint{0.5 * (1.0 + across) * view.width, 0.5 * (1.0 - upwards) * view.height};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

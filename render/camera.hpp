@@ -8,7 +8,7 @@
 #include "render/frame.hpp"
 #include "render/hud/canvas.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// A point or direction in space: x, y, z in metres, z up.
 using SpacePoint = std::array<double, 3>;
@@ -55,4 +55,4 @@ struct View {
 /// `point` in the camera's own axes: right, up, and the distance along the line of sight.
 [[nodiscard]] SpacePoint camera_coordinates(const View& view, const SpacePoint& point);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 // Matplotlib's table at every tenth of its range (released into the public domain, CC0).
@@ -62,4 +62,4 @@ Colour clearance_colour(double clearance) {
   return on_ramp(kClearance, clearance / kCalmClearance);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -1,7 +1,7 @@
 // Colours of pictures: named ones in palette.hpp, and the ramp of the horizon's stages.
 #pragma once
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// sRGB and opacity, each in [0, 1].
 struct Colour {
@@ -41,4 +41,4 @@ inline constexpr double kCalmClearance = 1.0;
 /// The colour of a distance (m) to the unsafe set: warning up to 0, calm from kCalmClearance on.
 [[nodiscard]] Colour clearance_colour(double clearance);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

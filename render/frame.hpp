@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 struct PlanarPoint {
   double x = 0.0;
@@ -112,4 +112,4 @@ struct Image {
   std::vector<unsigned char> rgb;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

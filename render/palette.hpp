@@ -3,7 +3,7 @@
 
 #include "render/colour.hpp"
 
-namespace qsmpc::palette {
+namespace qsmpc::render::palette {
 
 inline constexpr Colour kSky{0.60F, 0.73F, 0.86F};
 inline constexpr Colour kHorizon{0.90F, 0.93F, 0.95F};
@@ -24,4 +24,4 @@ inline constexpr Colour kRawPoint{0.36F, 0.45F, 0.58F};
 inline constexpr Colour kGhost{0.05F, 0.78F, 0.88F, 0.55F};
 inline constexpr float kTubeOpacity = 0.55F;
 
-}  // namespace qsmpc::palette
+}  // namespace qsmpc::render::palette

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kLeastPane = 32;         // pixels
@@ -62,4 +62,4 @@ PictureLayout picture_layout(int width, int height, const std::string& camera, s
   return layout;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -8,7 +8,7 @@
 #include "render/camera.hpp"
 #include "render/hud/canvas.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// A part of the picture in which one camera shows one episode.
 struct PaneLayout {
@@ -40,4 +40,4 @@ struct BandHeights {
 [[nodiscard]] PictureLayout picture_layout(int width, int height, const std::string& camera,
                                            std::size_t episodes, const BandHeights& heights);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

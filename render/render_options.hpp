@@ -5,7 +5,7 @@
 
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// What is chosen for a picture as a whole.
 struct PictureOptions {
@@ -35,4 +35,4 @@ struct RenderOptions {
   PlanarRectangle region;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -12,7 +12,7 @@
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/vehicle.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kLeastSide = 64;               // pixels
@@ -189,4 +189,4 @@ std::optional<PixelPoint> Renderer::locate(const Frame& frame, const PlanarPoint
   return place;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

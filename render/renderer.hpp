@@ -1,7 +1,7 @@
 // Pictures of frames: a vehicle, its surroundings, what is planned, and a head-up display.
 //
-//   qsmpc::Renderer renderer({.camera = "top"}, world, "models/mjcf/dubins_car.xml");
-//   qsmpc::Image image;
+//   qsmpc::render::Renderer renderer({.camera = "top"}, world, "models/mjcf/dubins_car.xml");
+//   qsmpc::render::Image image;
 //   renderer.draw(frame, image);
 //
 // The same frame gives the same image, whatever was drawn before and on whichever thread.
@@ -16,7 +16,7 @@
 #include "render/hud/canvas.hpp"
 #include "render/render_options.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Use and destroy it on the thread that made it; at most one a thread at a time. Different threads
 /// may have one each.
@@ -53,4 +53,4 @@ class Renderer {
   std::unique_ptr<Parts> parts_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -9,7 +9,7 @@
 #include "controller/certification/unicycle_residual.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// Bounds of a sum.
@@ -107,7 +107,7 @@ class SurrogateRecursion {
     // Then a residual is known on the whole space, and only its changes need the core.
     fits_everywhere_ =
         std::all_of(core_.affine.begin(), core_.affine.end(), [](bool one) { return one; });
-    if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
+    if (const std::optional<models::UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
       residual_.emplace(*unicycle, law_.mean.size(), motion.policy.horizon());
       fits_everywhere_ = true;
     }
@@ -239,7 +239,8 @@ bool open_loop(const Policy& policy) {
 }
 
 /// Covariance of (x, y) under N(0, covariance).
-Eigen::Matrix2d of_position(const UnicycleStructure& unicycle, const Eigen::MatrixXd& covariance) {
+Eigen::Matrix2d of_position(const models::UnicycleStructure& unicycle,
+                            const Eigen::MatrixXd& covariance) {
   Eigen::Matrix2d position;
   position << covariance(unicycle.x, unicycle.x), covariance(unicycle.x, unicycle.y),
       covariance(unicycle.y, unicycle.x), covariance(unicycle.y, unicycle.y);
@@ -247,7 +248,7 @@ Eigen::Matrix2d of_position(const UnicycleStructure& unicycle, const Eigen::Matr
 }
 
 /// Covariance of what of (x, y) is independent of the heading, for N(0, covariance).
-Eigen::Matrix2d beside_heading(const UnicycleStructure& unicycle,
+Eigen::Matrix2d beside_heading(const models::UnicycleStructure& unicycle,
                                const Eigen::MatrixXd& covariance) {
   const double variance = covariance(unicycle.heading, unicycle.heading);
   Eigen::Matrix2d beside = of_position(unicycle, covariance);
@@ -284,7 +285,7 @@ Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index
   if (motion.model_error != nullptr || motion.belief_error != nullptr) {
     return motion.noise_covariance;
   }
-  const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle();
+  const std::optional<models::UnicycleStructure> unicycle = motion.dynamics.unicycle();
   const bool always_open = open_loop(motion.policy);
   const bool heading =
       unicycle && std::find(axes.begin(), axes.end(), unicycle->heading) != axes.end();
@@ -311,4 +312,4 @@ Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index
   return smoothing;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -15,7 +15,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// The surrogate z of the state x at one stage. "Inside" is an event of probability at least
 /// 1 − leaving; it shrinks from stage to stage.
@@ -44,4 +44,4 @@ struct SurrogateStage {
                                                    Eigen::Index stage,
                                                    const std::vector<Eigen::Index>& axes);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -8,7 +8,7 @@
 #include "controller/certification/unsafe_region_bound.hpp"
 #include "controller/certification/worst_case.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // What a part of the unsafe set may add without being worked out further.
@@ -154,4 +154,4 @@ double horizon_bound(const std::vector<StageCertificate>& certificates) {
   return std::min(1.0, sum);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -18,7 +18,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 struct StageCertificate {
   double value = 1.0;        ///< the least of the bounds
@@ -55,4 +55,4 @@ enum class CertificateEffort {
 /// most 1.
 [[nodiscard]] double horizon_bound(const std::vector<StageCertificate>& certificates);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -7,7 +7,7 @@
 #include "models/constants.hpp"
 #include "models/dynamics/local_lipschitz.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// An error after a map with this Lipschitz constant. No error stays none, even where no constant
@@ -57,8 +57,8 @@ StageLipschitz on_region(const PredictedMotion& motion, Eigen::Index stage,
   lower << region.lower, bounds.lower;
   upper << region.upper, bounds.upper;
   if (leaving >= 1.0 || !(lower.array() <= upper.array()).all()) return {.leaving = 1.0};
-  const double constant =
-      local_lipschitz(motion.dynamics.derivative_bounds(lower, upper), motion.policy.gains[stage]);
+  const double constant = models::local_lipschitz(motion.dynamics.derivative_bounds(lower, upper),
+                                                  motion.policy.gains[stage]);
   return {.constant = std::isnan(constant) ? kInfinity : constant,
           .projection = projection_w2(motion, stage, region),
           .leaving = leaving};
@@ -112,4 +112,4 @@ std::vector<StageBudget> error_budget(const PredictedMotion& motion) {
   return budgets;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -7,7 +7,7 @@
 
 #include "controller/prediction/prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// W2 error of one stage. `total` bounds the distance between the law of the state and the
 /// particles; belief, noise, compression and model say what each source alone would give (their
@@ -38,4 +38,4 @@ struct StageBudget {
 /// inequality. W_projection is what particles outside of their region cost, zero as a rule.
 [[nodiscard]] std::vector<StageBudget> error_budget(const PredictedMotion& motion);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 
 #include "controller/certification/statistical_linearisation.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// A norm of one coordinate.
@@ -53,4 +53,4 @@ TruncatedError truncate_error(const ModelError& error, Eigen::Index count, doubl
   return cut;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -7,7 +7,7 @@
 #include "controller/certification/stage_error.hpp"
 #include "controller/prediction/model_error.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Norms of a model error less its offset, unknown ones infinite, and a size that it exceeds in no
 /// coordinate but with a probability of at most `outside`.
@@ -24,4 +24,4 @@ struct TruncatedError {
 [[nodiscard]] TruncatedError truncate_error(const ModelError& error, Eigen::Index count,
                                             double reach);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -2,7 +2,7 @@
 
 #include "controller/measure/normal/normal_norms.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 HigherOrderNorms norms_of_order(int order) {
@@ -22,4 +22,4 @@ const HigherOrderNorms& higher_order_norms(std::size_t k) {
   return table[k];
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

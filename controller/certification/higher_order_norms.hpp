@@ -3,7 +3,7 @@
 
 #include "controller/measure/normal/norm_orders.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// The norms of polynomials of a standard normal Z that bounds of order p = kHigherOrders[k] need.
 struct HigherOrderNorms {
@@ -18,4 +18,4 @@ struct HigherOrderNorms {
 /// Worked out once. k < kHigherOrders.size().
 [[nodiscard]] const HigherOrderNorms& higher_order_norms(std::size_t k);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

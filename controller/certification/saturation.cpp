@@ -9,7 +9,7 @@
 
 #include "controller/measure/normal/normal_distribution.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Relative to the terms of a difference: what cancellation between them can leave.
@@ -173,4 +173,4 @@ double largest_saturation_residual(const SaturationFit& fit, double mean, double
   return largest;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 
 #include "controller/certification/higher_order_norms.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// sat(ℓ) = mean + slope (ℓ − E ℓ) + q for ℓ ~ N(m, s²), with E q = 0 and E[q (ℓ − m)] = 0.
 struct SaturationFit {
@@ -29,4 +29,4 @@ struct SaturationFit {
 [[nodiscard]] double largest_saturation_residual(const SaturationFit& fit, double mean,
                                                  double reach, double lower, double upper);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -10,7 +10,7 @@
 #include "models/constants.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 // Beyond this many standard deviations a normal tail is below 1e-17; it counts as kTailAllowance.
 constexpr double kTail = 8.6;
@@ -74,7 +74,7 @@ Eigen::VectorXd whitened_direction(const Eigen::VectorXd& across,
     offset[j] = across[bounded[j]];
     for (Eigen::Index i = 0; i < count; ++i) marginal(i, j) = covariance(bounded[i], bounded[j]);
   }
-  const Eigen::VectorXd solution = solve_symmetric(marginal, offset);
+  const Eigen::VectorXd solution = models::solve_symmetric(marginal, offset);
   for (Eigen::Index i = 0; i < count; ++i) direction[bounded[i]] = solution[i];
   return direction;
 }
@@ -332,4 +332,4 @@ double smoothed_probability(const GaussianMixture& mixture, const SafeSet& safe_
   return std::min(1.0, best);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

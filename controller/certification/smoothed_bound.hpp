@@ -16,7 +16,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// E(1 − dist(y, [lower, upper])²/t²)₊ for y ~ N(mean, deviation²): at least the value up to
 /// rounding, which is added. lower ≤ upper, either may be infinite; deviation ≥ 0; t > 0.
@@ -71,4 +71,4 @@ struct GaussianMixture {
 [[nodiscard]] double smoothed_probability(const GaussianMixture& mixture, const SafeSet& safe_set,
                                           double radius, double useful_below = 1.0);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

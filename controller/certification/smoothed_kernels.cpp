@@ -13,8 +13,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 // Beyond this many standard deviations a normal tail is below kSoftMassError.
 constexpr double kTailReach = 8.6;
@@ -145,11 +147,11 @@ double estimate_rectangle(const StandardRectangle& rectangle, double correlation
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::controller {
 
 namespace {
 
@@ -191,5 +193,5 @@ double rectangle_estimate(const StandardRectangle& rectangle, double correlation
                                                   rule.weights.data());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 #endif

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// An interval and the spread of a normal variable, as seen from the variable's mean.
 struct SoftInterval {
@@ -39,4 +39,4 @@ inline constexpr double kSoftMomentError = 2.5e-14;
 /// The probabilities in which an interval and what is before its two ends lie: six values of Φ.
 inline constexpr double kSoftMassError = 8e-15;
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -7,7 +7,7 @@
 
 #include "controller/measure/normal/norm_orders.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// What is known of an error e, coordinate by coordinate: a row each, and a column for each way of
 /// measuring it.
@@ -35,4 +35,4 @@ struct StageError {
   [[nodiscard]] auto largest() const { return bounds.col(kColumns - 1); }
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

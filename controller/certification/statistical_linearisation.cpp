@@ -8,7 +8,7 @@
 #include "controller/measure/normal/normal_distribution.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 /// z = (x, u): the box of a stage and how far its points are from the centre of the expansion.
 struct Neighbourhood {
@@ -144,7 +144,8 @@ Eigen::MatrixXd deviation(const Eigen::MatrixXd& lower, const Eigen::MatrixXd& u
 
 /// Largest size of every entry of ∂f/∂x + ∂f/∂u diag(s) K over the bounds and all slopes
 /// 0 ≤ s ≤ 1 of the clamp.
-Eigen::MatrixXd closed_loop_growth(const DerivativeBounds& bounds, const Eigen::MatrixXd& gain) {
+Eigen::MatrixXd closed_loop_growth(const models::DerivativeBounds& bounds,
+                                   const Eigen::MatrixXd& gain) {
   const Eigen::Index states = gain.cols();
   Eigen::MatrixXd lower = bounds.jacobian_lower.leftCols(states);
   Eigen::MatrixXd upper = bounds.jacobian_upper.leftCols(states);
@@ -163,19 +164,19 @@ void fit_by_derivatives(const PredictedMotion& motion, const Gaussian& law,
                         const Neighbourhood& near, StatisticalLinearisation& fit) {
   const Eigen::Index states = law.mean.size();
   const Eigen::Index count = gain.rows();
-  StateBatch centre = law.mean;
-  StateBatch input(count, 1);
+  models::StateBatch centre = law.mean;
+  models::StateBatch input(count, 1);
   Eigen::VectorXd slopes(count);
   for (Eigen::Index b = 0; b < count; ++b) {
     input(b, 0) = inputs[b].saturation.mean;
     slopes[b] = inputs[b].saturation.slope;
   }
-  StateBatch next(states, 1);
+  models::StateBatch next(states, 1);
   motion.dynamics.step(centre, input, next);
   Eigen::MatrixXd by_state(states, states);
   Eigen::MatrixXd by_input(states, count);
   motion.dynamics.jacobians(centre.col(0), input.col(0), by_state, by_input);
-  const DerivativeBounds bounds = motion.dynamics.derivative_bounds(near.lower, near.upper);
+  const models::DerivativeBounds bounds = motion.dynamics.derivative_bounds(near.lower, near.upper);
   const Moments moments = moments_of(law, gain, inputs);
 
   fit.transition = by_state + by_input * slopes.asDiagonal() * gain;
@@ -261,10 +262,10 @@ std::vector<InputLinearisation> linearise_inputs(const PredictedMotion& motion, 
   return inputs;
 }
 
-std::vector<bool> affine_coordinates(const Dynamics& dynamics) {
+std::vector<bool> affine_coordinates(const models::Dynamics& dynamics) {
   const int states = dynamics.state_dim();
   const int total = states + dynamics.input_dim();
-  const DerivativeBounds bounds = dynamics.derivative_bounds(
+  const models::DerivativeBounds bounds = dynamics.derivative_bounds(
       Eigen::VectorXd::Constant(total, -kInfinity), Eigen::VectorXd::Constant(total, kInfinity));
   std::vector<bool> affine(total, true);
   for (int a = 0; a < total; ++a) {
@@ -290,7 +291,7 @@ StatisticalLinearisation linearise_stage(const PredictedMotion& motion, Eigen::I
   fit.closed_form = Eigen::VectorXd::Zero(states);
   fit.region = {.lower = near.lower.head(states), .upper = near.upper.head(states)};
   fit.outside = outside_core(law, inputs, core);
-  if (const std::optional<UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
+  if (const std::optional<models::UnicycleStructure> unicycle = motion.dynamics.unicycle()) {
     fit_unicycle(*unicycle, law,
                  {.gain = gain.row(unicycle->input),
                   .saturation = inputs[unicycle->input].saturation,
@@ -315,4 +316,4 @@ StatisticalLinearisation linearise_stage(const PredictedMotion& motion, Eigen::I
   return fit;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -14,7 +14,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// The affine map z ↦ next_mean + transition (z − m) about the law N(m, S) of a stage, and the
 /// residual r(x) = f(x, u(x)) − map(x).
@@ -50,7 +50,7 @@ struct InputLinearisation {
 
 /// Which coordinates of (x, u) f depends on in an affine way with constant coefficients,
 /// everywhere.
-[[nodiscard]] std::vector<bool> affine_coordinates(const Dynamics& dynamics);
+[[nodiscard]] std::vector<bool> affine_coordinates(const models::Dynamics& dynamics);
 
 /// How far a core reaches: in which coordinates of (x, u), as `affine_coordinates` says, and how
 /// many standard deviations. A wide one is hardly ever left (4e-8 in each coordinate); a narrow one
@@ -68,4 +68,4 @@ inline constexpr double kNarrowCore = 3.5;
     const PredictedMotion& motion, Eigen::Index stage, const Gaussian& law, const StageError& error,
     const std::vector<InputLinearisation>& inputs, const CoreShape& core);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

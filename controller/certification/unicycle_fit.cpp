@@ -6,7 +6,7 @@
 
 #include "controller/certification/unicycle_residual.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// max |sin δ| over |δ| ≤ reach.
@@ -33,7 +33,7 @@ HeadingNorms heading_norms(double variance, std::size_t k) {
 }
 
 /// The map, and what of its residual is known exactly.
-void fit_map(const UnicycleStructure& unicycle, const Gaussian& law,
+void fit_map(const models::UnicycleStructure& unicycle, const Gaussian& law,
              const UnicycleFeedback& feedback, Eigen::Index inputs, StatisticalLinearisation& fit) {
   const Eigen::Index states = law.mean.size();
   const int heading = unicycle.heading;
@@ -56,7 +56,7 @@ void fit_map(const UnicycleStructure& unicycle, const Gaussian& law,
 }
 
 /// What is known of the residual and of the step's slopes over the region.
-void bound_residual(const UnicycleStructure& unicycle, const Gaussian& law,
+void bound_residual(const models::UnicycleStructure& unicycle, const Gaussian& law,
                     const UnicycleFeedback& feedback, StatisticalLinearisation& fit) {
   const Eigen::Index states = law.mean.size();
   const int heading = unicycle.heading;
@@ -98,11 +98,11 @@ void bound_residual(const UnicycleStructure& unicycle, const Gaussian& law,
 
 }  // namespace
 
-void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
+void fit_unicycle(const models::UnicycleStructure& unicycle, const Gaussian& law,
                   const UnicycleFeedback& feedback, Eigen::Index inputs,
                   StatisticalLinearisation& fit) {
   fit_map(unicycle, law, feedback, inputs, fit);
   bound_residual(unicycle, law, feedback, fit);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -9,7 +9,7 @@
 #include "controller/measure/measures.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// The feedback that steers a unicycle, and how far its heading may be from the mean.
 struct UnicycleFeedback {
@@ -20,8 +20,8 @@ struct UnicycleFeedback {
 
 /// Fills `fit` for the step of `unicycle` from `law`, but for what the clamp leaves: e^{iφ} by its
 /// best affine fit e^{im − v/2}(1 + i(φ − m)). The vectors of `fit` come zero, of size n.
-void fit_unicycle(const UnicycleStructure& unicycle, const Gaussian& law,
+void fit_unicycle(const models::UnicycleStructure& unicycle, const Gaussian& law,
                   const UnicycleFeedback& feedback, Eigen::Index inputs,
                   StatisticalLinearisation& fit);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <complex>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Below this exponent five terms of the series are exact to rounding, and e^c − 1 − c is not.
@@ -39,7 +39,7 @@ Eigen::Matrix2d residual_moments(double mean_i, double variance_i, double mean_j
   return 0.5 * moments;
 }
 
-UnicycleResidual::UnicycleResidual(const UnicycleStructure& unicycle, Eigen::Index dim,
+UnicycleResidual::UnicycleResidual(const models::UnicycleStructure& unicycle, Eigen::Index dim,
                                    Eigen::Index stages)
     : unicycle_(unicycle),
       past_(dim, 3 * stages),
@@ -78,4 +78,4 @@ Eigen::VectorXd UnicycleResidual::root_mean_squares() const {
   return second_moment_.diagonal().cwiseMax(0.0).cwiseSqrt();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

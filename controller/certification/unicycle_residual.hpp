@@ -12,7 +12,7 @@
 #include "controller/measure/measures.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// E[ρ_i ρ_jᵀ] of the residuals ρ = (Re r, Im r) of two headings with means m, variances v and
 /// covariance c, for a reach of one.
@@ -23,7 +23,8 @@ namespace qsmpc {
 class UnicycleResidual {
  public:
   /// For states of `dim` coordinates and at most `stages` stages.
-  UnicycleResidual(const UnicycleStructure& unicycle, Eigen::Index dim, Eigen::Index stages);
+  UnicycleResidual(const models::UnicycleStructure& unicycle, Eigen::Index dim,
+                   Eigen::Index stages);
 
   /// Adds the residual of a stage with the surrogate's law `law` and its affine map's `transition`.
   /// Takes O(stages) time.
@@ -33,7 +34,7 @@ class UnicycleResidual {
   [[nodiscard]] Eigen::VectorXd root_mean_squares() const;
 
  private:
-  UnicycleStructure unicycle_;
+  models::UnicycleStructure unicycle_;
   std::vector<double> means_;      ///< of the heading at every stage
   std::vector<double> variances_;  ///< of the same
   /// Three columns a stage: Cov(state now, heading then) and the residual of then, as it is now.
@@ -42,4 +43,4 @@ class UnicycleResidual {
   Eigen::MatrixXd second_moment_;  ///< E[κ κᵀ]
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -12,7 +12,7 @@
 #include "controller/measure/normal/normal_distribution.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 // ½ · max over sets A of ∫_A ∂²p for a standard normal density p: a quarter of E|Z² − 1|, which is
 // 4φ(1); rounded up.
@@ -378,4 +378,4 @@ double smooth_region_bound(const PerturbedGaussian& state, const UnsafeRegion& p
   return best;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -9,7 +9,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// A part of the unsafe set: a closed box, and the coordinates in which it is bounded.
 struct UnsafeRegion {
@@ -47,4 +47,4 @@ struct PerturbedGaussian {
 /// the least over the part's coordinates and pairs of them.
 [[nodiscard]] double smooth_region_bound(const PerturbedGaussian& state, const UnsafeRegion& part);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

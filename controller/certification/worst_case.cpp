@@ -9,7 +9,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// Moves mass in the order of its unit cost until `budget` is spent; returns the mass moved.
@@ -96,4 +96,4 @@ double thesis_probability(const DiscreteMeasure& measure, const SafeSet& safe_se
                           radius);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

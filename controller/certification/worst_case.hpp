@@ -7,7 +7,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// sup { Q(unsafe) : W2(Q, P) ≤ radius } for P = Σ weights_i δ with the given distances to the
 /// unsafe set (≥ 0; as many as weights). Exact: moving mass m over a distance d costs m d², and
@@ -34,4 +34,4 @@ namespace qsmpc {
 [[nodiscard]] double linear_transport_probability(const DiscreteMeasure& measure,
                                                   const SafeSet& safe_set, double radius);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 constexpr double kRoundingAllowance = 1e-9;  // relative; for numbers that come from files
@@ -26,7 +26,7 @@ void check_gaussian(const Gaussian& gaussian) {
   if (asymmetry.cwiseAbs().maxCoeff() > allowance) {
     throw std::invalid_argument("Gaussian: the covariance is not symmetric");
   }
-  if (symmetric_eigenvalues(gaussian.covariance).minCoeff() < -allowance) {
+  if (models::symmetric_eigenvalues(gaussian.covariance).minCoeff() < -allowance) {
     throw std::invalid_argument("Gaussian: the covariance is not positive semidefinite");
   }
 }
@@ -58,4 +58,4 @@ Eigen::MatrixXd covariance_of(const DiscreteMeasure& measure) {
   return centred * measure.weights.asDiagonal() * centred.transpose();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Points of a discrete measure: one coordinate a row, one point a column.
 using Points = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -37,4 +37,4 @@ void check_measure(const DiscreteMeasure& measure);
 /// Σ π_i (c_i − m)(c_i − m)ᵀ (d x d).
 [[nodiscard]] Eigen::MatrixXd covariance_of(const DiscreteMeasure& measure);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -13,7 +13,7 @@
 
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 using Graph = lemon::SmartDigraph;
@@ -104,7 +104,7 @@ double transport_cost(const Supply& from, const Supply& to) {
 
 /// A matrix R with R Rᵀ = covariance.
 Eigen::MatrixXd root(const Eigen::MatrixXd& covariance) {
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  const models::SymmetricEigen eigen = models::symmetric_eigen(covariance);
   return eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
 }
 
@@ -139,4 +139,4 @@ double wasserstein2(const Gaussian& first, const Gaussian& second) {
   return std::hypot((first.mean - second.mean).norm(), (from - aligned).norm());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 
 #include "controller/measure/measures.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// W2 of two discrete measures in the same space: the transport problem is solved by the network
 /// simplex method, in integers, so that it ends at an optimal plan. Points without weight take no
@@ -29,4 +29,4 @@ inline constexpr Eigen::Index kTransportPairs = 20'000'000;
 /// std::invalid_argument if the dimensions differ or as check_gaussian.
 [[nodiscard]] double wasserstein2(const Gaussian& first, const Gaussian& second);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -8,7 +8,7 @@
 #include "controller/planning/cost/angular_target.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Rounds of "optimise at frozen assignments, then predict with new ones" in one plan.
@@ -50,7 +50,7 @@ void require(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("planner: ") + message);
 }
 
-PlannerSettings checked(PlannerSettings settings, const Dynamics& dynamics) {
+PlannerSettings checked(PlannerSettings settings, const models::Dynamics& dynamics) {
   check_planner_settings(settings, dynamics.state_dim(), dynamics.input_dim());
   return settings;
 }
@@ -64,7 +64,7 @@ PropagatorSettings propagation(const PlannerSettings& settings) {
 
 }  // namespace
 
-Planner::Planner(const Dynamics& dynamics, PlannerSettings settings)
+Planner::Planner(const models::Dynamics& dynamics, PlannerSettings settings)
     : dynamics_(dynamics),
       settings_(checked(std::move(settings), dynamics)),
       weights_(settings_.cost),
@@ -483,4 +483,4 @@ PredictedMotion motion_of(const Planner& planner, const Gaussian& belief, const 
           .prediction = plan.prediction};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

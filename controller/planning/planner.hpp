@@ -32,7 +32,7 @@
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Wall-clock times in milliseconds.
 struct PlanTiming {
@@ -61,7 +61,7 @@ class Planner {
  public:
   /// `dynamics` must outlive the planner. Throws std::invalid_argument on settings that make no
   /// sense: sizes, non-finite entries, unknown names, a horizon below 1.
-  Planner(const Dynamics& dynamics, PlannerSettings settings);
+  Planner(const models::Dynamics& dynamics, PlannerSettings settings);
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
   Planner(Planner&&) = delete;
@@ -92,7 +92,7 @@ class Planner {
 
   [[nodiscard]] const PlannerSettings& settings() const { return settings_; }
   [[nodiscard]] const Propagator& propagator() const { return *propagator_; }
-  [[nodiscard]] const Dynamics& dynamics() const { return dynamics_; }
+  [[nodiscard]] const models::Dynamics& dynamics() const { return dynamics_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -138,7 +138,7 @@ class Planner {
   static void flatten(const Policy& policy, Eigen::VectorXd& z);
   [[nodiscard]] bool better(const Plan& plan, const Plan& other) const;
 
-  const Dynamics& dynamics_;
+  const models::Dynamics& dynamics_;
   PlannerSettings settings_;
   QuadraticCost weights_;            // the cost about the target that is nearest to the belief
   bool constrained_;                 // whether the solver takes constraints
@@ -175,4 +175,4 @@ class Planner {
 [[nodiscard]] PredictedMotion motion_of(const Planner& planner, const Gaussian& belief,
                                         const Plan& plan);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Relative; what rounding leaves in a symmetric matrix that was computed.
@@ -60,4 +60,4 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
   check_safe_set(settings.safe_set);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

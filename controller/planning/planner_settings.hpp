@@ -14,7 +14,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/policy.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 struct PlannerSettings {
   int horizon = 8;
@@ -46,4 +46,4 @@ struct PlannerSettings {
 /// sizes, non-finite entries, a horizon below 1. Names are checked by those who know them.
 void check_planner_settings(const PlannerSettings& settings, int state_dim, int input_dim);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

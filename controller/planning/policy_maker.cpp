@@ -1,9 +1,9 @@
 #include "controller/planning/policy_maker.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 // The curvature of the cost: ½ x'Qx, u'Ru and x'Px have the Hessians Q, 2R and 2P.
-PolicyMaker::PolicyMaker(const Dynamics& dynamics, const PlannerSettings& settings)
+PolicyMaker::PolicyMaker(const models::Dynamics& dynamics, const PlannerSettings& settings)
     : dynamics_(dynamics),
       settings_(settings),
       weights_{.state = settings.cost.state,
@@ -29,4 +29,4 @@ void PolicyMaker::make(const Eigen::Ref<const Eigen::VectorXd>& start,
   for (Eigen::MatrixXd& gain : out.gains) gain += gain_change;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -7,12 +7,12 @@
 #include "controller/prediction/policy.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class PolicyMaker {
  public:
   /// Refers to both.
-  PolicyMaker(const Dynamics& dynamics, const PlannerSettings& settings);
+  PolicyMaker(const models::Dynamics& dynamics, const PlannerSettings& settings);
 
   /// The policy about the noise-free trajectory from `start` (state_dim) under `inputs` (input_dim
   /// x horizon), with `gain_change` (input_dim x state_dim) added to the gains of all stages;
@@ -22,10 +22,10 @@ class PolicyMaker {
             Policy& out);
 
  private:
-  const Dynamics& dynamics_;
+  const models::Dynamics& dynamics_;
   const PlannerSettings& settings_;
   LqrWeights weights_;
   LqrScratch scratch_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -7,7 +7,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 void check_box(const Box& box, Eigen::Index dim, const std::string& name) {
@@ -90,4 +90,4 @@ Eigen::VectorXd clearances(const Points& points, const SafeSet& safe_set) {
   return least.matrix();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

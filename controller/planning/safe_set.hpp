@@ -10,7 +10,7 @@
 
 #include "controller/measure/measures.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// An axis-aligned box; ±infinity where a coordinate is not restricted.
 struct Box {
@@ -50,4 +50,4 @@ void check_safe_set(const SafeSet& safe_set);
 /// The clearances of all points (dim x n); −infinity where a coordinate is not finite.
 [[nodiscard]] Eigen::VectorXd clearances(const Points& points, const SafeSet& safe_set);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// (mean |value|^order)^{1/order} row by row, scaled so that no power over- or underflows.
@@ -64,4 +64,4 @@ ModelError widened(ModelError error, double factor) {
   return error;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

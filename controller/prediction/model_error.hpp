@@ -15,7 +15,7 @@
 
 #include "controller/measure/normal/norm_orders.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 struct ModelError {
   Eigen::VectorXd mean;              ///< n, information only; empty where unknown
@@ -50,4 +50,4 @@ struct ModelError {
 /// means, covariances and offsets stay what they are.
 [[nodiscard]] ModelError widened(ModelError error, double factor);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

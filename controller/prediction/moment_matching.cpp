@@ -7,7 +7,7 @@
 
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Eigenvalues below this fraction of the largest are rounding.
@@ -28,7 +28,9 @@ SmallEigen eigen_of(const SmallMatrix& matrix) {
   return {.values = solver.eigenvalues(), .vectors = solver.eigenvectors()};
 }
 
-SymmetricEigen eigen_of(const Eigen::MatrixXd& matrix) { return symmetric_eigen(matrix); }
+models::SymmetricEigen eigen_of(const Eigen::MatrixXd& matrix) {
+  return models::symmetric_eigen(matrix);
+}
 
 template <class Matrix>
 Matrix symmetric(const Matrix& matrix) {
@@ -93,4 +95,4 @@ double spread_w2(const Eigen::MatrixXd& from, const Eigen::MatrixXd& spread) {
   return std::sqrt(std::max(0.0, sum));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// How much a direction is stretched at most. A quantiser with two points along an axis loses a
 /// third of its variance, which a stretch by 1.25 restores; where more than this is asked for, the
@@ -26,4 +26,4 @@ void spread_between(const Eigen::MatrixXd& from, const Eigen::MatrixXd& to, Eige
 /// covariance `from` move under x ↦ m + S (x − m), m their mean.
 [[nodiscard]] double spread_w2(const Eigen::MatrixXd& from, const Eigen::MatrixXd& spread);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

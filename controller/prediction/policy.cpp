@@ -1,6 +1,6 @@
 #include "controller/prediction/policy.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
                              const Eigen::Ref<const Eigen::VectorXd>& state) {
@@ -9,8 +9,8 @@ Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
   return wanted.cwiseMax(policy.bounds.lower).cwiseMin(policy.bounds.upper);
 }
 
-void policy_inputs(const Policy& policy, Eigen::Index stage, const Dynamics::BatchView& states,
-                   Dynamics::BatchOut out) {
+void policy_inputs(const Policy& policy, Eigen::Index stage,
+                   const models::Dynamics::BatchView& states, models::Dynamics::BatchOut out) {
   const Eigen::MatrixXd& gain = policy.gains[stage];
   for (Eigen::Index input = 0; input < out.rows(); ++input) {
     auto row = out.row(input).array();
@@ -24,19 +24,20 @@ void policy_inputs(const Policy& policy, Eigen::Index stage, const Dynamics::Bat
   }
 }
 
-void nominal_states(const Dynamics& dynamics, const Eigen::Ref<const Eigen::VectorXd>& start,
+void nominal_states(const models::Dynamics& dynamics,
+                    const Eigen::Ref<const Eigen::VectorXd>& start,
                     const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::MatrixXd& out) {
   out.resize(start.size(), inputs.cols() + 1);
   out.col(0) = start;
   for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
-    using View = Eigen::Map<const StateBatch>;
+    using View = Eigen::Map<const models::StateBatch>;
     dynamics.step(View(out.col(k).data(), out.rows(), 1),
                   View(inputs.col(k).data(), inputs.rows(), 1),
-                  Eigen::Map<StateBatch>(out.col(k + 1).data(), out.rows(), 1));
+                  Eigen::Map<models::StateBatch>(out.col(k + 1).data(), out.rows(), 1));
   }
 }
 
-Eigen::MatrixXd nominal_states(const Dynamics& dynamics,
+Eigen::MatrixXd nominal_states(const models::Dynamics& dynamics,
                                const Eigen::Ref<const Eigen::VectorXd>& start,
                                const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   Eigen::MatrixXd states;
@@ -44,7 +45,7 @@ Eigen::MatrixXd nominal_states(const Dynamics& dynamics,
   return states;
 }
 
-void lqr_gains(const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
+void lqr_gains(const models::Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
                const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights,
                LqrScratch& scratch, std::vector<Eigen::MatrixXd>& gains) {
   LqrScratch& s = scratch;
@@ -73,7 +74,7 @@ void lqr_gains(const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>
   }
 }
 
-std::vector<Eigen::MatrixXd> lqr_gains(const Dynamics& dynamics,
+std::vector<Eigen::MatrixXd> lqr_gains(const models::Dynamics& dynamics,
                                        const Eigen::Ref<const Eigen::MatrixXd>& states,
                                        const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                        const LqrWeights& weights) {
@@ -83,4 +84,4 @@ std::vector<Eigen::MatrixXd> lqr_gains(const Dynamics& dynamics,
   return gains;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -11,7 +11,7 @@
 #include "controller/measure/measures.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Closed interval of each input.
 struct InputBounds {
@@ -33,16 +33,17 @@ struct Policy {
                                            const Eigen::Ref<const Eigen::VectorXd>& state);
 
 /// The same for every column of `states` (state_dim x n), written to `out` (input_dim x n).
-void policy_inputs(const Policy& policy, Eigen::Index stage, const Dynamics::BatchView& states,
-                   Dynamics::BatchOut out);
+void policy_inputs(const Policy& policy, Eigen::Index stage,
+                   const models::Dynamics::BatchView& states, models::Dynamics::BatchOut out);
 
 /// x̄_0 = start, x̄_{k+1} = f(x̄_k, v_k): state_dim x (horizon + 1).
-[[nodiscard]] Eigen::MatrixXd nominal_states(const Dynamics& dynamics,
+[[nodiscard]] Eigen::MatrixXd nominal_states(const models::Dynamics& dynamics,
                                              const Eigen::Ref<const Eigen::VectorXd>& start,
                                              const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
 /// The same, written to `out`, whose storage is reused.
-void nominal_states(const Dynamics& dynamics, const Eigen::Ref<const Eigen::VectorXd>& start,
+void nominal_states(const models::Dynamics& dynamics,
+                    const Eigen::Ref<const Eigen::VectorXd>& start,
                     const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::MatrixXd& out);
 
 /// Weights of ½ xᵀQx + ½ uᵀRu, summed over the stages, + ½ xᵀPx at the end.
@@ -55,7 +56,7 @@ struct LqrWeights {
 /// Gains of the time-varying linear-quadratic regulator about the trajectory (states, inputs), by
 /// the Riccati recursion: K = −(R + BᵀPB)⁻¹BᵀPA. Not finite where the linearisation is not.
 [[nodiscard]] std::vector<Eigen::MatrixXd> lqr_gains(
-    const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
+    const models::Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
     const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights);
 
 /// What the recursion works on, so that the next one allocates nothing.
@@ -71,8 +72,8 @@ struct LqrScratch {
 };
 
 /// The same, written to `gains`, whose storage is reused.
-void lqr_gains(const Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
+void lqr_gains(const models::Dynamics& dynamics, const Eigen::Ref<const Eigen::MatrixXd>& states,
                const Eigen::Ref<const Eigen::MatrixXd>& inputs, const LqrWeights& weights,
                LqrScratch& scratch, std::vector<Eigen::MatrixXd>& gains);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -2,15 +2,16 @@
 
 #include "controller/storage.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
-using Span = Eigen::Map<StateBatch>;
+using Span = Eigen::Map<models::StateBatch>;
 
 /// stepped = f(x, u) for the particles of stage k, which are packed as well unless nothing is to
 /// be compressed.
-void step_stage(const Dynamics& dynamics, const DiscreteMeasure& stage, const Policy& policy,
-                Eigen::Index k, const Executor& run, PredictionScratch& scratch, Points& stepped) {
+void step_stage(const models::Dynamics& dynamics, const DiscreteMeasure& stage,
+                const Policy& policy, Eigen::Index k, const Executor& run,
+                PredictionScratch& scratch, Points& stepped) {
   const Eigen::Index inputs = policy.inputs.rows();
   stepped.resize(stage.dim(), stage.size());
   const std::size_t room = static_cast<std::size_t>(inputs * stage.size());
@@ -29,7 +30,7 @@ void step_stage(const Dynamics& dynamics, const DiscreteMeasure& stage, const Po
 
 }  // namespace
 
-void predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
+void predict(const models::Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
              const Policy& policy, const Executor& run, PredictionScratch& scratch,
              Prediction& out) {
   const Eigen::Index horizon = policy.horizon();
@@ -53,12 +54,12 @@ void predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMea
   }
 }
 
-Prediction predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
-                   const Policy& policy) {
+Prediction predict(const models::Dynamics& dynamics, Propagator& propagator,
+                   const DiscreteMeasure& start, const Policy& policy) {
   PredictionScratch scratch;
   Prediction prediction;
   predict(dynamics, propagator, start, policy, run_in_turn, scratch, prediction);
   return prediction;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -11,7 +11,7 @@
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// The measures along the horizon under one policy.
 struct Prediction {
@@ -28,18 +28,18 @@ struct PredictionScratch {
 
 /// Rolls `start` forward under `policy`, with assignments that suit it, into `out`, whose storage
 /// is reused.
-void predict(const Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
+void predict(const models::Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
              const Policy& policy, const Executor& run, PredictionScratch& scratch,
              Prediction& out);
 
 /// The same as a new value.
-[[nodiscard]] Prediction predict(const Dynamics& dynamics, Propagator& propagator,
+[[nodiscard]] Prediction predict(const models::Dynamics& dynamics, Propagator& propagator,
                                  const DiscreteMeasure& start, const Policy& policy);
 
 /// A prediction with all that it was made from, as certificates need it; refers to objects that
 /// must outlive it.
 struct PredictedMotion {
-  const Dynamics& dynamics;
+  const models::Dynamics& dynamics;
   const Eigen::MatrixXd& noise_covariance;  ///< of the model, state_dim x state_dim
   double noise_w2 = 0.0;                    ///< W2 between the noise and what stands for it
   const Gaussian& belief;                   ///< law of the state at stage 0
@@ -62,4 +62,4 @@ struct PredictedMotion {
   }
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

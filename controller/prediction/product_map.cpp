@@ -5,7 +5,7 @@
 
 #include "controller/storage.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// What clusters of products f_i + d_j consist of; cluster n of mass ρ̃_n.
@@ -126,4 +126,4 @@ StageMap lost_map(const DiscreteMeasure& stepped) {
   return map;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

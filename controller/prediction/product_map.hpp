@@ -7,7 +7,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/prediction/stage_map.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// All sums f_i + d_j of stepped points and noise points (Eq. 4-5); that of i and j stands at
 /// i·m + j, m being the number of noise points.
@@ -30,4 +30,4 @@ void cluster_map(const MixtureCells& cells, Eigen::Index sources, const Executor
 /// The map of stepped points that are not finite: all into one cluster, at infinite cost.
 [[nodiscard]] StageMap lost_map(const DiscreteMeasure& stepped);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -9,7 +9,7 @@
 #include "controller/prediction/moment_matching.hpp"
 #include "controller/prediction/product_map.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 constexpr const char* kMixture = "mixture";
@@ -211,4 +211,4 @@ std::unique_ptr<Propagator> make_propagator(std::string_view name,
   throw std::invalid_argument("no propagator '" + std::string(name) + "'; known are: " + known);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

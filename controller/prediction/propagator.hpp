@@ -17,7 +17,7 @@
 #include "controller/parallel.hpp"
 #include "controller/prediction/stage_map.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class Propagator {
  public:
@@ -61,4 +61,4 @@ struct PropagatorEntry {
 [[nodiscard]] std::unique_ptr<Propagator> make_propagator(std::string_view name,
                                                           const PropagatorSettings& settings);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -13,8 +13,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 // Coordinates that are handled at once, and sums that are under way at the same time, so that one
 // addition need not wait for the one before it.
@@ -115,11 +117,11 @@ void multiply_packed(const SparseMatrix& a, const PackedPoints& points, int begi
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::controller {
 
 HWY_EXPORT(multiply_packed);
 HWY_EXPORT(pack_points);
@@ -199,5 +201,5 @@ void pack(const Points& points, Eigen::Index begin, Eigen::Index end, PackedPoin
   HWY_DYNAMIC_DISPATCH(pack_points)(points, begin, end, packed);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 #endif

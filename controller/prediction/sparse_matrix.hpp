@@ -8,7 +8,7 @@
 #include "controller/parallel.hpp"
 #include "controller/storage.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Row n has the entries begin[n] … begin[n + 1] − 1. Storage is reused where one is written again.
 struct SparseMatrix {
@@ -43,4 +43,4 @@ void pack(const Points& points, Eigen::Index begin, Eigen::Index end, PackedPoin
 /// interleaved parts. out: dim x rows.
 void multiply(const SparseMatrix& a, const PackedPoints& points, int begin, int end, Points& out);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

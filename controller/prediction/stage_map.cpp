@@ -7,8 +7,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 // Coordinates of a point that are held in registers at once; larger dimensions take Eigen's way.
 constexpr Eigen::Index kHeld = 8;
@@ -55,11 +57,11 @@ void row_sums(const double* weights, const Points& points, double* out) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::controller {
 
 HWY_EXPORT(affine_in_place);
 HWY_EXPORT(add_weights);
@@ -158,5 +160,5 @@ void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& step
   pullback_shares(map, unspread, packed, 0, stepped_adjoint.cols(), stepped_adjoint);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 #endif

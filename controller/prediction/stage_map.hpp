@@ -12,7 +12,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/prediction/sparse_matrix.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// c̃_n = m + S (Σ_i A_ni f_i + b_n − m), with the weights ρ̃_n of the c̃_n and their mean
 /// m = Σ_n ρ̃_n (Σ_i A_ni f_i + b_n).
@@ -51,4 +51,4 @@ void pullback_spread(const StageMap& map, Points& adjoint);
 void pullback_shares(const StageMap& map, const Points& adjoint, const PackedPoints& packed,
                      Eigen::Index begin, Eigen::Index end, Points& stepped_adjoint);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -8,7 +8,7 @@
 
 #include "harness/text/number_parse.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::string_view kTo = " to ";
@@ -62,4 +62,4 @@ std::string traces_text(const Campaign& campaign) {
   return fmt::format("{}, sample {}", name, campaign.trace_sample);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

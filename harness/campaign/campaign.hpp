@@ -7,7 +7,7 @@
 
 #include "harness/scenario/scenario.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Which episodes keep their trace file. A failure is an episode that did not reach the target, or
 /// whose true state entered the unsafe set.
@@ -80,4 +80,4 @@ struct Campaign {
 /// "none", "all", or "failures, sample N".
 [[nodiscard]] std::string traces_text(const Campaign& campaign);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

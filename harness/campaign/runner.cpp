@@ -20,7 +20,7 @@
 #include "harness/threads/workers.hpp"
 #include "harness/trace/trace_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -209,4 +209,4 @@ CampaignProgress run_campaign(const Campaign& campaign, const std::string& folde
   return progress;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/campaign/campaign.hpp"
 #include "harness/campaign/store/store.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// How far a campaign is.
 struct CampaignProgress {
@@ -45,4 +45,4 @@ struct CampaignOptions {
 [[nodiscard]] CampaignProgress run_campaign(const Campaign& campaign, const std::string& folder,
                                             const CampaignOptions& options);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

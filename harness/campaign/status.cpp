@@ -10,7 +10,7 @@
 #include "harness/text/json_text.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kWindow = 60.0;  // s, over which the rate is taken
@@ -112,4 +112,4 @@ std::string duration_text(double seconds) {
   return two(kDay, "d", kHour, "h");
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

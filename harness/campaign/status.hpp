@@ -10,7 +10,7 @@
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct CampaignStatus {
   StoredCampaign campaign;
@@ -35,4 +35,4 @@ struct CampaignStatus {
 /// "850 ms", "12 s", "1 min 20 s", "3 h 5 min": seconds ≥ 0 in its two largest units.
 [[nodiscard]] std::string duration_text(double seconds);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

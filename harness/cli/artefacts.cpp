@@ -18,7 +18,7 @@
 #include "harness/trace/trace_file.hpp"
 #include "render/gl/gl_library.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string in_folder(const std::string& folder, const std::string& file) {
@@ -33,7 +33,7 @@ std::string row(const std::string& name, const std::string& value) {
 
 void discard_artefacts(const std::string& folder) {
   std::vector<std::string> files{kSummaryFile, kVideoNumbersFile, kPageFile};
-  for (const std::string& format : video_format_names()) {
+  for (const std::string& format : render::video_format_names()) {
     files.push_back("episode." + format);
   }
   for (const std::string& file : files) {
@@ -43,7 +43,7 @@ void discard_artefacts(const std::string& folder) {
 
 void choose_gl(const std::string& name) {
   try {
-    use_gl(name);
+    render::use_gl(name);
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
   }
@@ -51,7 +51,7 @@ void choose_gl(const std::string& name) {
 
 std::string why_no_gl() {
   try {
-    use_gl("auto");
+    render::use_gl("auto");
     return "";
   } catch (const std::runtime_error& error) {
     return error.what();
@@ -93,7 +93,7 @@ void make_still(const Trace& trace, const std::string& path, const EpisodeVideoO
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
   }
-  if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n", gl_description());
+  if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n", render::gl_description());
 }
 
 void write_summary(const Trace& trace, const std::string& folder, bool with_video) {
@@ -157,4 +157,4 @@ Trace read_folder(const std::string& folder) {
   return read_trace(path);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include "harness/trace/trace.hpp"
 #include "harness/video/episode_video.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr const char* kSummaryFile = "summary.json";
 inline constexpr const char* kVideoFile = "episode.mp4";
@@ -58,4 +58,4 @@ void write_page(const Trace& trace, const std::string& folder, bool with_video);
 /// Reads the trace in `folder`, or its partial file where an episode was killed. Throws InputError.
 [[nodiscard]] Trace read_folder(const std::string& folder);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

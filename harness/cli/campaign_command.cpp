@@ -25,7 +25,7 @@
 #include "harness/text/number_parse.hpp"
 #include "harness/threads/workers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kCampaignHelp =
@@ -156,4 +156,4 @@ void add_campaign_command(CLI::App& app, int& exit_code) {
   });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -23,7 +23,7 @@
 #include "harness/trace/hdf5_file.hpp"
 #include "harness/trace/trace_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kVariantFolder = "variants";
@@ -195,4 +195,4 @@ bool make_worst_episodes(const std::string& folder, std::size_t count, bool quie
   return interrupts() == 0;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/campaign/store/store_reader.hpp"
 #include "harness/report/campaign_page.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The `count` worst episodes of the campaign in `folder`, each with the files that there are of it
 /// and the commands, to be typed in that folder, that make those which are missing. The resolved
@@ -26,4 +26,4 @@ namespace qsmpc {
 /// campaign is at work or nothing can be written.
 [[nodiscard]] bool make_worst_episodes(const std::string& folder, std::size_t count, bool quiet);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

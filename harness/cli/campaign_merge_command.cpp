@@ -13,7 +13,7 @@
 #include "harness/files/atomic_file.hpp"
 #include "harness/files/text_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 struct MergeArguments {
@@ -48,4 +48,4 @@ void add_campaign_merge_command(CLI::App& campaign, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = merge(*arguments); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,7 +17,7 @@
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/campaign_page.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kNumbersFile = "campaign.json";
@@ -84,4 +84,4 @@ bool asked_to_tell(const std::vector<std::string>& fail_on, const CampaignStatis
   });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 
 #include "harness/campaign/statistics/statistics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The campaign file as it was given, in the campaign's folder.
 inline constexpr const char* kCampaignCopy = "campaign.yaml";
@@ -29,4 +29,4 @@ void print_campaign_results(const CampaignStatistics& statistics, const std::str
 [[nodiscard]] bool asked_to_tell(const std::vector<std::string>& fail_on,
                                  const CampaignStatistics& statistics);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

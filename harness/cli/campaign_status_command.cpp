@@ -8,7 +8,7 @@
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 void add_campaign_status_command(CLI::App& campaign, int& exit_code) {
   CLI::App* command = campaign.add_subcommand(
@@ -25,4 +25,4 @@ void add_campaign_status_command(CLI::App& campaign, int& exit_code) {
   });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@ namespace CLI {
 class App;
 }
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 void add_run_command(CLI::App& app, int& exit_code);
 void add_predict_command(CLI::App& app, int& exit_code);
@@ -21,4 +21,4 @@ void add_report_command(CLI::App& app, int& exit_code);
 void add_list_command(CLI::App& app, int& exit_code);
 void add_validate_command(CLI::App& app, int& exit_code);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

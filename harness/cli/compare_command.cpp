@@ -29,7 +29,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kCompareHelp =
@@ -158,4 +158,4 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = compare(*arguments); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

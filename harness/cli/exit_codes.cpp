@@ -7,7 +7,7 @@
 #include "harness/errors.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // One line, however long an error's own text is.
@@ -36,4 +36,4 @@ int report_exception(const std::exception_ptr& exception) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -3,7 +3,7 @@
 
 #include <exception>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 enum ExitCode : int {
   kDone = 0,
@@ -17,4 +17,4 @@ enum ExitCode : int {
 /// Prints the exception in one line on standard error and returns its exit code.
 [[nodiscard]] int report_exception(const std::exception_ptr& exception);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,7 +2,7 @@
 
 #include <csignal>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 volatile std::sig_atomic_t signals_seen = 0;
@@ -24,4 +24,4 @@ void catch_interrupts() {
 
 int interrupts() { return signals_seen; }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -1,7 +1,7 @@
 // Ctrl-C: the first asks the running work to end and keep what is done, a second to hurry.
 #pragma once
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Counts SIGINT and SIGTERM from now on instead of ending the process. To be called once.
 void catch_interrupts();
@@ -9,4 +9,4 @@ void catch_interrupts();
 /// How often the process was asked to stop.
 [[nodiscard]] int interrupts();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -18,7 +18,7 @@
 #include "harness/text/json_text.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 struct Item {
@@ -52,12 +52,12 @@ std::vector<Table> tables() {
   for (const ShippedCampaign& campaign : shipped_campaigns()) {
     campaigns.items.push_back({campaign.name, campaign.description});
   }
-  return {make_table("systems", systems()),
+  return {make_table("systems", models::systems()),
           all_plants,
-          make_table("solvers", solvers()),
-          make_table("boundings", input_boundings()),
-          make_table("propagators", propagators()),
-          make_table("quantisers", quantisers()),
+          make_table("solvers", controller::solvers()),
+          make_table("boundings", controller::input_boundings()),
+          make_table("propagators", controller::propagators()),
+          make_table("quantisers", controller::quantisers()),
           scenarios,
           campaigns};
 }
@@ -110,4 +110,4 @@ void add_list_command(CLI::App& app, int& exit_code) {
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -1,3 +1,3 @@
 #include "harness/cli/program.hpp"
 
-int main(int argc, char** argv) { return qsmpc::run_program(argc, argv); }
+int main(int argc, char** argv) { return qsmpc::harness::run_program(argc, argv); }

@@ -7,7 +7,7 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 std::string default_folder(const std::string& name, const std::string& suffix) {
   std::string plain_name = name;
@@ -26,4 +26,4 @@ void print_result(const std::string& text) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

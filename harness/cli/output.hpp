@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// "out/NAME-SUFFIX", with what does not belong in a file name replaced in `name`.
 [[nodiscard]] std::string default_folder(const std::string& name, const std::string& suffix);
@@ -12,4 +12,4 @@ namespace qsmpc {
 /// disk.
 void print_result(const std::string& text);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -24,7 +24,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/value_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kPredictHelp =
@@ -140,4 +140,4 @@ void add_predict_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = predict(*arguments); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

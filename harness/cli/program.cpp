@@ -13,7 +13,7 @@
 #include "harness/text/printable.hpp"
 #include "harness/version.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 int parse_and_run(int argc, char** argv) {
@@ -59,4 +59,4 @@ int run_program(int argc, char** argv) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

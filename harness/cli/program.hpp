@@ -1,10 +1,10 @@
 // The command-line program: parses, calls, prints, and returns an exit code.
 #pragma once
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Runs the program with `argv` as `main` gets it; returns the process's exit code and never
 /// throws.
 [[nodiscard]] int run_program(int argc, char** argv);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

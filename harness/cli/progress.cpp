@@ -10,7 +10,7 @@
 
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr auto kRedraw = std::chrono::milliseconds(100);
@@ -63,4 +63,4 @@ void Progress::draw_bar(std::int64_t done, std::int64_t total, const std::string
   drawn_ = true;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 class Progress {
  public:
@@ -33,4 +33,4 @@ class Progress {
   Clock::time_point last_{};
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -18,7 +18,7 @@
 #include "harness/scenario/value_checks.hpp"
 #include "render/gl/gl_library.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // What suits a page of documentation; a film in an animated picture is large.
@@ -50,33 +50,34 @@ void set_size(const std::string& text, EpisodeVideoOptions& options) {
   options.height = size->height;
 }
 
-VideoFormat chosen_format(const RenderArguments& arguments) {
-  if (arguments.format) return video_format(*arguments.format).value();  // its option is checked
-  if (arguments.out.empty()) return VideoFormat::kMp4;
-  const std::optional<VideoFormat> format = video_format_of(arguments.out);
+render::VideoFormat chosen_format(const RenderArguments& arguments) {
+  if (arguments.format)
+    return render::video_format(*arguments.format).value();  // its option is checked
+  if (arguments.out.empty()) return render::VideoFormat::kMp4;
+  const std::optional<render::VideoFormat> format = render::video_format_of(arguments.out);
   if (!format) {
     throw InputError({.key = "--out",
                       .found = arguments.out,
                       .expected = fmt::format("a file name that ends with .{}, or --format",
-                                              fmt::join(video_format_names(), ", ."))});
+                                              fmt::join(render::video_format_names(), ", ."))});
   }
   return *format;
 }
 
 void set_format(const RenderArguments& arguments, EpisodeVideoOptions& options) {
-  const VideoFormat format = chosen_format(arguments);
+  const render::VideoFormat format = chosen_format(arguments);
   options.format = format;
-  if (is_animated_picture(format)) {
+  if (render::is_animated_picture(format)) {
     options.width = kPictureWidth;
     options.height = kPictureHeight;
     options.fps = kPictureFps;
   }
-  const int most = most_frames_per_second(format);
+  const int most = render::most_frames_per_second(format);
   if (arguments.fps.value_or(1) > most) {
     throw InputError(
         {.key = "--fps",
          .found = fmt::format("{}", *arguments.fps),
-         .expected = fmt::format("at most {} for {}", most, video_format_name(format))});
+         .expected = fmt::format("at most {} for {}", most, render::video_format_name(format))});
   }
 }
 
@@ -115,7 +116,7 @@ std::string output_path(const RenderArguments& arguments, const EpisodeVideoOpti
   if (arguments.still) return fmt::format("{}/still-{:g}.png", arguments.folder, *arguments.still);
   // Two episodes in one video are not the video of either.
   return fmt::format("{}/{}.{}", arguments.folder, arguments.beside ? "beside" : "episode",
-                     video_format_name(*options.format));
+                     render::video_format_name(*options.format));
 }
 
 /// Throws InputError where a still picture would not be a PNG.
@@ -173,7 +174,7 @@ void add_video_options(CLI::App& command, RenderArguments& arguments) {
   command
       .add_option("--quality", video.quality,
                   "0, the smallest file, to 100, the best picture; default: 60")
-      ->check(CLI::Range(0, kBestQuality));
+      ->check(CLI::Range(0, render::kBestQuality));
   command.add_option("--from", video.from, "where the video begins, in seconds of the episode");
   command.add_option("--to", video.to, "where it ends, in seconds of the episode");
   command.add_option("--threads", video.threads, "that draw; default: 2")->check(CLI::Range(1, 64));
@@ -194,7 +195,7 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--format", arguments->format,
                    "mp4, webm, gif or webp; default: by the ending of --out")
-      ->check(CLI::IsMember(video_format_names()));
+      ->check(CLI::IsMember(render::video_format_names()));
   command
       ->add_option("--still", arguments->still,
                    "one picture (PNG) of this second of the episode instead of a video")
@@ -207,10 +208,10 @@ void add_render_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--gl", arguments->gl,
                    "what draws: osmesa, egl, or auto, the first of them that is installed")
-      ->check(CLI::IsMember(gl_names()));
+      ->check(CLI::IsMember(render::gl_names()));
   command->add_flag("--verbose", arguments->verbose, "say what drew and how long it took");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->callback([arguments, &exit_code] { exit_code = render(*arguments); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

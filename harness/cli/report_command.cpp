@@ -20,7 +20,7 @@
 #include "harness/report/comparison_page.hpp"
 #include "harness/report/figure_files.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kMostWorst = 1000;
@@ -94,4 +94,4 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = report(*arguments); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

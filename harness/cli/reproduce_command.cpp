@@ -19,7 +19,7 @@
 #include "harness/reproduction/results_page.hpp"
 #include "harness/reproduction/results_table.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kReproduceHelp =
@@ -117,4 +117,4 @@ void add_reproduce_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = reproduce_command(*arguments); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

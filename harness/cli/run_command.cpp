@@ -25,7 +25,7 @@
 #include "harness/trace/trace_file.hpp"
 #include "render/gl/gl_library.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kRunHelp =
@@ -126,7 +126,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--gl", arguments->gl,
                    "what draws the video: osmesa, egl, or auto, the first that is installed")
-      ->check(CLI::IsMember(gl_names()));
+      ->check(CLI::IsMember(render::gl_names()));
   command->add_flag("--verbose", arguments->verbose,
                     "say what drew the video and how long it took");
   command->add_flag("--quiet", arguments->quiet, "no progress");
@@ -134,4 +134,4 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->callback([arguments, &exit_code] { exit_code = run(*arguments); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

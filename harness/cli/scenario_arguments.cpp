@@ -1,6 +1,6 @@
 #include "harness/cli/scenario_arguments.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 void add_scenario_argument(CLI::App& command, std::string& scenario) {
   command.add_option("scenario", scenario, "a scenario file, or the name of a shipped one")
@@ -12,4 +12,4 @@ void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
       ->allow_extra_args(false);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// SCENARIO, which is required.
 void add_scenario_argument(CLI::App& command, std::string& scenario);
@@ -14,4 +14,4 @@ void add_scenario_argument(CLI::App& command, std::string& scenario);
 /// --set KEY=VALUE, as often as wanted.
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -16,7 +16,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/text/json_text.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Errors = std::vector<InputError::Where>;
@@ -100,4 +100,4 @@ void add_validate_command(CLI::App& app, int& exit_code) {
   command->callback([files, json, &exit_code] { exit_code = validate(*files, *json); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,13 +2,15 @@
 
 #include "harness/threads/executor.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
-std::unique_ptr<const Dynamics> model_of(const Scenario& scenario) {
-  return make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+std::unique_ptr<const models::Dynamics> model_of(const Scenario& scenario) {
+  return models::make_dynamics(scenario.model.system, scenario.model.parameters,
+                               scenario.time_step);
 }
 
-PredictedMotion of_plant(PredictedMotion motion, const Scenario& scenario, Eigen::Index period) {
+controller::PredictedMotion of_plant(controller::PredictedMotion motion, const Scenario& scenario,
+                                     Eigen::Index period) {
   if (!scenario.model_error) return motion;
   motion.model_error = &*scenario.model_error;
   motion.first_period = period;
@@ -16,10 +18,10 @@ PredictedMotion of_plant(PredictedMotion motion, const Scenario& scenario, Eigen
   return motion;
 }
 
-PlannerSettings planner_settings(const Scenario& scenario) {
+controller::PlannerSettings planner_settings(const Scenario& scenario) {
   const Scenario::Controller& controller = scenario.controller;
   const Scenario::Penalty& penalty = controller.penalty;
-  PlannerSettings settings;
+  controller::PlannerSettings settings;
   settings.horizon = controller.horizon;
   settings.closed_loop = controller.policy == "closed_loop";
   settings.feedback_gain = controller.feedback_gain;
@@ -27,7 +29,7 @@ PlannerSettings planner_settings(const Scenario& scenario) {
   settings.solver = controller.solver;
   settings.input_bounding = controller.input_bounding;
   settings.propagator = controller.propagate_noise ? controller.propagator : "noise_free";
-  settings.quantiser = quantiser_kind(controller.quantisation.quantiser);
+  settings.quantiser = controller::quantiser_kind(controller.quantisation.quantiser);
   settings.state_points = controller.quantisation.state;
   settings.noise_points = controller.quantisation.noise;
   settings.compressed_points = controller.quantisation.compressed;
@@ -40,14 +42,14 @@ PlannerSettings planner_settings(const Scenario& scenario) {
                    .terminal = controller.cost.terminal,
                    .target = scenario.target.state,
                    .angles = scenario.target.angles};
-  settings.penalty = {
-      .shape = penalty.shape == "thesis" ? PenaltyShape::kThesis : PenaltyShape::kSmooth,
-      .box = penalty.box,
-      .obstacle = penalty.obstacle,
-      .length = penalty.length};
+  settings.penalty = {.shape = penalty.shape == "thesis" ? controller::PenaltyShape::kThesis
+                                                         : controller::PenaltyShape::kSmooth,
+                      .box = penalty.box,
+                      .obstacle = penalty.obstacle,
+                      .length = penalty.length};
   settings.safe_set = scenario.safe_set;
   settings.bounds = {.lower = controller.input_lower, .upper = controller.input_upper};
   return settings;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 Trace DriverPool::run(const Scenario& scenario, const EpisodeOptions& options) {
   EpisodeDriver driver = take(scenario);
@@ -35,4 +35,4 @@ void DriverPool::put_back(const Scenario& scenario, EpisodeDriver driver) {
   resting_.pop_front();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Keeps drivers that are at rest, so that the next episode of their scenario need not make one.
 /// May be used by several threads at the same time.
@@ -31,4 +31,4 @@ class DriverPool {
   std::list<std::pair<const Scenario*, EpisodeDriver>> resting_;  // the longest first
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -18,7 +18,7 @@
 #include "harness/trace/trace_file.hpp"
 #include "harness/version.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -33,10 +33,10 @@ double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-bool at_target(const Scenario& scenario, const SystemDescription& description,
+bool at_target(const Scenario& scenario, const models::SystemDescription& description,
                const Eigen::VectorXd& state) {
   const Eigen::VectorXd offset =
-      target_offset(scenario.target.state, scenario.target.angles, state);
+      controller::target_offset(scenario.target.state, scenario.target.angles, state);
   const int x = description.position_x;
   const int y = description.position_y;
   const double distance = x >= 0 && y >= 0 ? std::hypot(offset[x], offset[y]) : offset.norm();
@@ -80,7 +80,7 @@ class EpisodeDriver::Loop {
   }
 
  private:
-  [[nodiscard]] Gaussian first_belief() const {
+  [[nodiscard]] controller::Gaussian first_belief() const {
     return {.mean = scenario_.initial_state.mean, .covariance = scenario_.initial_state.covariance};
   }
 
@@ -96,7 +96,7 @@ class EpisodeDriver::Loop {
 
   /// How the episode ends in the present state, if it does.
   [[nodiscard]] std::optional<Outcome> outcome_now() const {
-    if (scenario_.stop_when_unsafe && clearance(state_, scenario_.safe_set) <= 0.0) {
+    if (scenario_.stop_when_unsafe && controller::clearance(state_, scenario_.safe_set) <= 0.0) {
       return Outcome::kLeftSafeSet;
     }
     if (at_target(scenario_, model_->description(), state_)) return Outcome::kReached;
@@ -127,10 +127,10 @@ class EpisodeDriver::Loop {
   /// Plans and certifies for beliefs like those that will come, and forgets the plans: what is slow
   /// the first time, tables and memory, is then over before the loop begins.
   void rehearse() {
-    const InputBounds& bounds = planner_.settings().bounds;
-    const Gaussian later = predicted(belief_.mean, 0.5 * (bounds.lower + bounds.upper));
+    const controller::InputBounds& bounds = planner_.settings().bounds;
+    const controller::Gaussian later = predicted(belief_.mean, 0.5 * (bounds.lower + bounds.upper));
     for (const Eigen::MatrixXd& covariance : {later.covariance, belief_.covariance}) {
-      const Gaussian belief{.mean = belief_.mean, .covariance = covariance};
+      const controller::Gaussian belief{.mean = belief_.mean, .covariance = covariance};
       for (int n = 0; n < kRehearsals; ++n) {
         const StepRecord record = certified(belief, kRehearsedPeriod, planner_.plan(belief));
         // What takes longer than a period anyway is not to be waited for twice.
@@ -140,14 +140,16 @@ class EpisodeDriver::Loop {
   }
 
   /// The certificates of `plan`, made for `belief` in `period`, and how long both took.
-  [[nodiscard]] StepRecord certified(const Gaussian& belief, int period, const Plan& plan) const {
+  [[nodiscard]] StepRecord certified(const controller::Gaussian& belief, int period,
+                                     const controller::Plan& plan) const {
     const auto start = Clock::now();
     StepRecord record;
-    const PredictedMotion motion = of_plant(motion_of(planner_, belief, plan), scenario_, period);
-    record.budgets = error_budget(motion);
-    const PlannerSettings& settings = planner_.settings();
-    record.certificates =
-        certify(motion, settings.safe_set, record.budgets, CertificateEffort::kLeast, settings.run);
+    const controller::PredictedMotion motion =
+        of_plant(controller::motion_of(planner_, belief, plan), scenario_, period);
+    record.budgets = controller::error_budget(motion);
+    const controller::PlannerSettings& settings = planner_.settings();
+    record.certificates = controller::certify(motion, settings.safe_set, record.budgets,
+                                              controller::CertificateEffort::kLeast, settings.run);
     record.timing.certify = milliseconds_since(start);
     record.timing.quantise = plan.timing.quantise;
     record.timing.propagate = plan.timing.propagate;
@@ -167,12 +169,12 @@ class EpisodeDriver::Loop {
 
   /// Plans for the belief, certifies the plan, and evaluates its first stage at the observed state.
   [[nodiscard]] StepRecord decide(int k) {
-    const Plan& plan = planner_.plan(belief_);
+    const controller::Plan& plan = planner_.plan(belief_);
     StepRecord record = certified(belief_, k, plan);
     record.time = k * scenario_.time_step;
     record.state = state_;
     record.observation = observation(k);
-    record.input = policy_input(plan.policy, 0, record.observation);
+    record.input = controller::policy_input(plan.policy, 0, record.observation);
     const RandomKey key{.seed = options_.plant_seed.value_or(options_.seed),
                         .stream = RandomStream::kDisturbance,
                         .step = static_cast<std::uint64_t>(k)};
@@ -182,7 +184,7 @@ class EpisodeDriver::Loop {
     record.plan_inputs = plan.policy.inputs;
     record.plan_states = plan.policy.states;
     record.cost = plan.cost;
-    record.solver_status = solver_status_name(plan.status);
+    record.solver_status = controller::solver_status_name(plan.status);
     record.fallback = plan.fallback;
     record.iterations = plan.evaluations;
     record.particles = plan.prediction.stages;
@@ -199,13 +201,14 @@ class EpisodeDriver::Loop {
   /// A = ∂f/∂x at (y, u) and R the sensor's covariance. This takes the state to be N(y, R), which
   /// is what y alone says of it, under a flat prior: what was seen before is left out, which a
   /// filter would weigh in. Of f it is the linearisation; without sensor noise it is exact.
-  [[nodiscard]] Gaussian predicted(const Eigen::VectorXd& seen,
-                                   const Eigen::VectorXd& applied) const {
-    const StateBatch state = seen;
-    const StateBatch input = applied;
-    StateBatch next(state.rows(), 1);
+  [[nodiscard]] controller::Gaussian predicted(const Eigen::VectorXd& seen,
+                                               const Eigen::VectorXd& applied) const {
+    const models::StateBatch state = seen;
+    const models::StateBatch input = applied;
+    models::StateBatch next(state.rows(), 1);
     model_->step(state, input, next);
-    Gaussian belief{.mean = next.col(0), .covariance = scenario_.disturbance.covariance};
+    controller::Gaussian belief{.mean = next.col(0),
+                                .covariance = scenario_.disturbance.covariance};
     const Eigen::MatrixXd& sensor = scenario_.disturbance.sensor;
     if (sensor.isZero(0.0)) return belief;
     Eigen::MatrixXd by_state(seen.size(), seen.size());
@@ -217,14 +220,14 @@ class EpisodeDriver::Loop {
   }
 
   const Scenario& scenario_;
-  std::unique_ptr<const Dynamics> model_;
-  Planner planner_;
+  std::unique_ptr<const models::Dynamics> model_;
+  controller::Planner planner_;
   GaussianSampler disturbance_;
   GaussianSampler sensor_;
   // Of the episode at hand.
   EpisodeOptions options_;
   std::unique_ptr<Plant> plant_;
-  Gaussian belief_;
+  controller::Gaussian belief_;
   Eigen::VectorXd state_;
 };
 
@@ -249,4 +252,4 @@ Trace run_episode(const Scenario& scenario, const EpisodeOptions& options) {
   return EpisodeDriver(scenario).run(options);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

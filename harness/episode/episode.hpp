@@ -19,7 +19,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 class TraceWriter;
 
@@ -64,4 +64,4 @@ class EpisodeDriver {
 /// Runs one episode, with a driver of its own. Throws as EpisodeDriver and its `run`.
 [[nodiscard]] Trace run_episode(const Scenario& scenario, const EpisodeOptions& options);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

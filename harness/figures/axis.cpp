@@ -6,7 +6,7 @@
 
 #include "harness/text/number_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kLargestDrawable = 1e100;
@@ -116,4 +116,4 @@ double position_on(const Axis& axis, double value) {
   return std::log(clamped / axis.lower) / std::log(axis.upper / axis.lower);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

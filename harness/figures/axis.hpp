@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 enum class Scale { kLinear, kLog };
 
@@ -46,4 +46,4 @@ struct Tick {
 /// what is below the lower end is put there.
 [[nodiscard]] double position_on(const Axis& axis, double value);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "harness/figures/palette.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 struct Corner {
@@ -50,4 +50,4 @@ std::string mark_classes(int colour) {
   return fmt::format("{} c{}", colour == kBlue ? "points" : "line", colour);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

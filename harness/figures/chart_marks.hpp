@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The sign of `colour` about (x, y), as data of a path; those of several points may be joined.
 [[nodiscard]] std::string mark_data(int colour, double x, double y);
@@ -13,4 +13,4 @@ namespace qsmpc {
 /// The classes of such a path.
 [[nodiscard]] std::string mark_classes(int colour);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

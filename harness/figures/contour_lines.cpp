@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Eigen::Index;
@@ -123,4 +123,4 @@ std::vector<Eigen::Matrix2Xd> contour_lines(const Eigen::Ref<const Eigen::Matrix
   return LineTracer(values, level).lines();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The boundary of {values > level} by marching squares with linear interpolation: closed lines,
 /// one point a column (row index, column index; fractions between the nodes), the first point
@@ -15,4 +15,4 @@ namespace qsmpc {
 [[nodiscard]] std::vector<Eigen::Matrix2Xd> contour_lines(
     const Eigen::Ref<const Eigen::MatrixXd>& values, double level);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

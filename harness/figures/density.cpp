@@ -12,7 +12,7 @@
 #include "harness/figures/contour_lines.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Eigen::Index;
@@ -54,7 +54,7 @@ PrincipalAxes principal_axes_of(const Eigen::Ref<const Eigen::MatrixXd>& points,
   const double freedom = 1.0 - weights.squaredNorm();
   Eigen::MatrixXd covariance = centred * weights.asDiagonal() * centred.transpose();
   if (freedom > 0.0) covariance /= freedom;
-  const SymmetricEigen principal = symmetric_eigen(covariance);
+  const models::SymmetricEigen principal = models::symmetric_eigen(covariance);
   const Eigen::VectorXd deviations = principal.values.cwiseMax(0.0).cwiseSqrt();
   const double least =
       std::max(kLeastOfGreatest * deviations.maxCoeff(), kLeastOfMean * mean.cwiseAbs().maxCoeff());
@@ -178,4 +178,4 @@ std::vector<DensityContour> density_contours(const DensityGrid& grid,
   return contours;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

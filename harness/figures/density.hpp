@@ -19,7 +19,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// (Σ w)² / Σ w²: how many equally weighted points are as informative.
 [[nodiscard]] double effective_size(const Eigen::Ref<const Eigen::VectorXd>& weights);
@@ -76,4 +76,4 @@ struct DensityContour {
 [[nodiscard]] std::vector<DensityContour> density_contours(const DensityGrid& grid,
                                                            const std::vector<double>& masses);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

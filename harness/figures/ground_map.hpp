@@ -7,17 +7,18 @@
 #include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Whether states of `system` have a place in the plane.
-[[nodiscard]] bool has_position(const SystemDescription& system);
+[[nodiscard]] bool has_position(const models::SystemDescription& system);
 
 /// Where `state` (state_dim) is, for a system with a position; not a number where it is too short.
 [[nodiscard]] MapPoint map_point(const Eigen::Ref<const Eigen::VectorXd>& state,
-                                 const SystemDescription& system);
+                                 const models::SystemDescription& system);
 
 /// Bounds, obstacles, target and the axes' names, for a system with a position. Obstacles that
 /// restrict other states too are partial.
-[[nodiscard]] PlaneMap ground_map(const Scenario& scenario, const SystemDescription& system);
+[[nodiscard]] PlaneMap ground_map(const Scenario& scenario,
+                                  const models::SystemDescription& system);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

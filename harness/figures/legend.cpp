@@ -4,7 +4,7 @@
 
 #include "harness/text/html.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 LegendEntry line_entry(const std::string& classes, const std::string& name) {
   return {.drawing = "<path class=\"" + classes + "\" d=\"M2 6H26\"/>", .name = name};
@@ -29,4 +29,4 @@ std::string legend_html(const std::vector<LegendEntry>& entries) {
   return "<ul class=\"legend\">" + items + "</ul>\n";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr double kSwatchWidth = 28.0;
 inline constexpr double kSwatchHeight = 12.0;
@@ -25,4 +25,4 @@ struct LegendEntry {
 /// A <ul>. Names are escaped.
 [[nodiscard]] std::string legend_html(const std::vector<LegendEntry>& entries);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

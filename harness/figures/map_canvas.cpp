@@ -8,7 +8,7 @@
 
 #include "harness/text/html.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Units of the view box.
@@ -115,4 +115,4 @@ std::string MapCanvas::svg(const std::string& content, const MapTexts& texts,
       content, axes(texts.x_label, texts.y_label));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include "harness/figures/axis.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct MapPoint {
   double x = 0.0;
@@ -80,4 +80,4 @@ class MapCanvas {
   double height_ = 0.0;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

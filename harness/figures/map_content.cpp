@@ -9,7 +9,7 @@
 #include "harness/figures/axis.hpp"
 #include "harness/figures/palette.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Eigen::Index;
@@ -248,4 +248,4 @@ bool has_content(const PlaneMap& map) {
          std::any_of(map.contours.begin(), map.contours.end(), contours_show);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

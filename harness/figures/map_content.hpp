@@ -8,7 +8,7 @@
 #include "harness/figures/map_shapes.hpp"
 #include "harness/figures/plane_map.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// "c0" … "c7", whatever number was given.
 [[nodiscard]] std::string colour_class(int colour);
@@ -34,4 +34,4 @@ namespace qsmpc {
 /// How many points, ellipses and circles cannot be drawn.
 [[nodiscard]] std::size_t omitted_values(const PlaneMap& map);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/text/html.hpp"
 #include "harness/text/text_width.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // View box units.
@@ -127,4 +127,4 @@ std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& te
   return grounds.empty() ? "" : grounds + "\n" + svg;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

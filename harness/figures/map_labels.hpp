@@ -6,7 +6,7 @@
 
 #include "harness/figures/map_canvas.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct PlacedText {
   std::string text;
@@ -20,4 +20,4 @@ struct PlacedText {
 [[nodiscard]] std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& texts,
                                     const std::vector<MapPoint>& ink);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

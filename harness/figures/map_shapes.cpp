@@ -10,7 +10,7 @@
 
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // View box units.
@@ -68,7 +68,7 @@ std::string arrow_svg(const MapCanvas& canvas, const std::vector<MapPoint>& poin
 }
 
 Eigen::Matrix2d principal_axes(const Eigen::Matrix2d& covariance) {
-  const SymmetricEigen principal = symmetric_eigen(covariance);
+  const models::SymmetricEigen principal = models::symmetric_eigen(covariance);
   const Eigen::Vector2d deviations = principal.values.cwiseMax(0.0).cwiseSqrt();
   return principal.vectors * deviations.asDiagonal();
 }
@@ -133,4 +133,4 @@ std::string mark_svg(const MapCanvas& canvas, const MapPoint& at, bool square,
          classes + "\" d=\"" + data + "\"/>\n";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/figures/map_canvas.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Data of a path through every `stride`-th of `points` and the last one, interrupted where a point
 /// is not drawable. Where nothing but one point is left, a dot.
@@ -47,4 +47,4 @@ struct MapDot {
 [[nodiscard]] std::string mark_svg(const MapCanvas& canvas, const MapPoint& at, bool square,
                                    const std::string& classes);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

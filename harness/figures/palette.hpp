@@ -2,7 +2,7 @@
 // (web/page.css).
 #pragma once
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Classes c0 … c5 colour lines and points: of Okabe and Ito's palette, which people with any
 /// colour vision can tell apart, those that stand out from the ground.
@@ -18,4 +18,4 @@ inline constexpr int kSky = 5;
 inline constexpr int kInk = 6;
 inline constexpr int kGrey = 7;
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include <cairo.h>
 #include <librsvg/rsvg.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kUnitsPerInch = 96.0;
@@ -91,4 +91,4 @@ std::string pdf_figure(const std::string& svg, const std::string& title) {
   return pdf;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

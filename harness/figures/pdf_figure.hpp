@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// `svg`, a document that says its width and height, as a PDF of one page of that size (96 units an
 /// inch), drawn as vectors, with the letters that it uses embedded. `title` is in its properties.
@@ -13,4 +13,4 @@ namespace qsmpc {
 /// std::invalid_argument where `svg` is none, std::runtime_error where it cannot be drawn.
 [[nodiscard]] std::string pdf_figure(const std::string& svg, const std::string& title);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

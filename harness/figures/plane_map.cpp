@@ -13,7 +13,7 @@
 #include "harness/figures/map_shapes.hpp"
 #include "harness/text/html.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kMostLinePoints = 6000;  // of a whole map; more would not be seen
@@ -210,4 +210,4 @@ std::string map_figure(const PlaneMap& map) {
   return html + "</figure>\n";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,7 +17,7 @@
 #include "harness/figures/legend.hpp"
 #include "harness/figures/map_canvas.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 // Colours are of the page's palette, 0 … kPaletteSize - 1, or kInk or kGrey. Names stand in the
 // legend, where the same entry stands once: many paths may have one name. Without a name, there is
@@ -123,4 +123,4 @@ struct PlaneMap {
 /// Its note, and what the drawing leaves out, so that nothing is hidden.
 [[nodiscard]] std::string map_note(const PlaneMap& map);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

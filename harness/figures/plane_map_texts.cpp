@@ -11,7 +11,7 @@
 #include "harness/figures/plane_map.hpp"
 #include "harness/text/number_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// Each probability once, in order, without those that none is.
@@ -132,4 +132,4 @@ std::string map_note(const PlaneMap& map) {
   return fmt::format("{}", fmt::join(parts, " "));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

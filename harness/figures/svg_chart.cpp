@@ -11,7 +11,7 @@
 #include "harness/figures/palette.hpp"
 #include "harness/text/html.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Units of the view box; the page scales it to the width that there is.
@@ -322,4 +322,4 @@ std::string chart_figure(const Chart& chart) {
   return html + omissions(chart) + "</figure>\n";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/figures/axis.hpp"
 #include "harness/figures/legend.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// kLimits: an arrow down from each point, which only the truth is known to be below of.
 enum class Mark { kLine, kSteps, kPoints, kLimits };
@@ -77,4 +77,4 @@ struct Chart {
 inline constexpr double kChartWidth = 480.0;
 inline constexpr double kChartHeight = 290.0;
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/text/html.hpp"
 #include "harness/text/text_width.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kPanelsInRow = 2;
@@ -210,4 +210,4 @@ std::string panel_figure(const Panel& panel) {
   return chart != nullptr ? chart_figure(*chart) : map_figure(std::get<PlaneMap>(panel));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "harness/figures/plane_map.hpp"
 #include "harness/figures/svg_chart.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 using Panel = std::variant<Chart, PlaneMap>;
 
@@ -31,4 +31,4 @@ requires std::same_as<Drawing, Chart> || std::same_as<Drawing, PlaneMap>
 /// A panel as a <figure> of a page.
 [[nodiscard]] std::string panel_figure(const Panel& panel);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

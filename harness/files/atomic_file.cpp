@@ -12,7 +12,7 @@
 #include "harness/errors.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr mode_t kFileMode = 0666;  // what the user's umask leaves of it
@@ -139,4 +139,4 @@ void remove_file(const std::string& path) {
   if (error) throw IoError(path + ": " + error.message());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

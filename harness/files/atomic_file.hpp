@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Where the file `path` stands while it is being written: `PATH.partial`.
 [[nodiscard]] std::string partial_path_of(const std::string& path);
@@ -71,4 +71,4 @@ void make_durable_folder(const std::string& path, const std::string& base);
 /// Removes the file at `path`, which need not exist. Throws IoError with the system's words.
 void remove_file(const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

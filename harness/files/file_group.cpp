@@ -1,6 +1,6 @@
 #include "harness/files/file_group.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 PendingFile& FileGroup::add(const std::string& path) {
   return *files_.emplace_back(std::make_unique<PendingFile>(path));
@@ -22,4 +22,4 @@ std::vector<std::string> FileGroup::paths() const {
   return paths;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 
 #include "harness/files/atomic_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A group that is destroyed without a commit leaves no trace.
 class FileGroup {
@@ -37,4 +37,4 @@ class FileGroup {
   std::vector<std::unique_ptr<PendingFile>> files_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

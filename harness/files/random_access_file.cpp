@@ -11,7 +11,7 @@
 #include "harness/errors.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 [[noreturn]] void throw_system_words(const std::string& path, const std::string& doing) {
@@ -61,4 +61,4 @@ std::size_t RandomAccessFile::read_at(std::int64_t position, std::span<std::uint
   return static_cast<std::size_t>(count);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

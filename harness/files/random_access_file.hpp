@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A file that is open for reading and writing. Members throw IoError with its path and the
 /// system's words. Closing it leaves it where it is, with what was written.
@@ -35,4 +35,4 @@ class RandomAccessFile {
   int descriptor_ = -1;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 [[noreturn]] void fail_to_read(const std::string& path, const std::string& found) {
@@ -58,4 +58,4 @@ std::string read_text_file(const std::string& path) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr std::size_t kMaxTextFileBytes = std::size_t{1} << 20U;
 
@@ -12,4 +12,4 @@ inline constexpr std::size_t kMaxTextFileBytes = std::size_t{1} << 20U;
 /// read, or when it is larger than kMaxTextFileBytes.
 [[nodiscard]] std::string read_text_file(const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

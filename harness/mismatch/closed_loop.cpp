@@ -13,7 +13,7 @@
 #include "harness/trace/rows.hpp"
 #include "harness/trace/summary.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 PeriodTallies tallies_of(const std::vector<EpisodeResult>& episodes) {
@@ -32,7 +32,7 @@ PeriodTallies tallies_of(const std::vector<EpisodeResult>& episodes) {
 
 }  // namespace
 
-EpisodeResult episode_result(const Trace& trace, const Dynamics& model) {
+EpisodeResult episode_result(const Trace& trace, const models::Dynamics& model) {
   const Summary summary = summarise(trace);
   EpisodeResult result{.seed = trace.seed,
                        .outcome = summary.outcome,
@@ -49,15 +49,16 @@ EpisodeResult episode_result(const Trace& trace, const Dynamics& model) {
     const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
     if (step.certificates.empty()) continue;
     result.certified.push_back(step.certificates.front().value);
-    result.unsafe_next.push_back(clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0);
+    result.unsafe_next.push_back(
+        controller::clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0);
   }
   return result;
 }
 
-std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count, const Executor& run,
-                                        SharedWork& work) {
+std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count,
+                                        const controller::Executor& run, SharedWork& work) {
   const auto model =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   std::vector<EpisodeResult> results(static_cast<std::size_t>(count));
   DriverPool drivers(static_cast<std::size_t>(count));
   run(count, [&](int n) {
@@ -91,4 +92,4 @@ ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes) {
   return loop;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

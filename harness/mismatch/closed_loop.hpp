@@ -15,7 +15,7 @@
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What is kept of an episode.
 struct EpisodeResult {
@@ -35,12 +35,13 @@ struct EpisodeResult {
 };
 
 /// `model` is the planner's.
-[[nodiscard]] EpisodeResult episode_result(const Trace& trace, const Dynamics& model);
+[[nodiscard]] EpisodeResult episode_result(const Trace& trace, const models::Dynamics& model);
 
 /// Episodes of `scenario` with the seeds seed, seed + 1, …, one a unit of `work`, the same for
 /// whatever `run`. Throws as run_episode. Not complete if `work` was stopped.
 [[nodiscard]] std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count,
-                                                      const Executor& run, SharedWork& work);
+                                                      const controller::Executor& run,
+                                                      SharedWork& work);
 
 /// What episodes say together.
 struct ClosedLoop {
@@ -61,4 +62,4 @@ struct ClosedLoop {
 /// episodes: at least one; throws std::invalid_argument else. The p-value is that of PeriodTallies.
 [[nodiscard]] ClosedLoop closed_loop_of(const std::vector<EpisodeResult>& episodes);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -18,7 +18,7 @@
 #include "harness/threads/workers.hpp"
 #include "harness/version.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kTimedPaths = 15;  // their median is not moved by a few interruptions
@@ -124,11 +124,11 @@ class Comparing {
 
   /// Plans once from the initial belief, certifies the plan, and simulates the model under it.
   void make_plan() {
-    Planner planner(*model_, planner_settings(scenario_));
-    const Plan& plan = planner.plan(belief_);
+    controller::Planner planner(*model_, planner_settings(scenario_));
+    const controller::Plan& plan = planner.plan(belief_);
     result_.policy = plan.policy;
     result_.particles = plan.prediction.stages;
-    const PredictedMotion motion = motion_of(planner, belief_, plan);
+    const controller::PredictedMotion motion = controller::motion_of(planner, belief_, plan);
     result_.certificates = certificates_of(motion);
     if (scenario_.model_error) {
       result_.with_error = certificates_of(of_plant(motion, scenario_, 0));
@@ -141,9 +141,10 @@ class Comparing {
         {.numbers = path_numbers(), .paths = options_.paths, .count = result_.w2_paths}, run_);
   }
 
-  [[nodiscard]] std::vector<StageCertificate> certificates_of(const PredictedMotion& motion) const {
-    return certify(motion, scenario_.safe_set, error_budget(motion), CertificateEffort::kEvery,
-                   run_);
+  [[nodiscard]] std::vector<controller::StageCertificate> certificates_of(
+      const controller::PredictedMotion& motion) const {
+    return controller::certify(motion, scenario_.safe_set, controller::error_budget(motion),
+                               controller::CertificateEffort::kEvery, run_);
   }
 
   void compare(Candidate& candidate, SharedWork& work) {
@@ -199,10 +200,10 @@ class Comparing {
   }
 
   const ComparisonOptions& options_;
-  Executor run_;
+  controller::Executor run_;
   Scenario scenario_;  // as it is simulated
-  std::unique_ptr<const Dynamics> model_;
-  Gaussian belief_;
+  std::unique_ptr<const models::Dynamics> model_;
+  controller::Gaussian belief_;
   std::vector<Candidate> candidates_;
   std::optional<PathSource> source_;
   Comparison result_;
@@ -217,7 +218,7 @@ std::vector<std::string> default_plants(const Scenario& scenario) {
 }
 
 std::vector<int> exceeded_stages(const std::vector<HorizonStage>& horizon,
-                                 const std::vector<StageCertificate>& certificates) {
+                                 const std::vector<controller::StageCertificate>& certificates) {
   std::vector<int> stages;
   for (std::size_t k = 0; k < horizon.size(); ++k) {
     // Written so that a certificate that is not a number is one that does not hold.
@@ -233,4 +234,4 @@ std::optional<Comparison> compare_plants(const Scenario& scenario,
   return Comparing(scenario, options).run();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

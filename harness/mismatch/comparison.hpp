@@ -28,7 +28,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/threads/shared_work.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct ComparisonOptions {
   std::vector<std::string> plants{};  ///< as `with_plant` takes them; empty: `default_plants`
@@ -64,19 +64,19 @@ struct Comparison {
   std::string scenario_text;  ///< the resolved scenario as YAML
   std::string version;
   std::int64_t paths = 0;
-  std::int64_t w2_paths = 0;                   ///< of them, how many enter W2
-  Policy policy;                               ///< of the plan from the initial belief
-  std::vector<DiscreteMeasure> particles;      ///< that it predicts, stages 0 … horizon
-  std::vector<Points> model_paths;             ///< stages 0 … horizon
-  std::vector<W2Floor> floors;                 ///< stages 0 … horizon
-  std::vector<StageCertificate> certificates;  ///< for the model, stages 1 … horizon
+  std::int64_t w2_paths = 0;                           ///< of them, how many enter W2
+  controller::Policy policy;                           ///< of the plan from the initial belief
+  std::vector<controller::DiscreteMeasure> particles;  ///< that it predicts, stages 0 … horizon
+  std::vector<controller::Points> model_paths;         ///< stages 0 … horizon
+  std::vector<W2Floor> floors;                         ///< stages 0 … horizon
+  std::vector<controller::StageCertificate> certificates;  ///< for the model, stages 1 … horizon
   /// With the scenario's model error, where it has one: these are then in force.
-  std::optional<std::vector<StageCertificate>> with_error;
+  std::optional<std::vector<controller::StageCertificate>> with_error;
   std::vector<PlantComparison> plants;
-  std::string error_plant;                   ///< where a model error was measured
-  std::optional<ModelError> measured_error;  ///< norms with their margin
+  std::string error_plant;                               ///< where a model error was measured
+  std::optional<controller::ModelError> measured_error;  ///< norms with their margin
 
-  [[nodiscard]] const std::vector<StageCertificate>& in_force() const {
+  [[nodiscard]] const std::vector<controller::StageCertificate>& in_force() const {
     return with_error ? *with_error : certificates;
   }
 };
@@ -86,8 +86,9 @@ struct Comparison {
 
 /// The stages of `horizon` whose certificate, at the same place in `certificates`, is below the
 /// lower limit of the observed rate.
-[[nodiscard]] std::vector<int> exceeded_stages(const std::vector<HorizonStage>& horizon,
-                                               const std::vector<StageCertificate>& certificates);
+[[nodiscard]] std::vector<int> exceeded_stages(
+    const std::vector<HorizonStage>& horizon,
+    const std::vector<controller::StageCertificate>& certificates);
 
 /// Compares the plants; those named twice are taken once. Nothing if `should_stop` said so before
 /// the end. But for `speed`, the result depends on the scenario (its seed included) and the options
@@ -96,4 +97,4 @@ struct Comparison {
 [[nodiscard]] std::optional<Comparison> compare_plants(const Scenario& scenario,
                                                        const ComparisonOptions& options);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -16,7 +16,7 @@
 #include "harness/trace/file_header.hpp"
 #include "harness/trace/rows.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Layout = std::vector<DatasetSpec>;
@@ -31,7 +31,7 @@ struct ComparisonSizes {
 };
 
 ComparisonSizes comparison_sizes(const Comparison& comparison) {
-  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
+  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
   return {.states = labels_of(model->description().states),
           .inputs = labels_of(model->description().inputs),
           .paths = static_cast<std::size_t>(comparison.paths)};
@@ -204,12 +204,13 @@ void write_header(Hdf5File& file, const Comparison& comparison) {
 }
 
 /// Stages as rows: path by path, its states one after the other.
-void append_paths(Hdf5File& file, const std::string& path, const std::vector<Points>& stages) {
-  for (const Points& stage : stages) file.append(path, by_rows(stage.transpose()));
+void append_paths(Hdf5File& file, const std::string& path,
+                  const std::vector<controller::Points>& stages) {
+  for (const controller::Points& stage : stages) file.append(path, by_rows(stage.transpose()));
 }
 
 void write_shared(Hdf5File& file, const Comparison& comparison) {
-  const Policy& policy = comparison.policy;
+  const controller::Policy& policy = comparison.policy;
   file.append("/plan/inputs", by_rows(policy.inputs.transpose()));
   file.append("/plan/states", by_rows(policy.states.transpose()));
   for (const Eigen::MatrixXd& gain : policy.gains) file.append("/plan/gains", by_rows(gain));
@@ -218,9 +219,11 @@ void write_shared(Hdf5File& file, const Comparison& comparison) {
   for (const W2Floor& floor : comparison.floors) {
     file.append("/model/w2_floor", std::vector<double>{floor.mean, floor.deviation});
   }
-  file.append("/certificate/without", column_of(comparison.certificates, &StageCertificate::value));
+  file.append("/certificate/without",
+              column_of(comparison.certificates, &controller::StageCertificate::value));
   if (comparison.with_error) {
-    file.append("/certificate/with", column_of(*comparison.with_error, &StageCertificate::value));
+    file.append("/certificate/with",
+                column_of(*comparison.with_error, &controller::StageCertificate::value));
   }
 }
 
@@ -367,4 +370,4 @@ void write_comparison(const Comparison& comparison, const std::vector<TextFile>&
   files.commit_sealed();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

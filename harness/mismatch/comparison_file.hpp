@@ -9,7 +9,7 @@
 #include "harness/mismatch/comparison.hpp"
 #include "harness/trace/hdf5_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr const char* kComparisonFile = "comparison.h5";
 inline constexpr const char* kComparisonNumbersFile = "comparison.json";
@@ -47,4 +47,4 @@ void write_comparison(const Comparison& comparison, const std::vector<TextFile>&
 /// IoError where it cannot be read.
 [[nodiscard]] Comparison read_comparison(const std::string& folder);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

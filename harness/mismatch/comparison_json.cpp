@@ -7,7 +7,7 @@
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -18,8 +18,8 @@ double rate_of(std::int64_t events, std::int64_t trials) {
 
 Json states_json(const Scenario& scenario) {
   Json states = Json::array();
-  const std::unique_ptr<const Dynamics> model = model_of(scenario);
-  for (const Coordinate& state : model->description().states) {
+  const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
+  for (const models::Coordinate& state : model->description().states) {
     states.push_back({{"name", state.name}, {"unit", state.unit}});
   }
   return states;
@@ -102,9 +102,9 @@ Json plant_json(const Comparison& comparison, const PlantComparison& plant) {
 }
 
 Json error_json(const Comparison& comparison) {
-  const ModelError& error = *comparison.measured_error;
+  const controller::ModelError& error = *comparison.measured_error;
   Json first = Json::array();
-  for (const ModelError& own : error.first) {
+  for (const controller::ModelError& own : error.first) {
     first.push_back({{"offset", vector_json(own.offset)},
                      {"rms", vector_json(own.root_mean_square)},
                      {"norm4", vector_json(own.higher[0])},
@@ -137,4 +137,4 @@ std::string comparison_json(const Comparison& comparison) {
   return json_text(json);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

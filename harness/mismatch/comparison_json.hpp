@@ -5,10 +5,10 @@
 
 #include "harness/mismatch/comparison.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// One object with stable keys, ending in a new line. Numbers that are not finite are null. Equal
 /// comparisons give equal bytes; of two of the same scenario and options, only `speed` differs.
 [[nodiscard]] std::string comparison_json(const Comparison& comparison);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -64,8 +64,9 @@ class ComparisonReader {
     const std::vector<double> values = doubles(path, state_dim_);
     return Eigen::Map<const Eigen::VectorXd>(values.data(), std::ssize(values));
   }
-  [[nodiscard]] std::vector<StageCertificate> certificates(const std::string& path) const {
-    std::vector<StageCertificate> certificates(horizon_);
+  [[nodiscard]] std::vector<controller::StageCertificate> certificates(
+      const std::string& path) const {
+    std::vector<controller::StageCertificate> certificates(horizon_);
     const std::vector<double> values = doubles(path, horizon_);
     for (std::size_t k = 0; k < horizon_; ++k) certificates[k].value = values[k];
     return certificates;
@@ -244,4 +245,4 @@ Comparison read_comparison(const std::string& folder) {
   return ComparisonReader(folder + "/" + kComparisonFile).read();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kNameWidth = 20;   // of plants and of rows
@@ -63,18 +63,19 @@ std::string closed_loop_section(const Comparison& comparison) {
 
 /// Names and units of `states` in columns of `width`, after `left` characters; the names' line goes
 /// on with `right`.
-std::string state_head(const std::vector<Coordinate>& states, std::size_t left, std::size_t width,
-                       const std::string& right = "") {
+std::string state_head(const std::vector<models::Coordinate>& states, std::size_t left,
+                       std::size_t width, const std::string& right = "") {
   std::string names;
   std::string units;
-  for (const Coordinate& state : states) {
+  for (const models::Coordinate& state : states) {
     names += fmt::format("{:>{}}", printable(state.name, kNameLimit), width);
     units += fmt::format("{:>{}}", state.unit, width);
   }
   return fmt::format("{:<{}}{}{}\n{:<{}}{}\n", "", left, names, right, "", left, units);
 }
 
-std::string one_step_section(const Comparison& comparison, const SystemDescription& system) {
+std::string one_step_section(const Comparison& comparison,
+                             const models::SystemDescription& system) {
   std::string text = "\nOne period: what the plant adds to the model and the disturbance\n" +
                      state_head(system.states, kNameWidth, kStateWidth,
                                 fmt::format("{:>{}}", "norm", kStateWidth));
@@ -97,7 +98,7 @@ std::string one_step_section(const Comparison& comparison, const SystemDescripti
 }
 
 /// Three states stand for all of them: the pose in the plane, else the first three.
-std::vector<int> shown_states(const SystemDescription& system) {
+std::vector<int> shown_states(const models::SystemDescription& system) {
   std::vector<int> shown;
   for (const int state : {system.position_x, system.position_y, system.heading}) {
     if (state >= 0) shown.push_back(state);
@@ -108,8 +109,8 @@ std::vector<int> shown_states(const SystemDescription& system) {
   return shown;
 }
 
-std::string horizon_head(const SystemDescription& system, const std::vector<int>& states) {
-  std::vector<Coordinate> shown;
+std::string horizon_head(const models::SystemDescription& system, const std::vector<int>& states) {
+  std::vector<models::Coordinate> shown;
   shown.reserve(states.size());
   for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
   std::string head = state_head(shown, kStageWidth, kStageStateWidth,
@@ -134,7 +135,7 @@ std::string stage_row(const Comparison& comparison, const HorizonStage& stage,
   return row;
 }
 
-std::string horizon_section(const Comparison& comparison, const SystemDescription& system) {
+std::string horizon_section(const Comparison& comparison, const models::SystemDescription& system) {
   const std::vector<int> states = shown_states(system);
   std::string text = fmt::format(
       "\nAlong the plan from the initial belief: divergence from the model (rms, by state), {} "
@@ -175,8 +176,8 @@ std::string certificate_section(const Comparison& comparison) {
 }  // namespace
 
 std::string comparison_table(const Comparison& comparison) {
-  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
-  const SystemDescription& system = model->description();
+  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
+  const models::SystemDescription& system = model->description();
   return fmt::format("{}: plants beside the model {}, seed {}\n",
                      printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
          closed_loop_section(comparison) + one_step_section(comparison, system) +
@@ -189,4 +190,4 @@ std::string comparison_table(const Comparison& comparison) {
          "p: small where more periods end unsafe than certified for them.\n";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

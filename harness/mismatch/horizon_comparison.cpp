@@ -6,11 +6,11 @@
 #include "harness/statistics/sample_statistics.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// The first `most` columns of `points` that are finite, each of the same weight.
-DiscreteMeasure empirical_measure(const Points& points, std::int64_t most) {
+controller::DiscreteMeasure empirical_measure(const controller::Points& points, std::int64_t most) {
   std::vector<Eigen::Index> kept;
   for (Eigen::Index i = 0; i < points.cols() && std::ssize(kept) < most; ++i) {
     if (points.col(i).allFinite()) kept.push_back(i);
@@ -20,13 +20,14 @@ DiscreteMeasure empirical_measure(const Points& points, std::int64_t most) {
           .weights = Eigen::VectorXd::Constant(count, 1.0 / static_cast<double>(count))};
 }
 
-double w2_to(const DiscreteMeasure& particles, const Points& points, std::int64_t most) {
-  const DiscreteMeasure measure = empirical_measure(points, most);
-  return measure.size() == 0 ? kNotANumber : wasserstein2(particles, measure);
+double w2_to(const controller::DiscreteMeasure& particles, const controller::Points& points,
+             std::int64_t most) {
+  const controller::DiscreteMeasure measure = empirical_measure(points, most);
+  return measure.size() == 0 ? kNotANumber : controller::wasserstein2(particles, measure);
 }
 
 /// √ mean |column|² by row over the columns that are finite.
-Eigen::VectorXd rms_of_finite(const Points& values) {
+Eigen::VectorXd rms_of_finite(const controller::Points& values) {
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(values.rows());
   double count = 0.0;
   for (const auto& column : values.colwise()) {
@@ -37,10 +38,10 @@ Eigen::VectorXd rms_of_finite(const Points& values) {
   return (squares / count).cwiseSqrt();  // 0/0 without any: not a number
 }
 
-std::int64_t count_unsafe(const Points& states, const SafeSet& safe_set) {
+std::int64_t count_unsafe(const controller::Points& states, const controller::SafeSet& safe_set) {
   return std::ranges::count_if(states.colwise(), [&](const auto& column) {
     const Eigen::VectorXd state = column;
-    return !state.allFinite() || distance_to_unsafe(state, safe_set) <= 0.0;
+    return !state.allFinite() || controller::distance_to_unsafe(state, safe_set) <= 0.0;
   });
 }
 
@@ -51,22 +52,23 @@ W2Floor floor_of(const std::vector<double>& distances) {
 
 }  // namespace
 
-std::int64_t w2_paths(const std::vector<DiscreteMeasure>& stages, std::int64_t paths) {
+std::int64_t w2_paths(const std::vector<controller::DiscreteMeasure>& stages, std::int64_t paths) {
   Eigen::Index largest = 1;
-  for (const DiscreteMeasure& stage : stages) largest = std::max(largest, stage.size());
+  for (const controller::DiscreteMeasure& stage : stages) largest = std::max(largest, stage.size());
   return std::clamp<std::int64_t>(kPairsForW2 / largest, 1, paths);
 }
 
-std::vector<W2Floor> w2_floors(const std::vector<DiscreteMeasure>& stages, const Dynamics& model,
-                               const Policy& policy, const Gaussian& belief,
+std::vector<W2Floor> w2_floors(const std::vector<controller::DiscreteMeasure>& stages,
+                               const models::Dynamics& model, const controller::Policy& policy,
+                               const controller::Gaussian& belief,
                                const Eigen::MatrixXd& noise_covariance,
-                               const FloorSettings& settings, const Executor& run) {
+                               const FloorSettings& settings, const controller::Executor& run) {
   std::vector<std::vector<double>> distances(stages.size(), std::vector<double>(kFloorEnsembles));
   for (int n = 0; n < kFloorEnsembles; ++n) {
     PathNumbers numbers = settings.numbers;
     numbers.first += static_cast<std::uint64_t>(settings.paths + n * settings.count);
     const PathSource source(policy, belief, noise_covariance, numbers);
-    const std::vector<Points> paths = model_paths(model, source, settings.count, run);
+    const std::vector<controller::Points> paths = model_paths(model, source, settings.count, run);
     run(static_cast<int>(stages.size()), [&](int k) {
       const auto stage = static_cast<std::size_t>(k);
       distances[stage][static_cast<std::size_t>(n)] =
@@ -79,12 +81,10 @@ std::vector<W2Floor> w2_floors(const std::vector<DiscreteMeasure>& stages, const
   return floors;
 }
 
-std::vector<HorizonStage> compare_along_horizon(const PlantPaths& plant,
-                                                const std::vector<Points>& model,
-                                                const std::vector<DiscreteMeasure>& stages,
-                                                const SafeSet& safe_set,
-                                                const HorizonSettings& settings,
-                                                const Executor& run) {
+std::vector<HorizonStage> compare_along_horizon(
+    const PlantPaths& plant, const std::vector<controller::Points>& model,
+    const std::vector<controller::DiscreteMeasure>& stages, const controller::SafeSet& safe_set,
+    const HorizonSettings& settings, const controller::Executor& run) {
   std::vector<HorizonStage> compared(stages.size() - 1);
   run(static_cast<int>(compared.size()), [&](int n) {
     const std::size_t k = static_cast<std::size_t>(n) + 1;
@@ -99,4 +99,4 @@ std::vector<HorizonStage> compare_along_horizon(const PlantPaths& plant,
   return compared;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "harness/mismatch/path_ensemble.hpp"
 #include "harness/statistics/binomial_interval.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Probability with which either limit of an observed rate is wrong: together they are an interval
 /// of 99 %.
@@ -33,7 +33,8 @@ inline constexpr std::int64_t kPairsForW2 = 200'000;
 
 /// Of `paths`, how many enter a distance to the largest of `stages`: fewer where there are many
 /// particles.
-[[nodiscard]] std::int64_t w2_paths(const std::vector<DiscreteMeasure>& stages, std::int64_t paths);
+[[nodiscard]] std::int64_t w2_paths(const std::vector<controller::DiscreteMeasure>& stages,
+                                    std::int64_t paths);
 
 /// The floors of stages 0 … horizon, from kFloorEnsembles ensembles of `count` paths each, with the
 /// numbers that follow those of the first `paths` paths of `numbers`. Nothing depends on `run`.
@@ -42,11 +43,13 @@ struct FloorSettings {
   std::int64_t paths = 0;
   std::int64_t count = 0;
 };
-[[nodiscard]] std::vector<W2Floor> w2_floors(const std::vector<DiscreteMeasure>& stages,
-                                             const Dynamics& model, const Policy& policy,
-                                             const Gaussian& belief,
+[[nodiscard]] std::vector<W2Floor> w2_floors(const std::vector<controller::DiscreteMeasure>& stages,
+                                             const models::Dynamics& model,
+                                             const controller::Policy& policy,
+                                             const controller::Gaussian& belief,
                                              const Eigen::MatrixXd& noise_covariance,
-                                             const FloorSettings& settings, const Executor& run);
+                                             const FloorSettings& settings,
+                                             const controller::Executor& run);
 
 /// One stage of the horizon. n: state_dim.
 struct HorizonStage {
@@ -72,8 +75,8 @@ struct HorizonSettings {
 /// `run`. stages: the particles of stages 0 … horizon; model: the states of `model_paths` of the
 /// same source.
 [[nodiscard]] std::vector<HorizonStage> compare_along_horizon(
-    const PlantPaths& plant, const std::vector<Points>& model,
-    const std::vector<DiscreteMeasure>& stages, const SafeSet& safe_set,
-    const HorizonSettings& settings, const Executor& run);
+    const PlantPaths& plant, const std::vector<controller::Points>& model,
+    const std::vector<controller::DiscreteMeasure>& stages, const controller::SafeSet& safe_set,
+    const HorizonSettings& settings, const controller::Executor& run);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,10 +9,11 @@
 
 #include "harness/random/random_numbers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
-constexpr std::array<int, 3> kOrders = {2, kHigherOrders[0], kHigherOrders[1]};
+constexpr std::array<int, 3> kOrders = {2, controller::kHigherOrders[0],
+                                        controller::kHigherOrders[1]};
 constexpr Eigen::Index kAll = std::numeric_limits<Eigen::Index>::max();  // columns
 // Random numbers of replicates are those of paths of such high numbers that there are none.
 constexpr std::uint64_t kFirstReplicate = std::uint64_t{1} << 63;
@@ -142,7 +143,8 @@ Eigen::MatrixXd finite_columns(const ResidualSample& sample) {
 }
 
 /// Sets the norms of `error` to the largest upper limit of any sample.
-void set_norms(ModelError& error, const std::vector<ResidualSample>& samples, std::uint64_t seed) {
+void set_norms(controller::ModelError& error, const std::vector<ResidualSample>& samples,
+               std::uint64_t seed) {
   Eigen::MatrixXd limits =
       Eigen::MatrixXd::Zero(samples.front().units.front().rows(), std::ssize(kOrders));
   for (const ResidualSample& sample : samples) {
@@ -153,7 +155,7 @@ void set_norms(ModelError& error, const std::vector<ResidualSample>& samples, st
     limits.col(p) = limits.col(p).cwiseMax(limits.col(p - 1));
   }
   error.root_mean_square = limits.col(0);
-  for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+  for (std::size_t k = 0; k < controller::kHigherOrders.size(); ++k) {
     error.higher[k] = limits.col(static_cast<Eigen::Index>(k) + 1);
   }
 }
@@ -177,8 +179,8 @@ std::vector<ResidualSample> columns_of(const std::vector<ResidualSample>& sample
 }
 
 /// What `samples`, all of one period, say of it.
-ModelError period_error(std::vector<ResidualSample> samples, std::uint64_t seed) {
-  ModelError error;
+controller::ModelError period_error(std::vector<ResidualSample> samples, std::uint64_t seed) {
+  controller::ModelError error;
   Eigen::Index fewest = std::numeric_limits<Eigen::Index>::max();
   Eigen::VectorXd least;
   Eigen::VectorXd most;
@@ -199,13 +201,13 @@ ModelError period_error(std::vector<ResidualSample> samples, std::uint64_t seed)
   set_norms(error, samples, seed);
   if (!centred) return error;
   const auto count = static_cast<double>(fewest);
-  return widened(std::move(error), std::sqrt((count + 1.0) / (count - 1.0)));
+  return controller::widened(std::move(error), std::sqrt((count + 1.0) / (count - 1.0)));
 }
 
 }  // namespace
 
-ModelError measured_model_error(const std::vector<ResidualSample>& samples, std::uint64_t seed,
-                                Eigen::Index first) {
+controller::ModelError measured_model_error(const std::vector<ResidualSample>& samples,
+                                            std::uint64_t seed, Eigen::Index first) {
   if (samples.empty() || samples.front().units.empty()) {
     throw std::invalid_argument("model error: no samples");
   }
@@ -214,7 +216,7 @@ ModelError measured_model_error(const std::vector<ResidualSample>& samples, std:
       throw std::invalid_argument("model error: no samples");
     }
   }
-  ModelError error = model_error_of(finite_columns(samples.front()));
+  controller::ModelError error = controller::model_error_of(finite_columns(samples.front()));
   const std::vector<ResidualSample> later = columns_of(samples, first, kAll);
   set_norms(error, later.empty() ? samples : later, seed);
   for (Eigen::Index period = 0; period < first; ++period) {
@@ -225,4 +227,4 @@ ModelError measured_model_error(const std::vector<ResidualSample>& samples, std:
   return error;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

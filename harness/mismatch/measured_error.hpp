@@ -8,7 +8,7 @@
 
 #include "controller/prediction/model_error.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Residuals of one kind, in units that are independent of each other: episodes or paths.
 struct ResidualSample {
@@ -42,7 +42,7 @@ inline constexpr int kReplicates = 2000;
 /// ν*_(1−tail)/ν): the basic and the percentile limit of ln ν, whichever is larger. (Davison,
 /// Hinkley: "Bootstrap methods and their application", 1997, sections 5.2 and 3.8.)
 /// Throws std::invalid_argument if a sample has no finite column.
-[[nodiscard]] ModelError measured_model_error(const std::vector<ResidualSample>& samples,
-                                              std::uint64_t seed, Eigen::Index first = 0);
+[[nodiscard]] controller::ModelError measured_model_error(
+    const std::vector<ResidualSample>& samples, std::uint64_t seed, Eigen::Index first = 0);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,30 +8,31 @@
 #include "harness/statistics/sample_statistics.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
-std::vector<Points> unknown_points(Eigen::Index stages, Eigen::Index dim, Eigen::Index count) {
-  return std::vector<Points>(static_cast<std::size_t>(stages),
-                             Points::Constant(dim, count, kNotANumber));
+std::vector<controller::Points> unknown_points(Eigen::Index stages, Eigen::Index dim,
+                                               Eigen::Index count) {
+  return std::vector<controller::Points>(static_cast<std::size_t>(stages),
+                                         controller::Points::Constant(dim, count, kNotANumber));
 }
 
-Eigen::VectorXd model_step(const Dynamics& model, const Eigen::VectorXd& state,
+Eigen::VectorXd model_step(const models::Dynamics& model, const Eigen::VectorXd& state,
                            const Eigen::VectorXd& input) {
-  StateBatch next(state.size(), 1);
-  model.step(StateBatch(state), StateBatch(input), next);
+  models::StateBatch next(state.size(), 1);
+  model.step(models::StateBatch(state), models::StateBatch(input), next);
   return next.col(0);
 }
 
 /// Drives `plant` along one path, whose column of `paths` it fills; whether it came through.
-bool drive(Plant& plant, const Dynamics& model, const PathSource& source, std::int64_t path,
+bool drive(Plant& plant, const models::Dynamics& model, const PathSource& source, std::int64_t path,
            PlantPaths& paths) {
   Eigen::VectorXd state = source.initial_state(path);
   paths.states.front().col(path) = state;
   plant.reset(state);
   for (Eigen::Index k = 0; k < source.stages(); ++k) {
     const auto stage = static_cast<std::size_t>(k);
-    const Eigen::VectorXd input = policy_input(source.policy(), k, state);
+    const Eigen::VectorXd input = controller::policy_input(source.policy(), k, state);
     const Eigen::VectorXd disturbance = source.disturbance(path, k);
     const PlantStep step = plant.advance(input, disturbance);
     if (step.fault) return false;
@@ -44,7 +45,7 @@ bool drive(Plant& plant, const Dynamics& model, const PathSource& source, std::i
 
 }  // namespace
 
-PathSource::PathSource(const Policy& policy, const Gaussian& belief,
+PathSource::PathSource(const controller::Policy& policy, const controller::Gaussian& belief,
                        const Eigen::MatrixXd& noise_covariance, const PathNumbers& numbers)
     : policy_(policy),
       numbers_(numbers),
@@ -66,19 +67,20 @@ Eigen::VectorXd PathSource::disturbance(std::int64_t path, Eigen::Index stage) c
   return noise_.sample(key(path, stage + 1));
 }
 
-std::vector<Points> model_paths(const Dynamics& model, const PathSource& source, std::int64_t count,
-                                const Executor& run) {
-  std::vector<Points> stages = unknown_points(source.stages() + 1, model.state_dim(), count);
+std::vector<controller::Points> model_paths(const models::Dynamics& model, const PathSource& source,
+                                            std::int64_t count, const controller::Executor& run) {
+  std::vector<controller::Points> stages =
+      unknown_points(source.stages() + 1, model.state_dim(), count);
   run(static_cast<int>(path_batches(count)), [&](int batch) {
     const std::int64_t begin = batch * kPathBatch;
     const std::int64_t size = std::min(kPathBatch, count - begin);
-    Points states(model.state_dim(), size);
-    Points next(model.state_dim(), size);
-    Points inputs(model.input_dim(), size);
+    controller::Points states(model.state_dim(), size);
+    controller::Points next(model.state_dim(), size);
+    controller::Points inputs(model.input_dim(), size);
     for (Eigen::Index i = 0; i < size; ++i) states.col(i) = source.initial_state(begin + i);
     stages.front().middleCols(begin, size) = states;
     for (Eigen::Index k = 0; k < source.stages(); ++k) {
-      policy_inputs(source.policy(), k, states, inputs);
+      controller::policy_inputs(source.policy(), k, states, inputs);
       model.step(states, inputs, next);
       for (Eigen::Index i = 0; i < size; ++i) next.col(i) += source.disturbance(begin + i, k);
       states.swap(next);
@@ -88,8 +90,8 @@ std::vector<Points> model_paths(const Dynamics& model, const PathSource& source,
   return stages;
 }
 
-PlantPaths plant_paths(PlantPool& plants, const Dynamics& model, const PathSource& source,
-                       std::int64_t count, const Executor& run, SharedWork& work) {
+PlantPaths plant_paths(PlantPool& plants, const models::Dynamics& model, const PathSource& source,
+                       std::int64_t count, const controller::Executor& run, SharedWork& work) {
   PlantPaths paths{.states = unknown_points(source.stages() + 1, model.state_dim(), count),
                    .residuals = unknown_points(source.stages(), model.state_dim(), count)};
   std::atomic<std::int64_t> faults = 0;
@@ -117,8 +119,8 @@ double simulation_speed(Plant& plant, const PathSource& source, double time_step
     Eigen::Index done = 0;
     const auto start = Clock::now();
     for (; done < source.stages(); ++done) {
-      PlantStep step =
-          plant.advance(policy_input(source.policy(), done, state), source.disturbance(path, done));
+      PlantStep step = plant.advance(controller::policy_input(source.policy(), done, state),
+                                     source.disturbance(path, done));
       if (step.fault) break;
       state = std::move(step.state);
     }
@@ -128,4 +130,4 @@ double simulation_speed(Plant& plant, const PathSource& source, double time_step
   return median_of(std::move(speeds));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

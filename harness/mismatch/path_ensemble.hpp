@@ -19,7 +19,7 @@
 #include "harness/threads/shared_work.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Which paths of all that a seed stands for. Those of other numbers are independent of them.
 struct PathNumbers {
@@ -33,10 +33,10 @@ struct PathNumbers {
 class PathSource {
  public:
   /// `policy` must outlive it. Throws std::invalid_argument on a covariance that is none.
-  PathSource(const Policy& policy, const Gaussian& belief, const Eigen::MatrixXd& noise_covariance,
-             const PathNumbers& numbers);
+  PathSource(const controller::Policy& policy, const controller::Gaussian& belief,
+             const Eigen::MatrixXd& noise_covariance, const PathNumbers& numbers);
 
-  [[nodiscard]] const Policy& policy() const { return policy_; }
+  [[nodiscard]] const controller::Policy& policy() const { return policy_; }
   [[nodiscard]] Eigen::Index stages() const { return policy_.horizon(); }
   /// x_0 of path `path`, counted from the first (state_dim).
   [[nodiscard]] Eigen::VectorXd initial_state(std::int64_t path) const;
@@ -46,21 +46,24 @@ class PathSource {
  private:
   [[nodiscard]] RandomKey key(std::int64_t path, Eigen::Index step) const;
 
-  const Policy& policy_;
+  const controller::Policy& policy_;
   PathNumbers numbers_;
   GaussianSampler initial_;
   GaussianSampler noise_;
 };
 
 /// The states of `count` paths of the model at stages 0 … horizon, each state_dim x count.
-[[nodiscard]] std::vector<Points> model_paths(const Dynamics& model, const PathSource& source,
-                                              std::int64_t count, const Executor& run);
+[[nodiscard]] std::vector<controller::Points> model_paths(const models::Dynamics& model,
+                                                          const PathSource& source,
+                                                          std::int64_t count,
+                                                          const controller::Executor& run);
 
 /// Paths of a plant. Of one whose plant broke, what follows is not a number.
 struct PlantPaths {
-  std::vector<Points> states;     ///< stages 0 … horizon, state_dim x count
-  std::vector<Points> residuals;  ///< x_{k+1} − w_k − f(x_k, u_k), horizon, state_dim x count
-  std::int64_t faults = 0;        ///< paths whose plant broke
+  std::vector<controller::Points> states;  ///< stages 0 … horizon, state_dim x count
+  std::vector<controller::Points>
+      residuals;            ///< x_{k+1} − w_k − f(x_k, u_k), horizon, state_dim x count
+  std::int64_t faults = 0;  ///< paths whose plant broke
 };
 
 /// Paths a unit of `SharedWork`.
@@ -73,13 +76,13 @@ inline constexpr std::int64_t kPathBatch = 20;
 
 /// Drives plants of `plants` along `count` paths; the policy is evaluated at the plant's own state.
 /// The same for whatever `run`. Not complete if `work` was stopped.
-[[nodiscard]] PlantPaths plant_paths(PlantPool& plants, const Dynamics& model,
+[[nodiscard]] PlantPaths plant_paths(PlantPool& plants, const models::Dynamics& model,
                                      const PathSource& source, std::int64_t count,
-                                     const Executor& run, SharedWork& work);
+                                     const controller::Executor& run, SharedWork& work);
 
 /// Simulated seconds a second of one plant in this thread: the median over `count` ≥ 1 paths.
 /// Depends on the machine and on what else it does.
 [[nodiscard]] double simulation_speed(Plant& plant, const PathSource& source, double time_step,
                                       int count);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

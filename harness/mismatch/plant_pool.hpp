@@ -10,7 +10,7 @@
 
 #include "harness/plant/plant.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Lends plants to threads: as many are made as are out at the same time at most, or, where every
 /// path has a vehicle of its own, one for each. They are to be reset by who takes them.
@@ -51,4 +51,4 @@ class PlantPool {
   std::vector<std::unique_ptr<Plant>> idle_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

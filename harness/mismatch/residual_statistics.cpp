@@ -7,7 +7,7 @@
 #include "harness/statistics/chi_squared.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit each; with a margin.
@@ -108,4 +108,4 @@ ResidualStatistics residual_statistics(const std::vector<Eigen::MatrixXd>& episo
   return statistics;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

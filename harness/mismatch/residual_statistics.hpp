@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Whether residuals are white: whether what a period leaves unexplained says nothing of the next
 /// one. Not a number where a residual never changes.
@@ -47,4 +47,4 @@ inline constexpr int kMostLags = 10;
 [[nodiscard]] ResidualStatistics residual_statistics(const std::vector<Eigen::MatrixXd>& episodes,
                                                      const Eigen::VectorXd& magnitude);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 void require_size(const Eigen::VectorXd& vector, Eigen::Index size, const char* what) {
@@ -16,7 +16,7 @@ void require_size(const Eigen::VectorXd& vector, Eigen::Index size, const char* 
 
 class AnalyticPlant final : public Plant {
  public:
-  AnalyticPlant(std::unique_ptr<const Dynamics> dynamics, double control_period)
+  AnalyticPlant(std::unique_ptr<const models::Dynamics> dynamics, double control_period)
       : dynamics_(std::move(dynamics)),
         control_period_(control_period),
         state_(Eigen::VectorXd::Zero(dynamics_->state_dim())) {}
@@ -36,8 +36,8 @@ class AnalyticPlant final : public Plant {
     require_size(input, dynamics_->input_dim(), "input");
     require_size(disturbance, dynamics_->state_dim(), "disturbance");
     if (fault_) return {.state = state_, .motion = {}, .fault = fault_};
-    StateBatch next(dynamics_->state_dim(), 1);
-    dynamics_->step(StateBatch(state_), StateBatch(input), next);
+    models::StateBatch next(dynamics_->state_dim(), 1);
+    dynamics_->step(models::StateBatch(state_), models::StateBatch(input), next);
     next.col(0) += disturbance;
     const double end = static_cast<double>(periods_ + 1) * control_period_;
     if (!next.allFinite()) {
@@ -52,7 +52,7 @@ class AnalyticPlant final : public Plant {
   [[nodiscard]] Eigen::VectorXd state() const override { return state_; }
 
  private:
-  std::unique_ptr<const Dynamics> dynamics_;
+  std::unique_ptr<const models::Dynamics> dynamics_;
   double control_period_;
   Eigen::VectorXd state_;
   long periods_ = 0;  // since reset
@@ -61,9 +61,9 @@ class AnalyticPlant final : public Plant {
 
 }  // namespace
 
-std::unique_ptr<Plant> make_analytic_plant(std::unique_ptr<const Dynamics> dynamics,
+std::unique_ptr<Plant> make_analytic_plant(std::unique_ptr<const models::Dynamics> dynamics,
                                            double control_period) {
   return std::make_unique<AnalyticPlant>(std::move(dynamics), control_period);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

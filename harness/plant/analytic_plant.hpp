@@ -6,14 +6,14 @@
 #include "harness/plant/plant.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// dynamics: not null. control_period: s, the one that the dynamics was made for.
 /// `advance` brings one motion sample, at the period's end and without qpos. A state that is not
 /// finite is a fault: the state stays the last good one, and every later step brings the same fault
 /// until `reset`. Vectors of a wrong size, and a state for `reset` that is not finite, throw
 /// std::invalid_argument.
-[[nodiscard]] std::unique_ptr<Plant> make_analytic_plant(std::unique_ptr<const Dynamics> dynamics,
-                                                         double control_period);
+[[nodiscard]] std::unique_ptr<Plant> make_analytic_plant(
+    std::unique_ptr<const models::Dynamics> dynamics, double control_period);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Where the vehicle was between two control instants, for drawing.
 struct MotionSample {
@@ -42,4 +42,4 @@ class Plant {
   [[nodiscard]] virtual Eigen::VectorXd state() const = 0;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/plant/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 struct PlantMaker {
@@ -18,7 +18,7 @@ struct PlantMaker {
 };
 
 /// Multiplies those of `names` among the parameters; refuses a factor that changes none.
-void vary(ParameterMap& parameters, const char* what, double factor,
+void vary(models::ParameterMap& parameters, const char* what, double factor,
           std::initializer_list<const char*> names) {
   if (factor == 1.0) return;
   bool any = false;
@@ -40,17 +40,18 @@ std::unique_ptr<Plant> make_analytic(const Scenario& scenario, const PlantVariat
                       .found = scenario.disturbance.kind,
                       .expected = "state, as an analytic plant has no body to push"});
   }
-  ParameterMap parameters = scenario.model.parameters;
+  models::ParameterMap parameters = scenario.model.parameters;
   vary(parameters, "friction", variation.friction, {"front_tyre_stiffness", "rear_tyre_stiffness"});
   vary(parameters, "mass", variation.mass, {"mass", "yaw_inertia", "cart_mass", "pole_mass"});
   vary(parameters, "wheelbase", variation.wheelbase, {"front_axle_distance", "rear_axle_distance"});
-  return make_analytic_plant(make_dynamics(scenario.model.system, parameters, scenario.time_step),
-                             scenario.time_step);
+  return make_analytic_plant(
+      models::make_dynamics(scenario.model.system, parameters, scenario.time_step),
+      scenario.time_step);
 }
 
 std::unique_ptr<Plant> make_mujoco(const Scenario& scenario, const PlantVariation& variation) {
   const auto model =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   const bool pushed = scenario.disturbance.kind == "force";
   return make_mujoco_plant(
       {.mjcf = scenario.plant.mjcf,
@@ -95,4 +96,4 @@ std::string plant_digest(const Scenario& scenario) {
   return scenario.plant.kind == "mujoco" ? mujoco_model_digest(scenario.plant.mjcf) : "";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

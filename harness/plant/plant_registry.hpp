@@ -9,7 +9,7 @@
 #include "harness/plant/plant_variation.hpp"
 #include "harness/scenario/scenario.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What `qsmpc list plants` prints.
 struct PlantEntry {
@@ -30,4 +30,4 @@ struct PlantEntry {
 /// without files. Throws as it does.
 [[nodiscard]] std::string plant_digest(const Scenario& scenario);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

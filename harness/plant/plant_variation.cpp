@@ -4,7 +4,7 @@
 
 #include "harness/random/random_numbers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 bool varies(const Scenario::Disturbance& disturbance) {
   return disturbance.friction > 0.0 || disturbance.mass > 0.0 || disturbance.wheelbase > 0.0;
@@ -19,4 +19,4 @@ PlantVariation draw_variation(const Scenario::Disturbance& disturbance, std::uin
           .wheelbase = std::exp(disturbance.wheelbase * normal[2])};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

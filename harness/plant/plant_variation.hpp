@@ -5,7 +5,7 @@
 
 #include "harness/scenario/scenario.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Factors, > 0, on what a plant's file or its system's constants say.
 struct PlantVariation {
@@ -22,4 +22,4 @@ struct PlantVariation {
 [[nodiscard]] PlantVariation draw_variation(const Scenario::Disturbance& disturbance,
                                             std::uint64_t seed, std::uint64_t episode = 0);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -16,7 +16,7 @@
 #include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -43,7 +43,7 @@ class TableReader {
  public:
   TableReader(std::string file, const InputTableFormat& format)
       : file_(std::move(file)), format_(format) {
-    for (const Coordinate& input : format.inputs) names_.push_back(input.name);
+    for (const models::Coordinate& input : format.inputs) names_.push_back(input.name);
     for (std::size_t i = 0; i < names_.size(); ++i) order_.push_back(i);
   }
 
@@ -166,4 +166,4 @@ Eigen::MatrixXd read_input_table(const std::string& path, const InputTableFormat
   return parse_input_table(read_text_file(path), path, format);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

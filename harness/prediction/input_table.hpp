@@ -13,13 +13,13 @@
 #include "controller/prediction/policy.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What the file has to fit to.
 struct InputTableFormat {
-  std::vector<Coordinate> inputs;  ///< one column each
-  InputBounds bounds;              ///< every number lies within
-  std::optional<int> stages{};     ///< how many rows are read, of which there are at least as many
+  std::vector<models::Coordinate> inputs;  ///< one column each
+  controller::InputBounds bounds;          ///< every number lies within
+  std::optional<int> stages{};  ///< how many rows are read, of which there are at least as many
 };
 
 /// The inputs in the file at `path` (input_dim x rows). Throws InputError with file, line, column,
@@ -32,4 +32,4 @@ struct InputTableFormat {
 [[nodiscard]] Eigen::MatrixXd parse_input_table(const std::string& text, const std::string& file,
                                                 const InputTableFormat& format);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/random/random_numbers.hpp"
 #include "harness/threads/workers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Paths that are simulated together: enough to keep the dynamics' loops long, few enough for the
@@ -19,7 +19,7 @@ constexpr std::int64_t kBatch = 1024;
 /// Simulates batches of paths; the batches are shared out among threads.
 class PathSimulation {
  public:
-  PathSimulation(const PredictedMotion& motion, const SafeSet& safe_set,
+  PathSimulation(const controller::PredictedMotion& motion, const controller::SafeSet& safe_set,
                  const MonteCarloOptions& options)
       : motion_(motion),
         safe_set_(safe_set),
@@ -57,13 +57,13 @@ class PathSimulation {
   }
 
   void simulate(std::int64_t begin, std::int64_t size, UnsafeCounts& counts) const {
-    Points states(motion_.belief.mean.size(), size);
-    Points next(states.rows(), size);
-    Points inputs(motion_.policy.inputs.rows(), size);
+    controller::Points states(motion_.belief.mean.size(), size);
+    controller::Points next(states.rows(), size);
+    controller::Points inputs(motion_.policy.inputs.rows(), size);
     std::vector<char> was_unsafe(static_cast<std::size_t>(size), 0);
     for (Eigen::Index i = 0; i < size; ++i) states.col(i) = initial_.sample(key(begin + i, 0));
     for (Eigen::Index k = 0; k < motion_.policy.horizon(); ++k) {
-      policy_inputs(motion_.policy, k, states, inputs);
+      controller::policy_inputs(motion_.policy, k, states, inputs);
       motion_.dynamics.step(states, inputs, next);
       for (Eigen::Index i = 0; i < size; ++i) next.col(i) += noise_.sample(key(begin + i, k + 1));
       states.swap(next);
@@ -73,19 +73,19 @@ class PathSimulation {
     counts.any_stage += std::count(was_unsafe.begin(), was_unsafe.end(), 1);
   }
 
-  std::int64_t count_unsafe(const Points& states, std::vector<char>& was_unsafe) const {
+  std::int64_t count_unsafe(const controller::Points& states, std::vector<char>& was_unsafe) const {
     std::int64_t count = 0;
     for (Eigen::Index i = 0; i < states.cols(); ++i) {
       const Eigen::VectorXd state = states.col(i);
-      if (state.allFinite() && distance_to_unsafe(state, safe_set_) > 0.0) continue;
+      if (state.allFinite() && controller::distance_to_unsafe(state, safe_set_) > 0.0) continue;
       was_unsafe[static_cast<std::size_t>(i)] = 1;
       ++count;
     }
     return count;
   }
 
-  const PredictedMotion& motion_;
-  const SafeSet& safe_set_;
+  const controller::PredictedMotion& motion_;
+  const controller::SafeSet& safe_set_;
   const MonteCarloOptions& options_;
   GaussianSampler initial_;
   GaussianSampler noise_;
@@ -102,8 +102,8 @@ void add_to(UnsafeCounts& total, const UnsafeCounts& more) {
 
 }  // namespace
 
-std::optional<UnsafeCounts> simulate_unsafe_counts(const PredictedMotion& motion,
-                                                   const SafeSet& safe_set,
+std::optional<UnsafeCounts> simulate_unsafe_counts(const controller::PredictedMotion& motion,
+                                                   const controller::SafeSet& safe_set,
                                                    const MonteCarloOptions& options) {
   PathSimulation simulation(motion, safe_set, options);
   const int threads = options.threads > 0 ? options.threads : available_threads();
@@ -120,4 +120,4 @@ std::optional<UnsafeCounts> simulate_unsafe_counts(const PredictedMotion& motion
   return total;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// How many of the simulated paths were unsafe.
 struct UnsafeCounts {
@@ -33,8 +33,8 @@ struct MonteCarloOptions {
 /// belief and the policy of `motion`; of its particles nothing is used. A path that is not finite
 /// counts as unsafe from then on. Path i depends on (seed, i) alone, so the counts are the same for
 /// any number of threads. Nothing if `should_stop` said so before the end.
-[[nodiscard]] std::optional<UnsafeCounts> simulate_unsafe_counts(const PredictedMotion& motion,
-                                                                 const SafeSet& safe_set,
-                                                                 const MonteCarloOptions& options);
+[[nodiscard]] std::optional<UnsafeCounts> simulate_unsafe_counts(
+    const controller::PredictedMotion& motion, const controller::SafeSet& safe_set,
+    const MonteCarloOptions& options);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

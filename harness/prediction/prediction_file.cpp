@@ -15,7 +15,7 @@
 #include "harness/trace/file_header.hpp"
 #include "harness/trace/rows.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Layout = std::vector<DatasetSpec>;
@@ -160,7 +160,7 @@ void write_header(Hdf5File& file, const PredictionReport& report) {
 }
 
 void write_plan(Hdf5File& file, const PredictionReport& report) {
-  const Policy& policy = report.policy;
+  const controller::Policy& policy = report.policy;
   file.append("/belief/mean", by_rows(report.scenario.initial_state.mean));
   file.append("/belief/covariance", by_rows(report.scenario.initial_state.covariance));
   std::vector<double> times;
@@ -177,17 +177,17 @@ void write_plan(Hdf5File& file, const PredictionReport& report) {
   file.append("/plan/cost", cost_row(report.cost));
 }
 
-void write_particles(Hdf5File& file, const Prediction& prediction) {
+void write_particles(Hdf5File& file, const controller::Prediction& prediction) {
   std::vector<std::int64_t> offsets = {0};
-  for (const DiscreteMeasure& stage : prediction.stages) {
+  for (const controller::DiscreteMeasure& stage : prediction.stages) {
     file.append("/particles/locations", by_rows(stage.locations.transpose()));
     file.append("/particles/weights", by_rows(stage.weights));
-    file.append("/particles/mean", by_rows(mean_of(stage)));
-    file.append("/particles/covariance", by_rows(covariance_of(stage)));
+    file.append("/particles/mean", by_rows(controller::mean_of(stage)));
+    file.append("/particles/covariance", by_rows(controller::covariance_of(stage)));
     offsets.push_back(offsets.back() + stage.size());
   }
   file.append("/particles/offsets", offsets);
-  for (const Points& stepped : prediction.stepped) {
+  for (const controller::Points& stepped : prediction.stepped) {
     file.append("/particles/stepped", by_rows(stepped.transpose()));
   }
 }
@@ -223,7 +223,7 @@ void write_hdf5(const PredictionReport& report, const std::string& path) {
 }  // namespace
 
 std::vector<DatasetSpec> prediction_layout(const PredictionReport& report) {
-  const std::unique_ptr<const Dynamics> model = model_of(report.scenario);
+  const std::unique_ptr<const models::Dynamics> model = model_of(report.scenario);
   const Labels labels{.states = labels_of(model->description().states),
                       .inputs = labels_of(model->description().inputs)};
   Layout layout;
@@ -244,4 +244,4 @@ void write_prediction(const PredictionReport& report, const std::string& folder)
   files.commit_sealed();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/prediction/prediction_report.hpp"
 #include "harness/trace/hdf5_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr const char* kPredictionFile = "predict.h5";
 inline constexpr const char* kPredictionNumbersFile = "predict.json";
@@ -24,4 +24,4 @@ inline constexpr std::int64_t kPredictionSchema = 1;
 /// Throws IoError; what stood under the names before is then there still, or is gone as well.
 void write_prediction(const PredictionReport& report, const std::string& folder);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -19,7 +19,7 @@ Json rate_json(std::int64_t events, std::int64_t samples) {
           {"samples", samples}};
 }
 
-Json certificate_json(const StageCertificate& certificate) {
+Json certificate_json(const controller::StageCertificate& certificate) {
   return {{"value", certificate.value},
           {"kind", certificate.kind},
           {"all",
@@ -31,12 +31,12 @@ Json certificate_json(const StageCertificate& certificate) {
 }
 
 Json stage_json(const PredictionReport& report, std::size_t stage) {
-  const DiscreteMeasure& particles = report.prediction.stages[stage];
-  const StageBudget& budget = report.budgets[stage];
+  const controller::DiscreteMeasure& particles = report.prediction.stages[stage];
+  const controller::StageBudget& budget = report.budgets[stage];
   Json json;
   json["stage"] = stage;
-  json["mean"] = vector_json(mean_of(particles));
-  json["covariance"] = rows_json(covariance_of(particles));
+  json["mean"] = vector_json(controller::mean_of(particles));
+  json["covariance"] = rows_json(controller::covariance_of(particles));
   json["w2_bound"] = budget.total;
   json["budget"] = {{"belief", budget.belief},
                     {"noise", budget.noise},
@@ -70,4 +70,4 @@ std::string prediction_json(const PredictionReport& report) {
   return json_text(json);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

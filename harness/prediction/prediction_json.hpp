@@ -5,10 +5,10 @@
 
 #include "harness/prediction/prediction_report.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// One object with stable keys, ending in a new line. Numbers that are not finite are null. Equal
 /// reports give equal bytes.
 [[nodiscard]] std::string prediction_json(const PredictionReport& report);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

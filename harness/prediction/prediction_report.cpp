@@ -7,14 +7,14 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/version.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 PredictionReport predict_scenario(const Scenario& scenario, const PredictionOptions& options) {
-  const std::unique_ptr<const Dynamics> model = model_of(scenario);
-  Planner planner(*model, planner_settings(scenario));
-  const Gaussian belief{.mean = scenario.initial_state.mean,
-                        .covariance = scenario.initial_state.covariance};
-  const Plan& plan =
+  const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
+  controller::Planner planner(*model, planner_settings(scenario));
+  const controller::Gaussian belief{.mean = scenario.initial_state.mean,
+                                    .covariance = scenario.initial_state.covariance};
+  const controller::Plan& plan =
       options.inputs ? planner.prescribe(belief, *options.inputs) : planner.plan(belief);
 
   PredictionReport report;
@@ -22,16 +22,17 @@ PredictionReport predict_scenario(const Scenario& scenario, const PredictionOpti
   report.scenario_text = to_yaml(scenario);
   report.version = kVersion;
   report.inputs_given = options.inputs.has_value();
-  if (!report.inputs_given) report.solver_status = solver_status_name(plan.status);
+  if (!report.inputs_given) report.solver_status = controller::solver_status_name(plan.status);
   report.policy = plan.policy;
   report.cost = plan.cost;
   report.prediction = plan.prediction;
-  const PredictedMotion motion = of_plant(motion_of(planner, belief, plan), scenario, 0);
-  report.budgets = error_budget(motion);
+  const controller::PredictedMotion motion =
+      of_plant(controller::motion_of(planner, belief, plan), scenario, 0);
+  report.budgets = controller::error_budget(motion);
   // All four bounds are reported, so each is to be as good as it gets.
-  report.certificates =
-      certify(motion, scenario.safe_set, report.budgets, CertificateEffort::kEvery);
-  report.horizon_bound = horizon_bound(report.certificates);
+  report.certificates = controller::certify(motion, scenario.safe_set, report.budgets,
+                                            controller::CertificateEffort::kEvery);
+  report.horizon_bound = controller::horizon_bound(report.certificates);
   if (options.monte_carlo.samples > 0) {
     MonteCarloOptions simulation = options.monte_carlo;
     simulation.seed = scenario.seed;
@@ -60,4 +61,4 @@ std::vector<int> contradicted_stages(const PredictionReport& report) {
   return stages;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

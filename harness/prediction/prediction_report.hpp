@@ -22,7 +22,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/statistics/binomial_interval.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct PredictionOptions {
   std::optional<Eigen::MatrixXd> inputs{};  ///< input_dim x horizon; else they are planned
@@ -36,12 +36,12 @@ struct PredictionReport {
   std::string version;
   bool inputs_given = false;
   std::string solver_status;  ///< of planned inputs; empty where they were given
-  Policy policy;
-  CostParts cost;
-  Prediction prediction;
-  std::vector<StageBudget> budgets;            ///< horizon + 1
-  std::vector<StageCertificate> certificates;  ///< stages 1 … horizon
-  double horizon_bound = 1.0;                  ///< of being unsafe at any of these stages
+  controller::Policy policy;
+  controller::CostParts cost;
+  controller::Prediction prediction;
+  std::vector<controller::StageBudget> budgets;            ///< horizon + 1
+  std::vector<controller::StageCertificate> certificates;  ///< stages 1 … horizon
+  double horizon_bound = 1.0;  ///< of being unsafe at any of these stages
   std::optional<UnsafeCounts> monte_carlo;
   bool interrupted = false;  ///< the simulation was given up
 };
@@ -67,4 +67,4 @@ struct SimulatedRate {
 /// certificate is wrong, but for a chance of kRateTail: the program has a bug.
 [[nodiscard]] std::vector<int> contradicted_stages(const PredictionReport& report);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Characters of columns: together with the others at most 78, a terminal has 80.
@@ -20,7 +20,7 @@ constexpr std::size_t kStateWidth = 10;
 constexpr std::size_t kNameLimit = 8;  // of a state; a longer one is cut and marked
 
 /// Two states stand for all of them: the position in the plane, else the first two.
-std::vector<int> shown_states(const SystemDescription& system) {
+std::vector<int> shown_states(const models::SystemDescription& system) {
   if (system.position_x >= 0 && system.position_y >= 0) {
     return {system.position_x, system.position_y};
   }
@@ -53,12 +53,12 @@ std::string simulated_columns(const UnsafeCounts& counts, std::int64_t events) {
   return simulated_columns(probability(simulated.rate), probability(simulated.limits.upper));
 }
 
-std::string head(const PredictionReport& report, const SystemDescription& system,
+std::string head(const PredictionReport& report, const models::SystemDescription& system,
                  const std::vector<int>& states) {
   std::string names = fmt::format("{:>{}}", "stage", kStageWidth);
   std::string units(kStageWidth, ' ');
   for (const int state : states) {
-    const Coordinate& shown = system.states[static_cast<std::size_t>(state)];
+    const models::Coordinate& shown = system.states[static_cast<std::size_t>(state)];
     names += fmt::format("{:>{}}", printable(shown.name, kNameLimit), kStateWidth);
     units += fmt::format("{:>{}}", shown.unit, kStateWidth);
   }
@@ -69,8 +69,8 @@ std::string head(const PredictionReport& report, const SystemDescription& system
 
 std::string stage_row(const PredictionReport& report, std::size_t stage,
                       const std::vector<int>& states) {
-  const Eigen::VectorXd mean = mean_of(report.prediction.stages[stage]);
-  const StageCertificate& certificate = report.certificates[stage - 1];
+  const Eigen::VectorXd mean = controller::mean_of(report.prediction.stages[stage]);
+  const controller::StageCertificate& certificate = report.certificates[stage - 1];
   std::string text = fmt::format("{:>{}}", stage, kStageWidth);
   for (const int state : states) text += fmt::format("{:>{}}", number(mean[state]), kStateWidth);
   text += tail(number(report.budgets[stage].total), probability(certificate.value),
@@ -93,7 +93,7 @@ std::string total_row(const PredictionReport& report, std::size_t states) {
 }  // namespace
 
 std::string prediction_table(const PredictionReport& report) {
-  const std::unique_ptr<const Dynamics> model = model_of(report.scenario);
+  const std::unique_ptr<const models::Dynamics> model = model_of(report.scenario);
   const std::vector<int> states = shown_states(model->description());
   std::string text = fmt::format(
       "{}: {} stages of {:.3g} s, inputs {}, expected cost {:.5g}\n",
@@ -118,4 +118,4 @@ std::string prediction_table(const PredictionReport& report) {
   return text;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

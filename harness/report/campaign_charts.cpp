@@ -12,7 +12,7 @@
 #include "harness/figures/palette.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kLeastCertified = 1e-13;  // left end of the axis: the bin [0, 1e-12) is there
@@ -308,4 +308,4 @@ std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistic
   return figures;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include "harness/campaign/statistics/statistics.hpp"
 #include "harness/figures/svg_chart.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A figure: charts that stand together, and the name of its file.
 struct CampaignFigure {
@@ -20,4 +20,4 @@ struct CampaignFigure {
 /// differences.svg (by pair of variants, one chart a quantity).
 [[nodiscard]] std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/report/table_page.hpp"
 #include "harness/text/html.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kFifth = 1;   // of spread_shares
@@ -191,4 +191,4 @@ std::string campaign_page(const CampaignStatistics& statistics,
          page_foot(statistics.campaign.version);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/campaign/statistics/statistics.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// An episode that is worth looking at, and what there is of it. Paths are relative to the folder
 /// of the page, empty where there is no such file.
@@ -27,4 +27,4 @@ struct ListedEpisode {
 [[nodiscard]] std::string campaign_page(const CampaignStatistics& statistics,
                                         const std::vector<ListedEpisode>& worst = {});
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

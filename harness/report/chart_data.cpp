@@ -2,7 +2,7 @@
 
 #include "harness/report/packed_numbers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -49,4 +49,4 @@ nlohmann::ordered_json chart_data(const Chart& chart) {
   return json;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

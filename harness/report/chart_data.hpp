@@ -5,9 +5,9 @@
 
 #include "harness/figures/svg_chart.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Everything of `chart` that web/charts.js draws. Its numbers are packed (packed_numbers.hpp).
 [[nodiscard]] nlohmann::ordered_json chart_data(const Chart& chart);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

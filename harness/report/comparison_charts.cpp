@@ -9,7 +9,7 @@
 #include "harness/episode/assembly.hpp"
 #include "harness/figures/palette.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kStageLabel = "stage";
@@ -20,7 +20,7 @@ constexpr double kSpread = 0.24;  // left and right of a state's name, of what i
 /// Colours of the plants, blue left to what they are compared with.
 int plant_colour(std::size_t plant) { return 1 + static_cast<int>(plant) % (kPaletteSize - 1); }
 
-std::string with_unit(const Coordinate& coordinate) {
+std::string with_unit(const models::Coordinate& coordinate) {
   return coordinate.unit.empty() ? coordinate.name : coordinate.name + " (" + coordinate.unit + ")";
 }
 
@@ -35,7 +35,8 @@ Series by_coordinate(const std::string& name, int colour, const Eigen::VectorXd&
   return series;
 }
 
-ComparisonFigure residual_figure(const Comparison& comparison, const SystemDescription& system) {
+ComparisonFigure residual_figure(const Comparison& comparison,
+                                 const models::SystemDescription& system) {
   Chart chart{.title = "One-step residual: what the plant adds to model and disturbance",
               .note =
                   "Root mean square over all periods of all episodes. What the model does not "
@@ -45,7 +46,7 @@ ComparisonFigure residual_figure(const Comparison& comparison, const SystemDescr
               .y_label = "root mean square (unit of the state)",
               .y_scale = Scale::kLog,
               .least_shown = kLeastResidual};
-  for (const Coordinate& state : system.states) chart.x_names.push_back(with_unit(state));
+  for (const models::Coordinate& state : system.states) chart.x_names.push_back(with_unit(state));
   chart.x_includes = {0.5, static_cast<double>(system.states.size()) + 0.5};
   chart.series.push_back(
       by_coordinate("disturbance, for scale", kBlue,
@@ -71,10 +72,11 @@ Series by_stage(const PlantComparison& plant, const std::string& name, int colou
   return series;
 }
 
-ComparisonFigure divergence_figure(const Comparison& comparison, const SystemDescription& system) {
+ComparisonFigure divergence_figure(const Comparison& comparison,
+                                   const models::SystemDescription& system) {
   ComparisonFigure figure{.file = "divergence.svg", .charts = {}};
   for (Eigen::Index i = 0; i < std::ssize(system.states); ++i) {
-    const Coordinate& state = system.states[static_cast<std::size_t>(i)];
+    const models::Coordinate& state = system.states[static_cast<std::size_t>(i)];
     Chart chart{.title = "Divergence from the model: " + state.name,
                 .note = "Root mean square over paths with the same disturbances.",
                 .x_label = kStageLabel,
@@ -143,7 +145,7 @@ void add_observed(const Comparison& comparison, const PlantComparison& plant, Ch
 }
 
 Chart certificate_chart(const Comparison& comparison, const PlantComparison& plant) {
-  const auto of = [](const std::vector<StageCertificate>& certificates) {
+  const auto of = [](const std::vector<controller::StageCertificate>& certificates) {
     return [&certificates](const HorizonStage& stage) {
       return certificates[static_cast<std::size_t>(stage.stage) - 1].value;
     };
@@ -172,8 +174,8 @@ Chart certificate_chart(const Comparison& comparison, const PlantComparison& pla
 }  // namespace
 
 std::vector<ComparisonFigure> comparison_figures(const Comparison& comparison) {
-  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
-  const SystemDescription& system = model->description();
+  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
+  const models::SystemDescription& system = model->description();
   ComparisonFigure certificates{.file = "certificates.svg", .charts = {}};
   for (const PlantComparison& plant : comparison.plants) {
     certificates.charts.push_back(certificate_chart(comparison, plant));
@@ -182,4 +184,4 @@ std::vector<ComparisonFigure> comparison_figures(const Comparison& comparison) {
           w2_figure(comparison), std::move(certificates)};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

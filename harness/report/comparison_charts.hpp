@@ -8,7 +8,7 @@
 #include "harness/figures/svg_chart.hpp"
 #include "harness/mismatch/comparison.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A figure: charts that stand together, and the name of its file.
 struct ComparisonFigure {
@@ -26,4 +26,4 @@ inline constexpr std::size_t kCertificateFigure = 3;
 /// (with the floor, by stage) and certificates.svg (against what was observed, one chart a plant).
 [[nodiscard]] std::vector<ComparisonFigure> comparison_figures(const Comparison& comparison);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,7 +17,7 @@
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string kicker(const Comparison& comparison) {
@@ -64,17 +64,17 @@ std::string closed_loop_section(const Comparison& comparison) {
 }
 
 PageTable residual_table(const Comparison& comparison, const PlantComparison& plant,
-                         const SystemDescription& system) {
+                         const models::SystemDescription& system) {
   PageTable table{.label = "One period, by state: " + plant.name,
                   .heads = {"state", "root mean square", "mean", "disturbance", "rounding",
                             "correlation with the next", "p, no memory"},
                   .rows = {}};
-  for (const Coordinate& state : system.states) {
+  for (const models::Coordinate& state : system.states) {
     table.heads.push_back("covariance with " + escape_html(state.name));
   }
   const ResidualStatistics& own = plant.one_step;
   for (Eigen::Index i = 0; i < own.rmse.size(); ++i) {
-    const Coordinate& state = system.states[static_cast<std::size_t>(i)];
+    const models::Coordinate& state = system.states[static_cast<std::size_t>(i)];
     std::vector<std::string> row = {
         escape_html(state.unit.empty() ? state.name : state.name + " (" + state.unit + ")"),
         number_html(own.rmse[i]),
@@ -103,7 +103,7 @@ std::string name_head(const PlantComparison& plant) {
   return html + "</h3>\n";
 }
 
-std::string residual_section(const Comparison& comparison, const SystemDescription& system,
+std::string residual_section(const Comparison& comparison, const models::SystemDescription& system,
                              const ComparisonFigure& figure) {
   std::string html = section_head(
       "One period: what the plant adds to model and disturbance",
@@ -128,10 +128,10 @@ std::string rate_html(const Comparison& comparison, const HorizonStage& stage) {
 }
 
 PageTable stage_table(const Comparison& comparison, const PlantComparison& plant,
-                      const SystemDescription& system) {
+                      const models::SystemDescription& system) {
   PageTable table{
       .label = "Along the plan, by stage: " + plant.name, .heads = {"stage"}, .rows = {}};
-  for (const Coordinate& state : system.states) {
+  for (const models::Coordinate& state : system.states) {
     table.heads.push_back("divergence, " + escape_html(state.name));
   }
   for (const char* head : {"W₂ to the model, at most", "W₂", "floor of W₂", "certified"}) {
@@ -156,7 +156,7 @@ PageTable stage_table(const Comparison& comparison, const PlantComparison& plant
   return table;
 }
 
-std::string plan_section(const Comparison& comparison, const SystemDescription& system,
+std::string plan_section(const Comparison& comparison, const models::SystemDescription& system,
                          const std::vector<ComparisonFigure>& all) {
   std::string html =
       section_head("Along the plan: divergence, W₂ and its floor",
@@ -214,8 +214,8 @@ std::string certificate_section(const Comparison& comparison, const ComparisonFi
 }  // namespace
 
 std::string comparison_page(const Comparison& comparison) {
-  const std::unique_ptr<const Dynamics> model = model_of(comparison.scenario);
-  const SystemDescription& system = model->description();
+  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
+  const models::SystemDescription& system = model->description();
   const std::vector<ComparisonFigure> all = comparison_figures(comparison);
   std::string html = table_page_head(comparison.scenario.name + ": comparison of plants");
   html += "<h1>" + escape_html(comparison.scenario.name) + ": plants beside the model</h1>\n";
@@ -229,4 +229,4 @@ std::string comparison_page(const Comparison& comparison) {
   return html + page_foot(comparison.version);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kPlantNameLimit = 120;  // bytes of a plant's name, which may be a path
@@ -101,4 +101,4 @@ PageVerdict comparison_verdict(const Comparison& comparison) {
   return verdict;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

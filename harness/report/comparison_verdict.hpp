@@ -4,7 +4,7 @@
 #include "harness/mismatch/comparison.hpp"
 #include "harness/report/table_page.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A p-value of the closed loop's certificates that is taken for "exceeded" when it is below.
 inline constexpr double kExceededBelow = 0.01;
@@ -26,4 +26,4 @@ inline constexpr double kExceededBelow = 0.01;
 /// plants, and which plant is farthest from the model.
 [[nodiscard]] PageVerdict comparison_verdict(const Comparison& comparison);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

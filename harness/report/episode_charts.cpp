@@ -14,7 +14,7 @@
 #include "harness/trace/residuals.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
@@ -36,8 +36,8 @@ Series series_of(const Trace& trace, const std::string& name, int colour, const 
   return series;
 }
 
-Chart input_chart(const Trace& trace, const SystemDescription& system, Eigen::Index input) {
-  const Coordinate& coordinate = system.inputs[static_cast<std::size_t>(input)];
+Chart input_chart(const Trace& trace, const models::SystemDescription& system, Eigen::Index input) {
+  const models::Coordinate& coordinate = system.inputs[static_cast<std::size_t>(input)];
   const Scenario::Controller& controller = trace.scenario.controller;
   Series series = series_of(trace, "applied", kBlue, [input](const StepRecord& step) {
     return input < step.input.size() ? step.input[input] : kNotANumber;
@@ -64,7 +64,7 @@ Series unsafe_periods(const Trace& trace) {
       .name = "observed: the period ended unsafe", .colour = kOrange, .mark = Mark::kPoints};
   const Eigen::MatrixXd states = true_states(trace);
   for (Eigen::Index k = 0; k < completed_periods(trace); ++k) {
-    if (!(clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0)) continue;
+    if (!(controller::clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0)) continue;
     series.x.push_back(trace.steps[static_cast<std::size_t>(k)].time);
     series.y.push_back(1.0);
   }
@@ -76,11 +76,11 @@ Chart certificate_chart(const Trace& trace) {
     return step.certificates.empty() ? kNotANumber : step.certificates.front().value;
   };
   const auto plan = [](const StepRecord& step) {
-    return step.certificates.empty() ? kNotANumber : horizon_bound(step.certificates);
+    return step.certificates.empty() ? kNotANumber : controller::horizon_bound(step.certificates);
   };
   const auto thesis = [](const StepRecord& step) {
     double largest = kNotANumber;
-    for (const StageCertificate& stage : step.certificates) {
+    for (const controller::StageCertificate& stage : step.certificates) {
       largest = std::fmax(largest, stage.thesis);
     }
     return largest;
@@ -103,10 +103,10 @@ Chart certificate_chart(const Trace& trace) {
   return chart;
 }
 
-Chart clearance_chart(const Trace& trace, const SystemDescription& system) {
-  const SafeSet& safe_set = trace.scenario.safe_set;
+Chart clearance_chart(const Trace& trace, const models::SystemDescription& system) {
+  const controller::SafeSet& safe_set = trace.scenario.safe_set;
   const auto of = [&safe_set](const Eigen::VectorXd& state) {
-    return state.size() == safe_set.dim() ? clearance(state, safe_set) : kNotANumber;
+    return state.size() == safe_set.dim() ? controller::clearance(state, safe_set) : kNotANumber;
   };
   Series series = series_of(trace, "true state", kBlue,
                             [&of](const StepRecord& step) { return of(step.state); });
@@ -136,12 +136,14 @@ Chart budget_chart(const Trace& trace) {
       .x_label = kTimeLabel,
       .y_label = "W₂ distance (state units)",
       .y_includes = {0.0},
-      .series = {series_of(trace, "total", kBlue, last(&StageBudget::total)),
-                 series_of(trace, "compression", kOrange, last(&StageBudget::compression)),
-                 series_of(trace, "noise", kGreen, last(&StageBudget::noise)),
-                 series_of(trace, "belief", kPurple, last(&StageBudget::belief))}};
+      .series = {
+          series_of(trace, "total", kBlue, last(&controller::StageBudget::total)),
+          series_of(trace, "compression", kOrange, last(&controller::StageBudget::compression)),
+          series_of(trace, "noise", kGreen, last(&controller::StageBudget::noise)),
+          series_of(trace, "belief", kPurple, last(&controller::StageBudget::belief))}};
   if (trace.scenario.model_error) {
-    chart.series.push_back(series_of(trace, "model error", kVermilion, last(&StageBudget::model)));
+    chart.series.push_back(
+        series_of(trace, "model error", kVermilion, last(&controller::StageBudget::model)));
   }
   for (std::size_t i = 1; i < chart.series.size(); ++i) chart.series[i].dashed = i % 2 == 0;
   return chart;
@@ -158,11 +160,12 @@ Chart cost_chart(const Trace& trace) {
       .y_label = "cost (–)",
       .y_scale = Scale::kLog,
       .least_shown = 1e-3,
-      .series = {series_of(trace, "state", kBlue, part(&CostParts::state)),
-                 series_of(trace, "terminal", kOrange, part(&CostParts::terminal)),
-                 series_of(trace, "input", kGreen, part(&CostParts::input)),
-                 series_of(trace, "obstacle penalty", kVermilion, part(&CostParts::obstacle)),
-                 series_of(trace, "bounds penalty", kPurple, part(&CostParts::box))}};
+      .series = {
+          series_of(trace, "state", kBlue, part(&controller::CostParts::state)),
+          series_of(trace, "terminal", kOrange, part(&controller::CostParts::terminal)),
+          series_of(trace, "input", kGreen, part(&controller::CostParts::input)),
+          series_of(trace, "obstacle penalty", kVermilion, part(&controller::CostParts::obstacle)),
+          series_of(trace, "bounds penalty", kPurple, part(&controller::CostParts::box))}};
   chart.series[3].dashed = true;
   chart.series[4].dashed = true;
   return chart;
@@ -238,7 +241,7 @@ Chart solve_time_histogram(const Trace& trace) {
 
 }  // namespace
 
-std::vector<Chart> episode_charts(const Trace& trace, const SystemDescription& system) {
+std::vector<Chart> episode_charts(const Trace& trace, const models::SystemDescription& system) {
   std::vector<Chart> charts;
   charts.push_back(certificate_chart(trace));
   charts.push_back(clearance_chart(trace, system));
@@ -254,17 +257,18 @@ std::vector<Chart> episode_charts(const Trace& trace, const SystemDescription& s
   return charts;
 }
 
-std::string clearance_unit(const SafeSet& safe_set, const SystemDescription& system) {
+std::string clearance_unit(const controller::SafeSet& safe_set,
+                           const models::SystemDescription& system) {
   std::set<std::string> units;
-  const auto add = [&](const Box& box) {
+  const auto add = [&](const controller::Box& box) {
     for (Eigen::Index i = 0; i < std::min(box.lower.size(), std::ssize(system.states)); ++i) {
       if (!std::isfinite(box.lower[i]) && !std::isfinite(box.upper[i])) continue;
       units.insert(system.states[static_cast<std::size_t>(i)].unit);
     }
   };
   add(safe_set.bounds);
-  for (const Box& obstacle : safe_set.obstacles) add(obstacle);
+  for (const controller::Box& obstacle : safe_set.obstacles) add(obstacle);
   return units.size() == 1 ? *units.begin() : "state units";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

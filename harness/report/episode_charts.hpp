@@ -8,16 +8,17 @@
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Over time: certificates with what was observed, clearance, each input against its bounds, solve
 /// time, parts of the cost, error budget; and the histogram of the solve times. Of a trace without
 /// steps, they have no points.
 [[nodiscard]] std::vector<Chart> episode_charts(const Trace& trace,
-                                                const SystemDescription& system);
+                                                const models::SystemDescription& system);
 
 /// The unit of distances to the unsafe set: that of the states which the safe set restricts, or
 /// "state units" where they differ.
-[[nodiscard]] std::string clearance_unit(const SafeSet& safe_set, const SystemDescription& system);
+[[nodiscard]] std::string clearance_unit(const controller::SafeSet& safe_set,
+                                         const models::SystemDescription& system);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "harness/text/json_text.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -30,7 +30,7 @@ double entry(const Eigen::VectorXd& values, Eigen::Index index) {
 
 class EpisodeData {
  public:
-  EpisodeData(const Trace& trace, const SystemDescription& system)
+  EpisodeData(const Trace& trace, const models::SystemDescription& system)
       : trace_(trace), system_(system), horizon_(trace.scenario.controller.horizon) {}
 
   /// What is known of a system whatever its states.
@@ -82,23 +82,24 @@ class EpisodeData {
   }
 
   [[nodiscard]] std::string clearances() const {
-    const SafeSet& safe_set = trace_.scenario.safe_set;
+    const controller::SafeSet& safe_set = trace_.scenario.safe_set;
     std::vector<double> values;
     for (const Eigen::VectorXd& state : states()) {
-      values.push_back(state.size() == safe_set.dim() ? clearance(state, safe_set) : kNotANumber);
+      values.push_back(state.size() == safe_set.dim() ? controller::clearance(state, safe_set)
+                                                      : kNotANumber);
     }
     return packed_floats(values);
   }
 
   [[nodiscard]] Json cost_parts() const {
-    const auto part = [this](double CostParts::*member) {
+    const auto part = [this](double controller::CostParts::*member) {
       return of_steps([member](const StepRecord& step) { return step.cost.*member; });
     };
-    return {{"distance to the target", part(&CostParts::state)},
-            {"distance at the plan’s end", part(&CostParts::terminal)},
-            {"input", part(&CostParts::input)},
-            {"nearness to obstacles", part(&CostParts::obstacle)},
-            {"nearness to the bounds", part(&CostParts::box)}};
+    return {{"distance to the target", part(&controller::CostParts::state)},
+            {"distance at the plan’s end", part(&controller::CostParts::terminal)},
+            {"input", part(&controller::CostParts::input)},
+            {"nearness to obstacles", part(&controller::CostParts::obstacle)},
+            {"nearness to the bounds", part(&controller::CostParts::box)}};
   }
 
   [[nodiscard]] Json inputs() const {
@@ -114,7 +115,7 @@ class EpisodeData {
     return json;
   }
 
-  [[nodiscard]] std::string of_stages(double StageCertificate::*member) const {
+  [[nodiscard]] std::string of_stages(double controller::StageCertificate::*member) const {
     std::vector<double> values;
     for (const StepRecord& step : trace_.steps) {
       for (std::size_t stage = 0; stage + 1 < stages(); ++stage) {
@@ -126,14 +127,15 @@ class EpisodeData {
   }
 
   [[nodiscard]] Json certificates() const {
-    return {{"value", of_stages(&StageCertificate::value)},
-            {"thesis", of_stages(&StageCertificate::thesis)},
+    return {{"value", of_stages(&controller::StageCertificate::value)},
+            {"thesis", of_stages(&controller::StageCertificate::thesis)},
             {"plan", of_steps([](const StepRecord& step) {
-               return step.certificates.empty() ? kNotANumber : horizon_bound(step.certificates);
+               return step.certificates.empty() ? kNotANumber
+                                                : controller::horizon_bound(step.certificates);
              })}};
   }
 
-  [[nodiscard]] std::string of_budgets(double StageBudget::*member) const {
+  [[nodiscard]] std::string of_budgets(double controller::StageBudget::*member) const {
     std::vector<double> values;
     for (const StepRecord& step : trace_.steps) {
       for (std::size_t stage = 0; stage < stages(); ++stage) {
@@ -144,11 +146,11 @@ class EpisodeData {
   }
 
   [[nodiscard]] Json budgets() const {
-    return {{"total", of_budgets(&StageBudget::total)},
-            {"belief", of_budgets(&StageBudget::belief)},
-            {"noise", of_budgets(&StageBudget::noise)},
-            {"compression", of_budgets(&StageBudget::compression)},
-            {"model", of_budgets(&StageBudget::model)}};
+    return {{"total", of_budgets(&controller::StageBudget::total)},
+            {"belief", of_budgets(&controller::StageBudget::belief)},
+            {"noise", of_budgets(&controller::StageBudget::noise)},
+            {"compression", of_budgets(&controller::StageBudget::compression)},
+            {"model", of_budgets(&controller::StageBudget::model)}};
   }
 
   void add_pose(const Eigen::VectorXd& state, std::vector<double>& values) const {
@@ -268,7 +270,7 @@ class EpisodeData {
   }
 
   const Trace& trace_;
-  const SystemDescription& system_;
+  const models::SystemDescription& system_;
   int horizon_;
 };
 
@@ -293,7 +295,7 @@ std::string for_script(const Json& json) {
 
 }  // namespace
 
-std::string episode_data(const Trace& trace, const SystemDescription& system,
+std::string episode_data(const Trace& trace, const models::SystemDescription& system,
                          const PageScene& scene) {
   const EpisodeData data(trace, system);
   Json json = data.periods();
@@ -304,4 +306,4 @@ std::string episode_data(const Trace& trace, const SystemDescription& system,
   return for_script(json);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The page's parts that the scripts take up.
 struct PageScene {
@@ -23,7 +23,7 @@ struct PageScene {
 /// packed (packed_numbers.hpp); web/data.js says what each means. Where all periods together have
 /// more particles than a page should hold, every n-th of a stage is left, and "particles.stride"
 /// is n.
-[[nodiscard]] std::string episode_data(const Trace& trace, const SystemDescription& system,
+[[nodiscard]] std::string episode_data(const Trace& trace, const models::SystemDescription& system,
                                        const PageScene& scene);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/figures/plane_map.hpp"
 #include "harness/text/number_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kSnapshotPeriod = 10;  // steps from one snapshot to the next, at least
@@ -20,7 +20,7 @@ constexpr int kLastStageColour = kOrange;
 
 class EpisodeMap {
  public:
-  EpisodeMap(const Trace& trace, const SystemDescription& system)
+  EpisodeMap(const Trace& trace, const models::SystemDescription& system)
       : trace_(trace), system_(system) {}
 
   [[nodiscard]] PlaneMap map() const {
@@ -125,23 +125,24 @@ class EpisodeMap {
   }
 
   const Trace& trace_;
-  const SystemDescription& system_;
+  const models::SystemDescription& system_;
 };
 
 }  // namespace
 
-PlaneMap episode_ground(const Trace& trace, const SystemDescription& system) {
+PlaneMap episode_ground(const Trace& trace, const models::SystemDescription& system) {
   return EpisodeMap(trace, system).ground_of_drive();
 }
 
-std::optional<PlaneMap> episode_plane_map(const Trace& trace, const SystemDescription& system) {
+std::optional<PlaneMap> episode_plane_map(const Trace& trace,
+                                          const models::SystemDescription& system) {
   if (!has_position(system)) return std::nullopt;
   return EpisodeMap(trace, system).map();
 }
 
-std::string episode_map(const Trace& trace, const SystemDescription& system) {
+std::string episode_map(const Trace& trace, const models::SystemDescription& system) {
   const std::optional<PlaneMap> map = episode_plane_map(trace, system);
   return map ? map_figure(*map) : std::string();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,17 +9,17 @@
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// None for a system without a position in the plane.
 [[nodiscard]] std::optional<PlaneMap> episode_plane_map(const Trace& trace,
-                                                        const SystemDescription& system);
+                                                        const models::SystemDescription& system);
 
 /// A <figure>; empty for a system without a position in the plane.
-[[nodiscard]] std::string episode_map(const Trace& trace, const SystemDescription& system);
+[[nodiscard]] std::string episode_map(const Trace& trace, const models::SystemDescription& system);
 
 /// What stands still in it: safe set and target, and the part of the plane that it shows. For a
 /// system with a position.
-[[nodiscard]] PlaneMap episode_ground(const Trace& trace, const SystemDescription& system);
+[[nodiscard]] PlaneMap episode_ground(const Trace& trace, const models::SystemDescription& system);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -18,7 +18,7 @@
 #include "harness/trace/summary.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::string_view kMeaning =
@@ -138,8 +138,8 @@ std::string ending(const Trace& trace) {
 std::string episode_page(const Trace& trace, const EpisodePageOptions& options) {
   const Scenario& scenario = trace.scenario;
   const auto model =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const SystemDescription& system = model->description();
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const models::SystemDescription& system = model->description();
   const Summary summary = summarise(trace);
   const std::vector<Chart> charts =
       trace.steps.empty() ? std::vector<Chart>{} : episode_charts(trace, system);
@@ -168,4 +168,4 @@ std::string episode_page(const Trace& trace, const EpisodePageOptions& options) 
   return html + page_foot(trace.version);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct EpisodePageOptions {
   std::string video_file{};  ///< beside the page; empty: none
@@ -24,4 +24,4 @@ struct EpisodePageOptions {
 /// std::invalid_argument if the trace's system is unknown.
 [[nodiscard]] std::string episode_page(const Trace& trace, const EpisodePageOptions& options);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,7 +17,7 @@
 #include "harness/report/episode_charts.hpp"
 #include "harness/report/episode_map.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::string_view kInputTitle = "Input: ";
@@ -75,8 +75,8 @@ std::string figure_name(const std::string& title) {
 }
 
 std::vector<FigureFile> episode_figures(const Trace& trace) {
-  const std::unique_ptr<const Dynamics> model = model_of(trace.scenario);
-  const SystemDescription& system = model->description();
+  const std::unique_ptr<const models::Dynamics> model = model_of(trace.scenario);
+  const models::SystemDescription& system = model->description();
   std::vector<FigureFile> figures;
   if (std::optional<PlaneMap> map = episode_plane_map(trace, system)) {
     figures.push_back({.name = "map", .panels = {std::move(*map)}});
@@ -111,4 +111,4 @@ std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
   return files.paths();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/mismatch/comparison.hpp"
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Where figures stand within a folder.
 inline constexpr const char* kFigureFolder = "figures";
@@ -43,4 +43,4 @@ std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
 /// no letter or digit.
 [[nodiscard]] std::string figure_name(const std::string& title);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kNone = "–";
@@ -73,7 +73,8 @@ Tile unsafe_tile(const Trace& trace, const Summary& summary) {
           .verdict = verdict};
 }
 
-Tile clearance_tile(const Trace& trace, const Summary& summary, const SystemDescription& system) {
+Tile clearance_tile(const Trace& trace, const Summary& summary,
+                    const models::SystemDescription& system) {
   Tile tile{.name = "Minimum clearance",
             .value = kNone,
             .hint = "distance to the unsafe set; negative inside"};
@@ -194,7 +195,7 @@ std::string outcome_html(const Trace& trace, const Summary& summary) {
 }
 
 std::string key_figures_html(const Trace& trace, const Summary& summary,
-                             const SystemDescription& system) {
+                             const models::SystemDescription& system) {
   const std::vector<Tile> tiles = {
       time_tile(summary),
       unsafe_tile(trace, summary),
@@ -216,7 +217,7 @@ std::string key_figures_html(const Trace& trace, const Summary& summary,
   return html + "</dl>\n";
 }
 
-std::string mismatch_html(const Summary& summary, const SystemDescription& system) {
+std::string mismatch_html(const Summary& summary, const models::SystemDescription& system) {
   if (summary.steps == 0) return "<p class=\"empty\">No step was made.</p>\n";
   std::string html =
       "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">state</th>"
@@ -227,7 +228,7 @@ std::string mismatch_html(const Summary& summary, const SystemDescription& syste
       std::min({std::ssize(system.states), summary.mismatch_rmse.size(),
                 summary.mismatch_mean.size(), summary.mismatch_covariance.rows()});
   for (Eigen::Index i = 0; i < rows; ++i) {
-    const Coordinate& state = system.states[static_cast<std::size_t>(i)];
+    const models::Coordinate& state = system.states[static_cast<std::size_t>(i)];
     html += fmt::format(
         "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         escape_html(state.name), format_number(summary.mismatch_rmse[i]),
@@ -237,4 +238,4 @@ std::string mismatch_html(const Summary& summary, const SystemDescription& syste
   return html + "</tbody></table></div>\n";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

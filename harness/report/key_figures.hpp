@@ -7,16 +7,17 @@
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// How the episode ended, in one sentence, with the simulator's words where it broke.
 [[nodiscard]] std::string outcome_html(const Trace& trace, const Summary& summary);
 
 /// The key numbers as a list of tiles.
 [[nodiscard]] std::string key_figures_html(const Trace& trace, const Summary& summary,
-                                           const SystemDescription& system);
+                                           const models::SystemDescription& system);
 
 /// The plant's one-step mismatch as a table, a state a row; a sentence where there is none.
-[[nodiscard]] std::string mismatch_html(const Summary& summary, const SystemDescription& system);
+[[nodiscard]] std::string mismatch_html(const Summary& summary,
+                                        const models::SystemDescription& system);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "harness/text/base64.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 template <class Word>
@@ -37,4 +37,4 @@ std::string packed_words(const std::vector<std::uint16_t>& values) { return pack
 
 std::string packed_bytes(const std::vector<std::uint8_t>& values) { return base64(values); }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// As 32-bit floating-point numbers, of which NaN stands for "none". What is too large becomes an
 /// infinity.
@@ -16,4 +16,4 @@ namespace qsmpc {
 [[nodiscard]] std::string packed_words(const std::vector<std::uint16_t>& values);
 [[nodiscard]] std::string packed_bytes(const std::vector<std::uint8_t>& values);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The style sheet: light and dark, phone and desk, screen and paper.
 [[nodiscard]] std::string_view page_style();
@@ -18,4 +18,4 @@ namespace qsmpc {
 [[nodiscard]] std::string_view page_style_sha256();
 [[nodiscard]] std::string_view page_script_sha256();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include "harness/text/base64.hpp"
 #include "harness/text/html.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string policy(PageScripts scripts) {
@@ -37,4 +37,4 @@ std::string page_foot(const std::string& version) {
                      escape_html(version));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

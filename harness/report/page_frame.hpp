@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 enum class PageScripts {
   kNone,     ///< the page runs nothing
@@ -21,4 +21,4 @@ enum class PageScripts {
 /// The footer, which says which version made the page, and the end of the body.
 [[nodiscard]] std::string page_foot(const std::string& version);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

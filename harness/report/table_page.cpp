@@ -10,7 +10,7 @@
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::string_view kBody = "<body>";
@@ -70,4 +70,4 @@ std::string interval_html(const RateInterval& limits) {
                      number_html(limits.upper));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 
 #include "harness/statistics/binomial_interval.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// As page_head, with the style of the tables, on paper too.
 [[nodiscard]] std::string table_page_head(const std::string& title);
@@ -43,4 +43,4 @@ struct PageTable {
 [[nodiscard]] std::string number_html(double value);
 [[nodiscard]] std::string interval_html(const RateInterval& limits);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

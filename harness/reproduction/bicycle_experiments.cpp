@@ -11,7 +11,7 @@
 #include "harness/reproduction/experiments.hpp"
 #include "harness/statistics/sample_statistics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kScenario = "bicycle_square";
@@ -105,4 +105,4 @@ ExperimentResult bicycle_with_noise(Laboratory& laboratory) {
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

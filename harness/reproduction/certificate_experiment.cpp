@@ -12,7 +12,7 @@
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kStages = 8;
@@ -33,16 +33,16 @@ SimulatedRate truth_at(const PredictionReport& report, int stage) {
 /// Algorithm 4 with the true distance, and the radius that holds.
 double linear_transport_at(const PredictionReport& report, int stage) {
   const auto k = static_cast<std::size_t>(stage);
-  return linear_transport_probability(report.prediction.stages[k], report.scenario.safe_set,
-                                      report.budgets[k].total);
+  return controller::linear_transport_probability(
+      report.prediction.stages[k], report.scenario.safe_set, report.budgets[k].total);
 }
 
-const StageCertificate& certificate_at(const PredictionReport& report, int stage) {
+const controller::StageCertificate& certificate_at(const PredictionReport& report, int stage) {
   return report.certificates[static_cast<std::size_t>(stage) - 1];
 }
 
 void add_rows(const Case& turn, ExperimentResult& result) {
-  const StageCertificate& certificate = certificate_at(turn.report, turn.stage);
+  const controller::StageCertificate& certificate = certificate_at(turn.report, turn.stage);
   const SimulatedRate truth = truth_at(turn.report, turn.stage);
   const auto row = [&](const std::string& what, double value, const std::string& note = {}) {
     result.rows.push_back(
@@ -79,18 +79,18 @@ Chart chart_of(const Case& turn) {
     }
     chart.series.push_back(series);
   };
-  const auto certificate = [&](double StageCertificate::*bound) {
+  const auto certificate = [&](double controller::StageCertificate::*bound) {
     return [&turn, bound](int stage) { return certificate_at(turn.report, stage).*bound; };
   };
   add("truth", kGreen, [&](int stage) { return truth_at(turn.report, stage).rate; });
   add(
       "its lower limit", kGreen,
       [&](int stage) { return truth_at(turn.report, stage).limits.lower; }, true);
-  add("as published", kVermilion, certificate(&StageCertificate::thesis), true);
-  add("C1", kSky, certificate(&StageCertificate::particles));
-  add("C2", kOrange, certificate(&StageCertificate::mixture));
-  add("C3", kPurple, certificate(&StageCertificate::surrogate));
-  add("C4", kBlue, certificate(&StageCertificate::smoothed));
+  add("as published", kVermilion, certificate(&controller::StageCertificate::thesis), true);
+  add("C1", kSky, certificate(&controller::StageCertificate::particles));
+  add("C2", kOrange, certificate(&controller::StageCertificate::mixture));
+  add("C3", kPurple, certificate(&controller::StageCertificate::surrogate));
+  add("C4", kBlue, certificate(&controller::StageCertificate::smoothed));
   return chart;
 }
 
@@ -139,4 +139,4 @@ ExperimentResult published_certificate(Laboratory& laboratory) {
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

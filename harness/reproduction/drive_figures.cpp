@@ -12,7 +12,7 @@
 #include "harness/figures/palette.hpp"
 #include "harness/reproduction/published_way.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kEllipsePeriod = 12;  // periods from one drawn belief to the next
@@ -20,7 +20,7 @@ constexpr double kEllipseLevel = 0.95;
 constexpr double kLeastChartedProbability = 1e-8;  // of a probability
 constexpr const char* kTimeLabel = "time (s)";
 
-MapPath path_of(const Eigen::MatrixXd& states, const SystemDescription& system) {
+MapPath path_of(const Eigen::MatrixXd& states, const models::SystemDescription& system) {
   MapPath path;
   for (Eigen::Index k = 0; k < states.cols(); ++k) {
     path.points.push_back(map_point(states.col(k), system));
@@ -29,7 +29,7 @@ MapPath path_of(const Eigen::MatrixXd& states, const SystemDescription& system) 
 }
 
 MapEllipse ellipse_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
-                      const SystemDescription& system) {
+                      const models::SystemDescription& system) {
   const auto x = system.position_x;
   const auto y = system.position_y;
   MapEllipse ellipse{.levels = {kEllipseLevel}};
@@ -38,7 +38,7 @@ MapEllipse ellipse_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covari
   return ellipse;
 }
 
-void add_beliefs(const Sample& sample, const SystemDescription& system, PlaneMap& map) {
+void add_beliefs(const Sample& sample, const models::SystemDescription& system, PlaneMap& map) {
   const Scenario& scenario = sample.scenario;
   for (std::size_t k = 0; k < sample.first.steps.size(); k += kEllipsePeriod) {
     const StepRecord& step = sample.first.steps[k];
@@ -46,7 +46,8 @@ void add_beliefs(const Sample& sample, const SystemDescription& system, PlaneMap
     belief.name = "belief, 95 %";
     belief.colour = kBlue;
     const StageParticles& last = step.particles.back();
-    MapEllipse predicted = ellipse_of(mean_of(last), covariance_of(last), system);
+    MapEllipse predicted =
+        ellipse_of(controller::mean_of(last), controller::covariance_of(last), system);
     predicted.name =
         fmt::format("{:.1f} s ahead, 95 %", scenario.controller.horizon * scenario.time_step);
     predicted.colour = kOrange;
@@ -114,8 +115,8 @@ Chart mean_chart(const std::string& title, const std::vector<NamedSample>& sampl
 }  // namespace
 
 PlaneMap drive_map(const std::string& title, const Sample& sample) {
-  const std::unique_ptr<const Dynamics> model = model_of(sample.scenario);
-  const SystemDescription& system = model->description();
+  const std::unique_ptr<const models::Dynamics> model = model_of(sample.scenario);
+  const models::SystemDescription& system = model->description();
   PlaneMap map = ground_map(sample.scenario, system);
   map.title = title;
   for (std::size_t n = 1; n < sample.episodes.size(); ++n) {
@@ -136,7 +137,7 @@ PlaneMap drive_map(const std::string& title, const Sample& sample) {
 }
 
 /// A chart of `coordinate` over time, still empty.
-Chart coordinate_chart(const std::string& kind, const Coordinate& coordinate) {
+Chart coordinate_chart(const std::string& kind, const models::Coordinate& coordinate) {
   return {.title = kind + ": " + coordinate.name,
           .x_label = kTimeLabel,
           .y_label = coordinate.name + " (" + coordinate.unit + ")"};
@@ -144,7 +145,7 @@ Chart coordinate_chart(const std::string& kind, const Coordinate& coordinate) {
 
 std::vector<Chart> input_charts(const std::vector<NamedSample>& samples) {
   const Scenario& scenario = samples.front().sample->scenario;
-  const std::vector<Coordinate> inputs = model_of(scenario)->description().inputs;
+  const std::vector<models::Coordinate> inputs = model_of(scenario)->description().inputs;
   std::vector<Chart> charts;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -160,7 +161,7 @@ std::vector<Chart> input_charts(const std::vector<NamedSample>& samples) {
 
 std::vector<Chart> state_charts(const std::vector<NamedSample>& samples) {
   const Scenario& scenario = samples.front().sample->scenario;
-  const std::vector<Coordinate> states = model_of(scenario)->description().states;
+  const std::vector<models::Coordinate> states = model_of(scenario)->description().states;
   std::vector<Chart> charts;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -219,4 +220,4 @@ Chart published_chart(const std::vector<NamedSample>& samples) {
                     &EpisodeDigest::published);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

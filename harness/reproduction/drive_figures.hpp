@@ -8,7 +8,7 @@
 #include "harness/figures/svg_chart.hpp"
 #include "harness/reproduction/laboratory.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Drives under the name that a legend gives them.
 struct NamedSample {
@@ -43,4 +43,4 @@ inline constexpr const char* kMapCaption =
 /// The published probability of the next step, over time: mean over the drives under way.
 [[nodiscard]] Chart published_chart(const std::vector<NamedSample>& samples);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

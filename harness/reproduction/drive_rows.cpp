@@ -9,7 +9,7 @@
 
 #include "harness/statistics/sample_statistics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// `samples` without the seeds of which one has no number: drives that ended before their first
@@ -142,4 +142,4 @@ void add_points_claims(const std::string& solver, const std::vector<const Sample
   claim("the certificate in force", &EpisodeDigest::next_step);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/reproduction/laboratory.hpp"
 #include "harness/reproduction/result.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// One column of a table of the thesis: a drive and what is published of it.
 struct PublishedDrive {
@@ -58,4 +58,4 @@ void add_points_claims(const std::string& solver, const std::vector<const Sample
 [[nodiscard]] Claim falls_within_noise(std::string statement,
                                        const std::vector<std::vector<double>>& all);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "harness/reproduction/plans_at_beliefs.hpp"
 #include "harness/statistics/sample_statistics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kCorridor = "dubins_turn";
@@ -301,4 +301,4 @@ ExperimentResult obstacles_by_solver(Laboratory& laboratory) {
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

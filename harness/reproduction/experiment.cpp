@@ -9,7 +9,7 @@
 #include "harness/scenario/known_names.hpp"
 #include "harness/version.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -124,4 +124,4 @@ Reproduction reproduce(const std::vector<std::string>& names, Laboratory& labora
   return all;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/reproduction/laboratory.hpp"
 #include "harness/reproduction/result.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct ExperimentEntry {
   std::string name;                    ///< e.g. "table-5-2"
@@ -38,4 +38,4 @@ using OnExperiment = std::function<void(const Reproduction&)>;
 [[nodiscard]] Reproduction reproduce(const std::vector<std::string>& names, Laboratory& laboratory,
                                      const OnExperiment& on_experiment);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 #include "harness/reproduction/laboratory.hpp"
 #include "harness/reproduction/result.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Fig. 4-1: a belief carried along a turn, as points and as samples.
 [[nodiscard]] ExperimentResult propagation_along_a_turn(Laboratory& laboratory);
@@ -43,4 +43,4 @@ namespace qsmpc {
 /// Every scenario on its analytic plant and on its MuJoCo plants.
 [[nodiscard]] ExperimentResult scenarios_on_plants(Laboratory& laboratory);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -18,7 +18,7 @@
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/summary.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string label_of(const Variant& variant) {
@@ -47,7 +47,7 @@ EpisodeDigest digest_of(const Trace& trace) {
     digest.next_step.push_back(step.certificates.front().value);
     digest.particles.push_back(step.certificates.front().particles);
     digest.published.push_back(step.certificates.front().thesis);
-    digest.plan_risk.push_back(horizon_bound(step.certificates));
+    digest.plan_risk.push_back(controller::horizon_bound(step.certificates));
   }
   return digest;
 }
@@ -116,4 +116,4 @@ int safe_arrivals(const Sample& sample) {
   }));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

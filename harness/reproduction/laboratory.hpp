@@ -14,7 +14,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A scenario as an experiment runs it.
 struct Variant {
@@ -75,7 +75,7 @@ class Laboratory {
   [[nodiscard]] std::int64_t truth_samples() const { return options_.truth_samples; }
   [[nodiscard]] int threads() const { return threads_; }
   /// What independent work is divided among.
-  [[nodiscard]] const Executor& run() const { return run_; }
+  [[nodiscard]] const controller::Executor& run() const { return run_; }
 
   /// `count` episodes of `variant`, `seeds` where it is 0, driven unless they have been
   /// before. Each runs on one thread, and
@@ -91,7 +91,7 @@ class Laboratory {
 
   LaboratoryOptions options_;
   int threads_;
-  Executor run_;
+  controller::Executor run_;
   std::map<std::string, Sample> samples_;
 };
 
@@ -102,4 +102,4 @@ class Laboratory {
 /// Episodes that reached the target, and of them those that never were unsafe.
 [[nodiscard]] int safe_arrivals(const Sample& sample);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,21 +11,24 @@
 #include "harness/prediction/monte_carlo.hpp"
 #include "harness/statistics/sample_statistics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr Eigen::Index kBeliefPeriod = 10;  // periods from one belief to the next
 
 /// The model's prediction from period `k` of `drive`.
-Gaussian belief_after(const EpisodeDigest& drive, Eigen::Index k, const Dynamics& model,
-                      const Eigen::MatrixXd& noise_covariance) {
-  StateBatch next(model.state_dim(), 1);
-  model.step(StateBatch(drive.states.col(k)), StateBatch(drive.inputs.col(k)), next);
+controller::Gaussian belief_after(const EpisodeDigest& drive, Eigen::Index k,
+                                  const models::Dynamics& model,
+                                  const Eigen::MatrixXd& noise_covariance) {
+  models::StateBatch next(model.state_dim(), 1);
+  model.step(models::StateBatch(drive.states.col(k)), models::StateBatch(drive.inputs.col(k)),
+             next);
   return {.mean = next.col(0), .covariance = noise_covariance};
 }
 
 /// How often paths of the model under the plan are unsafe at one of its stages.
-double simulated_risk(const PredictedMotion& motion, const SafeSet& safe_set, std::uint64_t seed,
+double simulated_risk(const controller::PredictedMotion& motion,
+                      const controller::SafeSet& safe_set, std::uint64_t seed,
                       Eigen::Index period) {
   // Another seed for every plan: drives are shorter than this many periods.
   constexpr std::uint64_t kMostPeriods = 1'000'000;
@@ -38,20 +41,24 @@ double simulated_risk(const PredictedMotion& motion, const SafeSet& safe_set, st
 
 }  // namespace
 
-PlanRisk plan_risk_at_beliefs(const Sample& drives, const Scenario& scenario, const Executor& run) {
-  const std::unique_ptr<const Dynamics> model = model_of(scenario);
+PlanRisk plan_risk_at_beliefs(const Sample& drives, const Scenario& scenario,
+                              const controller::Executor& run) {
+  const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
   const std::size_t count = drives.episodes.size();
   PlanRisk means{.certified = std::vector<double>(count), .simulated = std::vector<double>(count)};
   run(static_cast<int>(count), [&](int n) {
     const EpisodeDigest& drive = drives.episodes[static_cast<std::size_t>(n)];
-    Planner planner(*model, planner_settings(scenario));
+    controller::Planner planner(*model, planner_settings(scenario));
     std::vector<double> certified;
     std::vector<double> simulated;
     for (Eigen::Index k = 0; k < drive.inputs.cols(); k += kBeliefPeriod) {
-      const Gaussian belief = belief_after(drive, k, *model, scenario.disturbance.covariance);
+      const controller::Gaussian belief =
+          belief_after(drive, k, *model, scenario.disturbance.covariance);
       planner.reset();
-      const PredictedMotion motion = motion_of(planner, belief, planner.plan(belief));
-      certified.push_back(horizon_bound(certify(motion, scenario.safe_set, error_budget(motion))));
+      const controller::PredictedMotion motion =
+          controller::motion_of(planner, belief, planner.plan(belief));
+      certified.push_back(controller::horizon_bound(
+          controller::certify(motion, scenario.safe_set, controller::error_budget(motion))));
       simulated.push_back(simulated_risk(motion, scenario.safe_set, drive.seed, k));
     }
     means.certified[static_cast<std::size_t>(n)] = mean_of(certified);
@@ -60,4 +67,4 @@ PlanRisk plan_risk_at_beliefs(const Sample& drives, const Scenario& scenario, co
   return means;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "controller/parallel.hpp"
 #include "harness/reproduction/laboratory.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Probabilities of being unsafe at some stage of a plan: of every drive the mean over its plans.
 struct PlanRisk {
@@ -23,6 +23,6 @@ inline constexpr std::int64_t kPathsAPlan = 5'000;
 /// without measurement noise. Paths depend on the drive's seed and the period alone, so that
 /// controllers are simulated with the same noise. Nothing depends on `run`.
 [[nodiscard]] PlanRisk plan_risk_at_beliefs(const Sample& drives, const Scenario& scenario,
-                                            const Executor& run);
+                                            const controller::Executor& run);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "harness/reproduction/experiments.hpp"
 #include "harness/scenario/plant_choice.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kPromisedShare = 0.9;
@@ -123,4 +123,4 @@ ExperimentResult scenarios_on_plants(Laboratory& laboratory) {
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

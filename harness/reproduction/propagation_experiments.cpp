@@ -17,7 +17,7 @@
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // ---- Fig. 4-1
@@ -33,12 +33,12 @@ struct PositionSpread {
   [[nodiscard]] double deviation() const { return std::sqrt(covariance.trace()); }
 };
 
-PositionSpread position_spread(const DiscreteMeasure& measure) {
-  return {.mean = mean_of(measure).head<2>(),
-          .covariance = covariance_of(measure).topLeftCorner<2, 2>()};
+PositionSpread position_spread(const controller::DiscreteMeasure& measure) {
+  return {.mean = controller::mean_of(measure).head<2>(),
+          .covariance = controller::covariance_of(measure).topLeftCorner<2, 2>()};
 }
 
-void add_turn_rows(const PredictionReport& report, const std::vector<Points>& samples,
+void add_turn_rows(const PredictionReport& report, const std::vector<controller::Points>& samples,
                    ExperimentResult& result) {
   for (int stage = 0; stage <= kTurnStages; stage += kShownEvery) {
     const auto k = static_cast<std::size_t>(stage);
@@ -77,17 +77,19 @@ double milliseconds_since(Clock::time_point start) {
 }
 
 /// Every point with every noise point added, stage after stage, nothing compressed (Eq. 4-5).
-DiscreteMeasure without_compression(const PredictionReport& report, const DiscreteMeasure& noise) {
+controller::DiscreteMeasure without_compression(const PredictionReport& report,
+                                                const controller::DiscreteMeasure& noise) {
   const auto model = model_of(report.scenario);
-  DiscreteMeasure measure = report.prediction.stages.front();
+  controller::DiscreteMeasure measure = report.prediction.stages.front();
   for (int stage = 0; stage < kNoisyStages; ++stage) {
     const Eigen::Index count = measure.size();
-    Points next(measure.locations.rows(), count);
-    StateBatch inputs(report.policy.inputs.rows(), count);
-    policy_inputs(report.policy, stage, measure.locations, inputs);
+    controller::Points next(measure.locations.rows(), count);
+    models::StateBatch inputs(report.policy.inputs.rows(), count);
+    controller::policy_inputs(report.policy, stage, measure.locations, inputs);
     model->step(measure.locations, inputs, next);
-    DiscreteMeasure product{.locations = Points(next.rows(), count * noise.size()),
-                            .weights = Eigen::VectorXd(count * noise.size())};
+    controller::DiscreteMeasure product{
+        .locations = controller::Points(next.rows(), count * noise.size()),
+        .weights = Eigen::VectorXd(count * noise.size())};
     for (Eigen::Index j = 0; j < noise.size(); ++j) {
       product.locations.middleCols(j * count, count) =
           next.colwise() + Eigen::VectorXd(noise.locations.col(j));
@@ -107,20 +109,22 @@ constexpr std::array<Compressed, 3> kCompressed{{{"soft", "the thesis’s soft c
                                                  {"mixture", "this program’s mixture"}}};
 
 /// How much of the true law's variance `measure` has, and how far off its mean is.
-void add_moment_rows(const std::string& what, const DiscreteMeasure& measure,
-                     const DiscreteMeasure& truth, ExperimentResult& result) {
+void add_moment_rows(const std::string& what, const controller::DiscreteMeasure& measure,
+                     const controller::DiscreteMeasure& truth, ExperimentResult& result) {
   result.rows.push_back({.quantity = "variance after 5 steps over the true one, " + what,
-                         .here = covariance_of(measure).trace() / covariance_of(truth).trace(),
+                         .here = controller::covariance_of(measure).trace() /
+                                 controller::covariance_of(truth).trace(),
                          .note = "traces; the truth from 200,000 samples"});
-  result.rows.push_back({.quantity = "distance of the mean from the true one, " + what,
-                         .here = (mean_of(measure) - mean_of(truth)).norm()});
+  result.rows.push_back(
+      {.quantity = "distance of the mean from the true one, " + what,
+       .here = (controller::mean_of(measure) - controller::mean_of(truth)).norm()});
 }
 
-MapCloud cloud_of(const DiscreteMeasure& measure) {
+MapCloud cloud_of(const controller::DiscreteMeasure& measure) {
   return {.colour = kBlue, .points = measure.locations.topRows<2>(), .weights = measure.weights};
 }
 
-MapEllipse ellipse_of(const DiscreteMeasure& measure) {
+MapEllipse ellipse_of(const controller::DiscreteMeasure& measure) {
   const PositionSpread spread = position_spread(measure);
   return {.colour = kOrange, .mean = spread.mean, .covariance = spread.covariance};
 }
@@ -130,11 +134,11 @@ PlaneMap empty_map(const std::string& title) {
 }
 
 /// Every kShownEvery-th of `stages`, `period` seconds apart.
-PlaneMap turn_map(const std::string& title, const std::vector<DiscreteMeasure>& stages,
+PlaneMap turn_map(const std::string& title, const std::vector<controller::DiscreteMeasure>& stages,
                   double period) {
   PlaneMap map = empty_map(title);
   for (int stage = 0; stage <= kTurnStages; stage += kShownEvery) {
-    const DiscreteMeasure& measure = stages[static_cast<std::size_t>(stage)];
+    const controller::DiscreteMeasure& measure = stages[static_cast<std::size_t>(stage)];
     map.clouds.push_back(cloud_of(measure));
     MapEllipse ellipse = ellipse_of(measure);
     ellipse.label = fmt::format("{:.0f} s", stage * period);
@@ -143,7 +147,7 @@ PlaneMap turn_map(const std::string& title, const std::vector<DiscreteMeasure>& 
   return map;
 }
 
-PlaneMap cloud_map(const std::string& title, const DiscreteMeasure& measure) {
+PlaneMap cloud_map(const std::string& title, const controller::DiscreteMeasure& measure) {
   PlaneMap map = empty_map(title);
   map.area = kCloudArea;
   map.clouds.push_back(cloud_of(measure));
@@ -157,12 +161,12 @@ ExperimentResult propagation_along_a_turn(Laboratory& laboratory) {
   laboratory.at_work("a belief along a turn");
   ExperimentResult result;
   const PredictionReport report = on_a_turn(kTurnStages, {"controller.propagate_noise=false"});
-  const std::vector<Points> samples =
+  const std::vector<controller::Points> samples =
       samples_of(report, {.count = kPictureSamples, .with_noise = false}, laboratory.run());
   add_turn_rows(report, samples, result);
-  std::vector<DiscreteMeasure> sampled;
+  std::vector<controller::DiscreteMeasure> sampled;
   sampled.reserve(samples.size());
-  for (const Points& points : samples) sampled.push_back(equally_weighted(points));
+  for (const controller::Points& points : samples) sampled.push_back(equally_weighted(points));
   const double period = report.scenario.time_step;
   result.figures = {
       {.file = "figure-4-1.svg",
@@ -179,14 +183,14 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
   const std::string parts = fmt::format("controller.quantisation.noise={}", kNoiseParts);
   const PredictionReport first = on_a_turn(kNoisyStages, {parts});
   const Clock::time_point start = Clock::now();
-  const GaussianQuantisation noise =
-      quantise({.mean = Eigen::VectorXd::Zero(first.scenario.disturbance.covariance.rows()),
-                .covariance = first.scenario.disturbance.covariance},
-               kNoiseParts);
-  const DiscreteMeasure all = without_compression(first, noise.measure);
+  const controller::GaussianQuantisation noise = controller::quantise(
+      {.mean = Eigen::VectorXd::Zero(first.scenario.disturbance.covariance.rows()),
+       .covariance = first.scenario.disturbance.covariance},
+      kNoiseParts);
+  const controller::DiscreteMeasure all = without_compression(first, noise.measure);
   const double naive_ms = milliseconds_since(start);
   // Of so many samples the moments are known to a few per mille.
-  const DiscreteMeasure truth =
+  const controller::DiscreteMeasure truth =
       equally_weighted(samples_of(first, {.count = kTruthSamples}, laboratory.run()).back());
   result.rows = {{.quantity = "points after 5 steps, nothing compressed",
                   .published = kPublishedPoints,
@@ -198,7 +202,7 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
     laboratory.at_work(compressed.what);
     const PredictionReport report = on_a_turn(
         kNoisyStages, {parts, std::string("controller.propagator=") + compressed.propagator});
-    const DiscreteMeasure& last = report.prediction.stages.back();
+    const controller::DiscreteMeasure& last = report.prediction.stages.back();
     result.rows.push_back({.quantity = fmt::format("points after 5 steps, {}", compressed.what),
                            .published = kPublishedCompressed,
                            .here = static_cast<double>(last.size())});
@@ -213,4 +217,4 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

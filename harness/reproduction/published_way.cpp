@@ -10,14 +10,16 @@
 #include "controller/planning/planner.hpp"
 #include "harness/episode/assembly.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// Every point of `states` with every one of `noise` added (Eq. 4-5).
-DiscreteMeasure product_of(const Points& states, const Eigen::VectorXd& weights,
-                           const DiscreteMeasure& noise) {
-  DiscreteMeasure product{.locations = Points(states.rows(), states.cols() * noise.size()),
-                          .weights = Eigen::VectorXd(states.cols() * noise.size())};
+controller::DiscreteMeasure product_of(const controller::Points& states,
+                                       const Eigen::VectorXd& weights,
+                                       const controller::DiscreteMeasure& noise) {
+  controller::DiscreteMeasure product{
+      .locations = controller::Points(states.rows(), states.cols() * noise.size()),
+      .weights = Eigen::VectorXd(states.cols() * noise.size())};
   for (Eigen::Index i = 0; i < states.cols(); ++i) {
     const Eigen::Index first = i * noise.size();
     product.locations.middleCols(first, noise.size()) =
@@ -29,10 +31,11 @@ DiscreteMeasure product_of(const Points& states, const Eigen::VectorXd& weights,
 
 }  // namespace
 
-WorstCase worst_cases(const DiscreteMeasure& measure, const SafeSet& safe_set, const Radii& radii) {
-  return {.published = thesis_probability(measure, safe_set, radii.published),
-          .distance = linear_transport_probability(measure, safe_set, radii.sound),
-          .sound = worst_case_probability(measure, safe_set, radii.sound)};
+WorstCase worst_cases(const controller::DiscreteMeasure& measure,
+                      const controller::SafeSet& safe_set, const Radii& radii) {
+  return {.published = controller::thesis_probability(measure, safe_set, radii.published),
+          .distance = controller::linear_transport_probability(measure, safe_set, radii.sound),
+          .sound = controller::worst_case_probability(measure, safe_set, radii.sound)};
 }
 
 std::vector<NextStepView> next_step_views(const Trace& trace) {
@@ -40,19 +43,20 @@ std::vector<NextStepView> next_step_views(const Trace& trace) {
   scenario.controller.propagate_noise = true;
   scenario.controller.propagator = "compressed";
   const Eigen::MatrixXd& covariance = scenario.disturbance.covariance;
-  const std::unique_ptr<const Dynamics> model = model_of(scenario);
-  Planner planner(*model, planner_settings(scenario));
-  const GaussianQuantisation noise =
-      quantise({.mean = Eigen::VectorXd::Zero(model->state_dim()), .covariance = covariance},
-               scenario.controller.quantisation.noise);
+  const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
+  controller::Planner planner(*model, planner_settings(scenario));
+  const controller::GaussianQuantisation noise = controller::quantise(
+      {.mean = Eigen::VectorXd::Zero(model->state_dim()), .covariance = covariance},
+      scenario.controller.quantisation.noise);
   std::vector<NextStepView> views;
   for (const StepRecord& step : trace.steps) {
-    const Gaussian belief{.mean = step.belief_mean, .covariance = step.belief_covariance};
-    const Plan& plan = planner.prescribe(belief, step.plan_inputs);
-    const PredictedMotion motion = motion_of(planner, belief, plan);
-    const std::vector<StageBudget> budgets = error_budget(motion);
-    const double published = thesis_radii(motion, budgets)[1];
-    const DiscreteMeasure product = product_of(
+    const controller::Gaussian belief{.mean = step.belief_mean,
+                                      .covariance = step.belief_covariance};
+    const controller::Plan& plan = planner.prescribe(belief, step.plan_inputs);
+    const controller::PredictedMotion motion = controller::motion_of(planner, belief, plan);
+    const std::vector<controller::StageBudget> budgets = controller::error_budget(motion);
+    const double published = controller::thesis_radii(motion, budgets)[1];
+    const controller::DiscreteMeasure product = product_of(
         plan.prediction.stepped.front(), plan.prediction.stages.front().weights, noise.measure);
     views.push_back(
         {.plain = worst_cases(product, scenario.safe_set,
@@ -64,4 +68,4 @@ std::vector<NextStepView> next_step_views(const Trace& trace) {
   return views;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

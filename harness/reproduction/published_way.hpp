@@ -12,7 +12,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// One measure and radius, in three ways.
 struct WorstCase {
@@ -28,8 +28,8 @@ struct Radii {
   double published = 0.0;
 };
 
-[[nodiscard]] WorstCase worst_cases(const DiscreteMeasure& measure, const SafeSet& safe_set,
-                                    const Radii& radii);
+[[nodiscard]] WorstCase worst_cases(const controller::DiscreteMeasure& measure,
+                                    const controller::SafeSet& safe_set, const Radii& radii);
 
 /// The next step of a period, from the product of stepped points and noise points (Eq. 4-4) and
 /// from the compressed measure (Eq. 4-6).
@@ -42,4 +42,4 @@ struct NextStepView {
 /// thesis's, in place of the one that it was made with.
 [[nodiscard]] std::vector<NextStepView> next_step_views(const Trace& trace);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

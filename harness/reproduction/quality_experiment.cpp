@@ -16,7 +16,7 @@
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kQualitySteps = 10;  // steps 0 … 9
@@ -44,8 +44,9 @@ struct Quality {
   Eigen::MatrixXd points;  // of 100 points, as this program makes them
 };
 
-double squared_distance(const DiscreteMeasure& first, const DiscreteMeasure& second) {
-  const double distance = wasserstein2(first, second);
+double squared_distance(const controller::DiscreteMeasure& first,
+                        const controller::DiscreteMeasure& second) {
+  const double distance = controller::wasserstein2(first, second);
   return distance * distance;
 }
 
@@ -64,13 +65,13 @@ Quality quality_with(const QualityNoise& noise, Laboratory& laboratory) {
                   .points = Eigen::MatrixXd(repeats, kQualitySteps)};
   laboratory.run()(repeats, [&](int repeat) {
     const auto first = static_cast<std::uint64_t>(repeat * (kManySamples + kFewSamples));
-    const std::vector<Points> many =
-        samples_of(here, {.first = first, .count = kManySamples}, run_in_turn);
-    const std::vector<Points> few =
-        samples_of(here, {.first = first + kManySamples, .count = kFewSamples}, run_in_turn);
+    const std::vector<controller::Points> many =
+        samples_of(here, {.first = first, .count = kManySamples}, controller::run_in_turn);
+    const std::vector<controller::Points> few = samples_of(
+        here, {.first = first + kManySamples, .count = kFewSamples}, controller::run_in_turn);
     for (int k = 0; k < kQualitySteps; ++k) {
       const auto stage = static_cast<std::size_t>(k);
-      const DiscreteMeasure truth = equally_weighted(many[stage]);
+      const controller::DiscreteMeasure truth = equally_weighted(many[stage]);
       quality.few(repeat, k) = squared_distance(equally_weighted(few[stage]), truth);
       quality.thesis(repeat, k) = squared_distance(thesis.prediction.stages[stage], truth);
       quality.points(repeat, k) = squared_distance(here.prediction.stages[stage], truth);
@@ -183,7 +184,7 @@ constexpr int kDensityStage = 5;
 struct Shown {
   std::string name;
   int colour;
-  DiscreteMeasure measure;
+  controller::DiscreteMeasure measure;
 };
 
 MapContours contours_of(const Shown& shown) {
@@ -253,4 +254,4 @@ ExperimentResult prediction_quality(Laboratory& laboratory) {
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 
 #include "harness/threads/workers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// What /proc/cpuinfo calls the processor; "unknown" where it does not say.
@@ -41,4 +41,4 @@ Machine this_machine() {
 #endif
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/figures/svg_figure.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// One quantity, as the thesis has it and as it is measured here.
 struct ResultRow {
@@ -70,4 +70,4 @@ struct Reproduction {
   double seconds = 0.0;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

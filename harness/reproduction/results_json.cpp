@@ -5,7 +5,7 @@
 #include "harness/reproduction/results_table.hpp"
 #include "harness/text/json_text.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -58,4 +58,4 @@ std::string results_json(const Reproduction& reproduction) {
   return json_text(json);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

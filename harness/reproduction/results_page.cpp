@@ -6,7 +6,7 @@
 #include "harness/reproduction/results_table.hpp"
 #include "harness/text/html.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string contents(const Reproduction& reproduction) {
@@ -89,4 +89,4 @@ std::string results_page(const Reproduction& reproduction) {
   return html + page_foot(reproduction.version);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,8 +5,8 @@
 
 #include "harness/reproduction/result.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 [[nodiscard]] std::string results_page(const Reproduction& reproduction);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

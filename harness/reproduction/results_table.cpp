@@ -9,7 +9,7 @@
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kQuantityWidth = 74;
@@ -107,4 +107,4 @@ std::string results_markdown(const Reproduction& reproduction, const std::string
   return text;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include "harness/reproduction/result.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Rows beside the published values, claims and remarks, for people.
 [[nodiscard]] std::string results_table(const Reproduction& reproduction);
@@ -24,4 +24,4 @@ namespace qsmpc {
 /// A number as tables show it: up to four digits, "–" for what is not there or not finite.
 [[nodiscard]] std::string table_number(std::optional<double> value);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "controller/parallel.hpp"
 #include "harness/prediction/prediction_report.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr double kTurnRate = 0.3;  ///< rad/s, of Fig. 4-1
 
@@ -28,10 +28,11 @@ struct PathChoice {
   std::int64_t count = 0;
   bool with_noise = true;
 };
-[[nodiscard]] std::vector<Points> samples_of(const PredictionReport& report,
-                                             const PathChoice& choice, const Executor& run);
+[[nodiscard]] std::vector<controller::Points> samples_of(const PredictionReport& report,
+                                                         const PathChoice& choice,
+                                                         const controller::Executor& run);
 
 /// The measure with the same weight on every column of `points`.
-[[nodiscard]] DiscreteMeasure equally_weighted(const Points& points);
+[[nodiscard]] controller::DiscreteMeasure equally_weighted(const controller::Points& points);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include "harness/scenario/section_values.hpp"
 #include "harness/scenario/value_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kLongestDeadline = 1e6;  // s; well within what a clock can count
@@ -19,7 +19,7 @@ constexpr NumberRange kDeadlineRange{.least = 0.0, .most = kLongestDeadline, .ab
 
 class ControllerReader {
  public:
-  ControllerReader(Section& section, const SystemDescription& system)
+  ControllerReader(Section& section, const models::SystemDescription& system)
       : section_(section), system_(system) {}
 
   Scenario::Controller read() {
@@ -49,7 +49,7 @@ class ControllerReader {
   [[nodiscard]] Eigen::Index input_dim() const { return std::ssize(system_.inputs); }
 
   Section& section_;
-  const SystemDescription& system_;
+  const models::SystemDescription& system_;
   Scenario::Controller controller_;
 };
 
@@ -116,16 +116,17 @@ void ControllerReader::read_penalty() {
 
 void ControllerReader::read_input_bounds() {
   Section section = section_.section("input_bounds");
-  const Box limits{.lower = system_.input_lower, .upper = system_.input_upper};
-  Box bounds = read_intervals(section, system_.inputs, {.fallback = limits, .finite = true}).box;
+  const controller::Box limits{.lower = system_.input_lower, .upper = system_.input_upper};
+  controller::Box bounds =
+      read_intervals(section, system_.inputs, {.fallback = limits, .finite = true}).box;
   controller_.input_lower = std::move(bounds.lower);
   controller_.input_upper = std::move(bounds.upper);
 }
 
 }  // namespace
 
-Scenario::Controller read_controller(Section& section, const SystemDescription& system) {
+Scenario::Controller read_controller(Section& section, const models::SystemDescription& system) {
   return ControllerReader(section, system).read();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

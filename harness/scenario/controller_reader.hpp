@@ -5,11 +5,11 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Reads `section`, with defaults filled in; `system` is the one that is controlled. Everything
 /// wrong with it is noted.
 [[nodiscard]] Scenario::Controller read_controller(Section& section,
-                                                   const SystemDescription& system);
+                                                   const models::SystemDescription& system);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

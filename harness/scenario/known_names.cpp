@@ -10,7 +10,7 @@
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Longer names are no slips of the keyboard, and would cost time quadratic in their length.
@@ -33,18 +33,18 @@ std::vector<std::string> names_of(const Entries& entries) {
 }  // namespace
 
 const std::vector<std::string>& solver_names() {
-  static const std::vector<std::string> names = names_of(solvers());
+  static const std::vector<std::string> names = names_of(controller::solvers());
   return names;
 }
 
 const std::vector<std::string>& input_bounding_names() {
-  static const std::vector<std::string> names = names_of(input_boundings());
+  static const std::vector<std::string> names = names_of(controller::input_boundings());
   return names;
 }
 
 const std::vector<std::string>& propagator_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = names_of(propagators());
+    std::vector<std::string> all = names_of(controller::propagators());
     std::erase(all, "noise_free");
     return all;
   }();
@@ -52,7 +52,7 @@ const std::vector<std::string>& propagator_names() {
 }
 
 const std::vector<std::string>& quantiser_names() {
-  static const std::vector<std::string> names = names_of(quantisers());
+  static const std::vector<std::string> names = names_of(controller::quantisers());
   return names;
 }
 
@@ -136,4 +136,4 @@ std::string expected_names(std::string_view name, const std::vector<std::string>
   return fmt::format("{} (known: {})", fmt::join(near, " or "), fmt::join(known, ", "));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 [[nodiscard]] const std::vector<std::string>& solver_names();
 [[nodiscard]] const std::vector<std::string>& input_bounding_names();
@@ -36,4 +36,4 @@ namespace qsmpc {
 [[nodiscard]] std::string expected_names(std::string_view name,
                                          const std::vector<std::string>& known);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -16,7 +16,7 @@
 #include "harness/scenario/yaml_text.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ constexpr const char* kKey = "model_error";
 constexpr std::size_t kMostPeriods = 1000;  // with errors of their own
 // Of a norm that is to be at least another one: what printing with ten digits may take away.
 constexpr double kRounding = 1e-9;
-constexpr std::array<const char*, kHigherOrders.size()> kNormKeys = {"norm4", "norm8"};
+constexpr std::array<const char*, controller::kHigherOrders.size()> kNormKeys = {"norm4", "norm8"};
 
 /// Norms of the error's coordinates, none less than `least` but by rounding; nothing, and a noted
 /// problem, if they are something else.
@@ -42,7 +42,7 @@ std::optional<Eigen::VectorXd> read_norms(Section& section, const std::string& k
   return norms;
 }
 
-void read_moments(Section& section, Eigen::Index dim, ModelError& error) {
+void read_moments(Section& section, Eigen::Index dim, controller::ModelError& error) {
   error.mean = section.vector("mean", dim).value_or(Eigen::VectorXd());
   std::optional<Eigen::MatrixXd> covariance = section.matrix("covariance", dim, dim);
   if (!covariance) return;
@@ -53,7 +53,7 @@ void read_moments(Section& section, Eigen::Index dim, ModelError& error) {
   error.covariance = *covariance;
 }
 
-void read_radius(Section& section, ModelError& error) {
+void read_radius(Section& section, controller::ModelError& error) {
   if (!section.has("radius")) {
     (void)section.number("radius", 0.0);  // a known key
     return;
@@ -68,11 +68,12 @@ void read_radius(Section& section, ModelError& error) {
 }
 
 /// What bounds the error of one period, or of all.
-ModelError read_bounds(Section& section, Eigen::Index dim) {
+controller::ModelError read_bounds(Section& section, Eigen::Index dim) {
   section.require("rms",
                   fmt::format("{} numbers, each the root mean square of a state's error", dim));
   const auto rms = read_norms(section, "rms", Eigen::VectorXd::Zero(dim), "numbers >= 0");
-  ModelError error = model_error_of_size(rms.value_or(Eigen::VectorXd::Zero(dim)));
+  controller::ModelError error =
+      controller::model_error_of_size(rms.value_or(Eigen::VectorXd::Zero(dim)));
   error.offset = section.vector("offset", dim).value_or(Eigen::VectorXd());
   Eigen::VectorXd least = error.root_mean_square;
   for (std::size_t k = 0; k < kNormKeys.size(); ++k) {
@@ -86,12 +87,12 @@ ModelError read_bounds(Section& section, Eigen::Index dim) {
   return error;
 }
 
-ModelError read_mapping(Section& section, const ModelErrorContext& context) {
+controller::ModelError read_mapping(Section& section, const ModelErrorContext& context) {
   const std::string system = section.text("system", context.system, kLongestName);
   if (system != context.system) {
     section.note("system", context.system + ", the scenario's system");
   }
-  ModelError error = read_bounds(section, context.dim);
+  controller::ModelError error = read_bounds(section, context.dim);
   read_moments(section, context.dim, error);
   const std::size_t periods = section.list_size("first");
   if (periods > kMostPeriods) {
@@ -112,24 +113,25 @@ std::string path_from(const std::string& folder, const std::string& name) {
   return path.is_absolute() ? name : (fs::path(folder) / path).lexically_normal().string();
 }
 
-ModelError read_file(const std::string& path, Problems& problems,
-                     const ModelErrorContext& context) {
+controller::ModelError read_file(const std::string& path, Problems& problems,
+                                 const ModelErrorContext& context) {
   try {
     const YamlNode tree = parse_yaml(read_text_file(path), path);
     Problems own(path);
     Section section(tree, own);
-    ModelError error = section.present() ? read_mapping(section, context)
-                                         : model_error_of_size(Eigen::VectorXd::Zero(context.dim));
+    controller::ModelError error =
+        section.present() ? read_mapping(section, context)
+                          : controller::model_error_of_size(Eigen::VectorXd::Zero(context.dim));
     for (InputError::Where& where : own.sorted()) problems.add(std::move(where));
     return error;
   } catch (const InputError& error) {
     problems.add(error.where());
-    return model_error_of_size(Eigen::VectorXd::Zero(context.dim));
+    return controller::model_error_of_size(Eigen::VectorXd::Zero(context.dim));
   }
 }
 
 /// Keys and values of what bounds the error of one period, or of all.
-std::vector<std::pair<std::string, std::string>> bounds_text(const ModelError& error) {
+std::vector<std::pair<std::string, std::string>> bounds_text(const controller::ModelError& error) {
   std::vector<std::pair<std::string, std::string>> lines;
   if (error.offset.size() > 0) lines.emplace_back("offset", yaml_list(error.offset));
   lines.emplace_back("rms", yaml_list(error.root_mean_square));
@@ -142,8 +144,8 @@ std::vector<std::pair<std::string, std::string>> bounds_text(const ModelError& e
 
 }  // namespace
 
-std::optional<ModelError> read_model_error(Section& root, Problems& problems,
-                                           const ModelErrorContext& context) {
+std::optional<controller::ModelError> read_model_error(Section& root, Problems& problems,
+                                                       const ModelErrorContext& context) {
   if (!root.holds_text(kKey)) {
     Section section = root.section(kKey);
     if (!section.present()) return std::nullopt;
@@ -161,7 +163,7 @@ std::optional<ModelError> read_model_error(Section& root, Problems& problems,
   return std::nullopt;
 }
 
-std::string model_error_text(const ModelError& error, const std::string& indent) {
+std::string model_error_text(const controller::ModelError& error, const std::string& indent) {
   std::string out;
   const auto line = [&](const std::string& key, const std::string& value) {
     out += fmt::format("{}{}: {}\n", indent, key, value);
@@ -170,7 +172,7 @@ std::string model_error_text(const ModelError& error, const std::string& indent)
   if (error.covariance.size() > 0) line("covariance", yaml_square(error.covariance));
   for (const auto& [key, value] : bounds_text(error)) line(key, value);
   if (!error.first.empty()) out += indent + "first:\n";
-  for (const ModelError& own : error.first) {
+  for (const controller::ModelError& own : error.first) {
     std::string start = "  - ";
     for (const auto& [key, value] : bounds_text(own)) {
       out += fmt::format("{}{}{}: {}\n", indent, start, key, value);
@@ -180,10 +182,10 @@ std::string model_error_text(const ModelError& error, const std::string& indent)
   return out;
 }
 
-std::string model_error_yaml(const ModelError& error, const std::string& system,
+std::string model_error_yaml(const controller::ModelError& error, const std::string& system,
                              const std::string& comment) {
   const std::string head = comment.empty() ? "" : "# " + comment + "\n";
   return head + "system: " + system + "\n" + model_error_text(error, "");
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "controller/prediction/model_error.hpp"
 #include "harness/scenario/yaml_section.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What a model error must fit.
 struct ModelErrorContext {
@@ -21,16 +21,18 @@ struct ModelErrorContext {
 
 /// What `model_error` in `root` says, a mapping or the path of a file that holds one; nothing
 /// without the key. Problems are noted, those of the file with its name and lines.
-[[nodiscard]] std::optional<ModelError> read_model_error(Section& root, Problems& problems,
-                                                         const ModelErrorContext& context);
+[[nodiscard]] std::optional<controller::ModelError> read_model_error(
+    Section& root, Problems& problems, const ModelErrorContext& context);
 
 /// The keys of `error`, each on a line after `indent`; norms that are unknown in any coordinate are
 /// left out.
-[[nodiscard]] std::string model_error_text(const ModelError& error, const std::string& indent);
+[[nodiscard]] std::string model_error_text(const controller::ModelError& error,
+                                           const std::string& indent);
 
 /// A file that `model_error` can name, of the same values bit for bit: `# comment` if there is
 /// one (one line), the system, then the keys.
-[[nodiscard]] std::string model_error_yaml(const ModelError& error, const std::string& system,
+[[nodiscard]] std::string model_error_yaml(const controller::ModelError& error,
+                                           const std::string& system,
                                            const std::string& comment = "");
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/errors.hpp"
 #include "harness/text/number_parse.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 void mark_overridden(YamlNode& node) {
@@ -100,4 +100,4 @@ void apply_override(YamlNode& root, const std::string& override) {
   mark_overridden(*node);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

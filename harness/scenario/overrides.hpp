@@ -5,7 +5,7 @@
 
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What errors call the place that overrides come from.
 inline constexpr const char* kOverrideSource = "--set";
@@ -17,4 +17,4 @@ inline constexpr const char* kOverrideSource = "--set";
 /// and on a KEY that leads through a single value or past the end of a list.
 void apply_override(YamlNode& root, const std::string& override);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

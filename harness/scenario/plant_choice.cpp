@@ -8,7 +8,7 @@
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/shipped_files.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::vector<std::string> plant_names(const std::string& system) {
@@ -89,4 +89,4 @@ Scenario with_plant(Scenario scenario, const std::string& name) {
   return scenario;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "harness/scenario/scenario.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A MuJoCo vehicle that comes with the program, for one system.
 struct ShippedPlant {
@@ -24,4 +24,4 @@ struct ShippedPlant {
 /// folder. Throws InputError on another name, with those that the system has.
 [[nodiscard]] Scenario with_plant(Scenario scenario, const std::string& name);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Where in a MuJoCo model a number stands.
 enum class QuantitySource { kJoint, kBody, kSensor };
@@ -124,4 +124,4 @@ struct PlantMapping {
   std::optional<TimeStepRange> time_steps;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

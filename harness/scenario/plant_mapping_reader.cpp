@@ -13,7 +13,7 @@
 #include "harness/scenario/section_values.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kLongestElement = 200;  // bytes of a name in a MuJoCo model
@@ -25,9 +25,9 @@ constexpr std::array kMappingKeys = {"state",       "input",      "hold",
                                      "loops",       "rolling",    "rate_limit",
                                      "input_delay", "time_steps", "settling"};
 
-std::vector<std::string> names_of(const std::vector<Coordinate>& coordinates) {
+std::vector<std::string> names_of(const std::vector<models::Coordinate>& coordinates) {
   std::vector<std::string> names(coordinates.size());
-  std::ranges::transform(coordinates, names.begin(), &Coordinate::name);
+  std::ranges::transform(coordinates, names.begin(), &models::Coordinate::name);
   return names;
 }
 
@@ -292,4 +292,4 @@ PlantMapping parse_plant_mapping(const std::string& text, const std::string& fil
   return mapping;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,12 +10,12 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What the mapping's names refer to besides the MuJoCo model.
 struct MappedSystem {
-  const SystemDescription& description;
-  const ParameterMap& parameters;  ///< all of them
+  const models::SystemDescription& description;
+  const models::ParameterMap& parameters;  ///< all of them
 };
 
 /// The mapping in `plant`, or nothing where none of its keys are there. Problems are noted, also a
@@ -30,4 +30,4 @@ struct MappedSystem {
 /// `mapping` as what stands between the braces of a mapping in YAML: "state: {…}, input: {…}".
 [[nodiscard]] std::string plant_mapping_text(const PlantMapping& mapping);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/scenario/yaml_text.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// "[a, b]" of what `text` makes of each item.
@@ -122,4 +122,4 @@ std::string plant_mapping_text(const PlantMapping& mapping) {
   return out;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,12 +17,12 @@
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct Scenario {
   struct Model {
-    std::string system;       ///< a name from `qsmpc list systems`
-    ParameterMap parameters;  ///< all of them, defaults filled in
+    std::string system;               ///< a name from `qsmpc list systems`
+    models::ParameterMap parameters;  ///< all of them, defaults filled in
   };
   struct Plant {
     std::string kind = "mujoco";  ///< a name from `qsmpc list plants`: "analytic" or "mujoco"
@@ -104,8 +104,8 @@ struct Scenario {
   GaussianValue initial_state;
   Disturbance disturbance;
   /// How far the plant is from the model, where that is known: certificates then hold for it.
-  std::optional<ModelError> model_error;
-  SafeSet safe_set;
+  std::optional<controller::ModelError> model_error;
+  controller::SafeSet safe_set;
   Target target;
   Controller controller;
   int step_limit = 200;
@@ -114,4 +114,4 @@ struct Scenario {
   Video video;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

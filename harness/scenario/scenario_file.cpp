@@ -8,7 +8,7 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,4 +54,4 @@ std::vector<InputError::Where> validate_scenario_file(const std::string& path_or
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

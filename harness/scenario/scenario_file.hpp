@@ -10,7 +10,7 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What the resolved scenario is called among the files that a command leaves.
 inline constexpr const char* kScenarioFile = "scenario.yaml";
@@ -49,4 +49,4 @@ struct ScenarioSource {
 /// name, so that no path of this machine is in it, any other by its absolute path.
 [[nodiscard]] std::string to_yaml(const Scenario& scenario);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

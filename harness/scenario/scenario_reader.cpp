@@ -19,7 +19,7 @@
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/value_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kLongestDescription = 500;  // bytes; one line
@@ -33,7 +33,7 @@ constexpr NumberRange kDeviationRange{.least = 0.0, .most = 0.5};  // of a logar
 
 // The vehicle that drives, or is drawn for, a system unless the scenario names another. One that
 // has no place in the plane cannot be drawn without its own simulation.
-std::string default_mjcf(const SystemDescription& system, const std::string& kind) {
+std::string default_mjcf(const models::SystemDescription& system, const std::string& kind) {
   if (kind != "mujoco" && system.position_x < 0) return "";
   std::string farthest;
   for (const ShippedPlant& plant : shipped_plants()) {
@@ -44,28 +44,28 @@ std::string default_mjcf(const SystemDescription& system, const std::string& kin
 
 std::vector<std::string> system_names() {
   std::vector<std::string> names;
-  names.reserve(systems().size());
-  for (const SystemEntry& entry : systems()) names.push_back(entry.name);
+  names.reserve(models::systems().size());
+  for (const models::SystemEntry& entry : models::systems()) names.push_back(entry.name);
   return names;
 }
 
-std::vector<std::string> coordinate_names(const std::vector<Coordinate>& coordinates) {
+std::vector<std::string> coordinate_names(const std::vector<models::Coordinate>& coordinates) {
   std::vector<std::string> names;
   names.reserve(coordinates.size());
-  for (const Coordinate& coordinate : coordinates) names.push_back(coordinate.name);
+  for (const models::Coordinate& coordinate : coordinates) names.push_back(coordinate.name);
   return names;
 }
 
-std::string list_of(const std::vector<Coordinate>& coordinates) {
+std::string list_of(const std::vector<models::Coordinate>& coordinates) {
   return fmt::format("{} numbers, [{}]", coordinates.size(),
                      fmt::join(coordinate_names(coordinates), ", "));
 }
 
 // make_dynamics with its refusal, if any, as text.
-std::unique_ptr<const Dynamics> try_dynamics(const Scenario::Model& model, double time_step,
-                                             std::string& refusal) {
+std::unique_ptr<const models::Dynamics> try_dynamics(const Scenario::Model& model, double time_step,
+                                                     std::string& refusal) {
   try {
-    return make_dynamics(model.system, model.parameters, time_step);
+    return models::make_dynamics(model.system, model.parameters, time_step);
   } catch (const std::invalid_argument& error) {
     refusal = error.what();
     return nullptr;
@@ -108,7 +108,7 @@ class ScenarioReader {
  private:
   void read_names();
   void read_model();
-  void check_parameters(Section& model, const SystemEntry& entry);
+  void check_parameters(Section& model, const models::SystemEntry& entry);
   void read_plant();
   void read_mapping(Section& plant);
   void read_initial_state();
@@ -121,14 +121,14 @@ class ScenarioReader {
   [[nodiscard]] static std::vector<std::string> read_overlays(Section& section);
   void check_safe(Section& section, const std::string& key, const Eigen::VectorXd& point);
 
-  [[nodiscard]] const SystemDescription& system() const { return dynamics_->description(); }
+  [[nodiscard]] const models::SystemDescription& system() const { return dynamics_->description(); }
   [[nodiscard]] Eigen::Index state_dim() const { return dynamics_->state_dim(); }
 
   Section root_;
   Problems& problems_;
   const FileLookup& lookup_;
   Scenario scenario_;
-  std::unique_ptr<const Dynamics> dynamics_;  // nullptr while the system is not known
+  std::unique_ptr<const models::Dynamics> dynamics_;  // nullptr while the system is not known
 };
 
 void ScenarioReader::read_names() {
@@ -146,7 +146,7 @@ void ScenarioReader::read_model() {
   const std::vector<std::string> names = system_names();
   model.require("system", expected_names("", names));
   scenario_.model.system = model.name("system", "", names);
-  for (const SystemEntry& entry : systems()) {
+  for (const models::SystemEntry& entry : models::systems()) {
     if (entry.name != scenario_.model.system) continue;
     check_parameters(model, entry);
     model.refuse_unread();
@@ -154,7 +154,7 @@ void ScenarioReader::read_model() {
 }
 
 // A refusal is tied to the parameter that causes it by trying each alone among the defaults.
-void ScenarioReader::check_parameters(Section& model, const SystemEntry& entry) {
+void ScenarioReader::check_parameters(Section& model, const models::SystemEntry& entry) {
   const double time_step = scenario_.time_step;
   std::string refusal;
   scenario_.model.parameters = entry.defaults;
@@ -247,7 +247,7 @@ void ScenarioReader::read_disturbance() {
 
 void ScenarioReader::read_safe_set() {
   Section section = root_.section("safe_set");
-  const Box everywhere = unbounded_safe_set(state_dim()).bounds;
+  const controller::Box everywhere = controller::unbounded_safe_set(state_dim()).bounds;
   Section bounds = section.section("bounds");
   scenario_.safe_set.bounds = read_intervals(bounds, system().states, {.fallback = everywhere}).box;
   const std::size_t count = section.list_size("obstacles");
@@ -281,7 +281,7 @@ void ScenarioReader::read_target() {
 
 void ScenarioReader::read_angles(Section& section) {
   std::vector<std::string> known;
-  for (const Coordinate& state : system().states) {
+  for (const models::Coordinate& state : system().states) {
     if (state.is_angle) known.push_back(state.name);
   }
   std::vector<int>& angles = scenario_.target.angles;
@@ -345,4 +345,4 @@ Scenario read_scenario(const YamlNode& tree, const FileLookup& lookup, Problems&
   return ScenarioReader(tree, lookup, problems).read();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

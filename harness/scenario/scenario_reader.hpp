@@ -7,7 +7,7 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// How the files that a scenario names are looked up.
 struct FileLookup {
@@ -20,4 +20,4 @@ struct FileLookup {
 [[nodiscard]] Scenario read_scenario(const YamlNode& tree, const FileLookup& lookup,
                                      Problems& problems);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,10 +10,10 @@
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/yaml_text.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
-std::string box(const Box& box, const std::vector<Coordinate>& states) {
+std::string box(const controller::Box& box, const std::vector<models::Coordinate>& states) {
   std::string out = "{";
   for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
     out +=
@@ -48,17 +48,19 @@ std::string plant_text(const Scenario::Plant& plant) {
   return out + "}\n";
 }
 
-std::string safe_set_text(const SafeSet& safe_set, const std::vector<Coordinate>& states) {
+std::string safe_set_text(const controller::SafeSet& safe_set,
+                          const std::vector<models::Coordinate>& states) {
   std::string out = fmt::format("safe_set:\n  bounds: {}\n", box(safe_set.bounds, states));
   if (safe_set.obstacles.empty()) return out + "  obstacles: []\n";
   out += "  obstacles:\n";
-  for (const Box& obstacle : safe_set.obstacles) {
+  for (const controller::Box& obstacle : safe_set.obstacles) {
     out += fmt::format("    - {}\n", box(obstacle, states));
   }
   return out;
 }
 
-std::string target_text(const Scenario::Target& target, const std::vector<Coordinate>& states) {
+std::string target_text(const Scenario::Target& target,
+                        const std::vector<models::Coordinate>& states) {
   std::vector<std::string> angles;
   angles.reserve(target.angles.size());
   for (const int index : target.angles) {
@@ -69,12 +71,12 @@ std::string target_text(const Scenario::Target& target, const std::vector<Coordi
 }
 
 std::string input_bounds(const Scenario::Controller& controller,
-                         const std::vector<Coordinate>& inputs) {
+                         const std::vector<models::Coordinate>& inputs) {
   return box({controller.input_lower, controller.input_upper}, inputs);
 }
 
 std::string controller_text(const Scenario::Controller& controller,
-                            const std::vector<Coordinate>& inputs) {
+                            const std::vector<models::Coordinate>& inputs) {
   std::string out = "controller:\n";
   out += fmt::format("  horizon: {}\n  policy: {}\n", controller.horizon, controller.policy);
   if (controller.feedback_gain) {
@@ -106,8 +108,8 @@ std::string controller_text(const Scenario::Controller& controller,
 
 std::string to_yaml(const Scenario& scenario) {
   const auto dynamics =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const SystemDescription& system = dynamics->description();
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const models::SystemDescription& system = dynamics->description();
   const Scenario::Video& video = scenario.video;
   std::string out;
   out += fmt::format("name: {}\ndescription: {}\nseed: {}\n", quoted_yaml(scenario.name),
@@ -130,4 +132,4 @@ std::string to_yaml(const Scenario& scenario) {
   return out;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

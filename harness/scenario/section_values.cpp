@@ -4,7 +4,7 @@
 
 #include "harness/scenario/value_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 Eigen::MatrixXd semidefinite(Section& section, const std::string& key,
                              const Eigen::MatrixXd& fallback) {
@@ -17,11 +17,11 @@ Eigen::MatrixXd semidefinite(Section& section, const std::string& key,
   return *matrix;
 }
 
-NamedIntervals read_intervals(Section& section, const std::vector<Coordinate>& coordinates,
+NamedIntervals read_intervals(Section& section, const std::vector<models::Coordinate>& coordinates,
                               const IntervalOptions& options) {
   NamedIntervals read{.box = options.fallback};
   Eigen::Index i = 0;
-  for (const Coordinate& coordinate : coordinates) {
+  for (const models::Coordinate& coordinate : coordinates) {
     if (const auto interval = section.interval(coordinate.name, options.finite)) {
       read.box.lower[i] = interval->lower;
       read.box.upper[i] = interval->upper;
@@ -33,4 +33,4 @@ NamedIntervals read_intervals(Section& section, const std::vector<Coordinate>& c
   return read;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

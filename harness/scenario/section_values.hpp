@@ -10,7 +10,7 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The symmetric, positive semidefinite matrix under `key`, of the size of `fallback`; `fallback`
 /// where there is none, or another one, which is noted.
@@ -18,19 +18,19 @@ namespace qsmpc {
                                            const Eigen::MatrixXd& fallback);
 
 struct IntervalOptions {
-  Box fallback;         ///< of coordinates that are not named
-  bool finite = false;  ///< whether infinite ends are refused
+  controller::Box fallback;  ///< of coordinates that are not named
+  bool finite = false;       ///< whether infinite ends are refused
 };
 
 /// Intervals of coordinates, as a box.
 struct NamedIntervals {
-  Box box;
+  controller::Box box;
   bool any = false;  ///< whether a coordinate is named
 };
 
 /// The intervals that `section` has by the names of `coordinates`. Any other key is noted.
 [[nodiscard]] NamedIntervals read_intervals(Section& section,
-                                            const std::vector<Coordinate>& coordinates,
+                                            const std::vector<models::Coordinate>& coordinates,
                                             const IntervalOptions& options);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/scenario/yaml_tree.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -151,4 +151,4 @@ std::string mjcf_name(const std::string& path) {
   return is_inside ? relative.string() : path;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// An experiment that comes with the program.
 struct ShippedFile {
@@ -56,4 +56,4 @@ enum class ShippedKind { kScenario, kCampaign };
 /// of a shipped file, otherwise `path` itself.
 [[nodiscard]] std::string mjcf_name(const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

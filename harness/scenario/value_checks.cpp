@@ -7,7 +7,7 @@
 #include "harness/text/number_parse.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Relative to the largest entry: far above the rounding of a matrix that a program printed with
@@ -35,14 +35,15 @@ std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix) {
     }
   }
   // Scaled, so that no entry however large or small overflows on the way to the eigenvalues.
-  const double least = symmetric_eigenvalues(matrix / scale).minCoeff();
+  const double least = models::symmetric_eigenvalues(matrix / scale).minCoeff();
   if (least >= -kMatrixTolerance) return std::nullopt;
   return fmt::format("a matrix with the eigenvalue {:.6g}", least * scale);
 }
 
-std::optional<std::string> why_unsafe(const Eigen::VectorXd& point, const SafeSet& safe_set,
-                                      const std::vector<Coordinate>& states) {
-  const Box& bounds = safe_set.bounds;
+std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
+                                      const controller::SafeSet& safe_set,
+                                      const std::vector<models::Coordinate>& states) {
+  const controller::Box& bounds = safe_set.bounds;
   for (Eigen::Index i = 0; i < point.size(); ++i) {
     if (point[i] > bounds.lower[i] && point[i] < bounds.upper[i]) continue;
     return fmt::format("{0} = {1}, outside of the bounds {2} < {0} < {3}",
@@ -50,7 +51,7 @@ std::optional<std::string> why_unsafe(const Eigen::VectorXd& point, const SafeSe
                        bounds.upper[i]);
   }
   for (std::size_t k = 0; k < safe_set.obstacles.size(); ++k) {
-    const Box& obstacle = safe_set.obstacles[k];
+    const controller::Box& obstacle = safe_set.obstacles[k];
     const bool inside = (point.array() >= obstacle.lower.array()).all() &&
                         (point.array() <= obstacle.upper.array()).all();
     if (inside) return fmt::format("a state inside safe_set.obstacles.{}", k);
@@ -72,4 +73,4 @@ std::string expected_frame_size() {
                      kLeastFrameSide, kMostFrameWidth, kMostFrameHeight);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

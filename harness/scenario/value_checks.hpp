@@ -12,7 +12,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Replaces the upper triangle of the square, finite `matrix` by the lower one where they differ by
 /// rounding only. Returns what keeps it from being symmetric and positive semidefinite: entries
@@ -22,8 +22,8 @@ namespace qsmpc {
 /// Which bound or obstacle makes `point` unsafe, naming states as `states` does, e.g.
 /// "x = 13, outside of the bounds -1 < x < 12".
 [[nodiscard]] std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
-                                                    const SafeSet& safe_set,
-                                                    const std::vector<Coordinate>& states);
+                                                    const controller::SafeSet& safe_set,
+                                                    const std::vector<models::Coordinate>& states);
 
 /// Width and height of a video frame, pixels.
 struct FrameSize {
@@ -44,4 +44,4 @@ inline constexpr int kMostFrameHeight = 4320;
 /// What an error says is expected where `parse_frame_size` found nothing.
 [[nodiscard]] std::string expected_frame_size();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kMostProblems = 100;  // more help nobody, and cost time on a hostile file
@@ -76,7 +76,7 @@ std::vector<InputError::Where> Problems::sorted() const {
 Section::Section(const YamlNode& root, Problems& problems)
     : Section(root.kind == YamlNode::Kind::kMap ? &root : nullptr, root, "", problems) {
   if (node_ == nullptr) {
-    problems.add(root, "", qsmpc::describe(root), "a mapping of keys to values");
+    problems.add(root, "", harness::describe(root), "a mapping of keys to values");
   }
 }
 
@@ -126,7 +126,7 @@ Section Section::item(const std::string& key, std::size_t index) {
   const YamlNode& node = take(key)->items.at(index);
   const std::string path = fmt::format("{}.{}", path_of(key), index);
   const bool is_map = node.kind == YamlNode::Kind::kMap;
-  if (!is_map) problems_->add(node, path, qsmpc::describe(node), "a mapping of keys to values");
+  if (!is_map) problems_->add(node, path, harness::describe(node), "a mapping of keys to values");
   return {is_map ? &node : nullptr, node, path, *problems_};
 }
 
@@ -138,7 +138,7 @@ void Section::require(const std::string& key, const std::string& expected) {
 
 void Section::note(const std::string& key, const std::string& expected, std::string found) {
   const YamlNode* node = get(key);
-  if (found.empty()) found = node == nullptr ? "nothing" : qsmpc::describe(*node);
+  if (found.empty()) found = node == nullptr ? "nothing" : harness::describe(*node);
   problems_->add(node == nullptr ? *origin_ : *node, path_of(key), std::move(found), expected);
 }
 
@@ -219,7 +219,7 @@ std::vector<std::string> Section::texts(const std::string& key, std::size_t long
     if (is_text && item.text.size() <= longest && !find_text_problem(item.text)) {
       texts.push_back(item.text);
     } else {
-      problems_->add(item, fmt::format("{}.{}", path_of(key), i), qsmpc::describe(item),
+      problems_->add(item, fmt::format("{}.{}", path_of(key), i), harness::describe(item),
                      fmt::format("text of at most {} bytes without control characters", longest));
     }
   }
@@ -242,7 +242,7 @@ std::optional<Eigen::VectorXd> Section::numbers(const YamlNode& list, const std:
                                                 Eigen::Index size, const std::string& expected) {
   const bool is_list = list.kind == YamlNode::Kind::kList;
   if (!is_list || static_cast<Eigen::Index>(list.items.size()) != size) {
-    problems_->add(list, path, qsmpc::describe(list), expected);
+    problems_->add(list, path, harness::describe(list), expected);
     return std::nullopt;
   }
   Eigen::VectorXd values(size);
@@ -251,7 +251,8 @@ std::optional<Eigen::VectorXd> Section::numbers(const YamlNode& list, const std:
     const YamlNode& item = list.items[static_cast<std::size_t>(i)];
     const std::optional<double> value = parse_number(item);
     if (!value || !std::isfinite(*value)) {
-      problems_->add(item, fmt::format("{}.{}", path, i), qsmpc::describe(item), "a finite number");
+      problems_->add(item, fmt::format("{}.{}", path, i), harness::describe(item),
+                     "a finite number");
       all_finite = false;
       continue;
     }
@@ -312,7 +313,8 @@ std::optional<NumberInterval> Section::interval(const std::string& key, bool fin
     const YamlNode& item = node->items[i];
     ends[i] = parse_number(item);
     if (!ends[i] || std::isnan(*ends[i]) || (finite && std::isinf(*ends[i]))) {
-      problems_->add(item, fmt::format("{}.{}", path_of(key), i), qsmpc::describe(item), expected);
+      problems_->add(item, fmt::format("{}.{}", path_of(key), i), harness::describe(item),
+                     expected);
       return std::nullopt;
     }
   }
@@ -331,4 +333,4 @@ void Section::refuse_unread() {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

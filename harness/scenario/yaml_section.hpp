@@ -20,7 +20,7 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The problems noted so far, in the order in which they were found.
 class Problems {
@@ -150,4 +150,4 @@ class Section {
 /// The number that a scalar holds as YAML writes it (.inf included), or nothing.
 [[nodiscard]] std::optional<double> parse_number(const YamlNode& node);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/text/utf8.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // What YAML takes for a key without a "?" before it.
@@ -91,4 +91,4 @@ std::string yaml_flow(const YamlNode& node) {
   return out + (is_map ? "}" : "]");
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

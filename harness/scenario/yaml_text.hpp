@@ -8,7 +8,7 @@
 
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The shortest text that reads back as the same double.
 [[nodiscard]] std::string yaml_number(double value);
@@ -32,4 +32,4 @@ namespace qsmpc {
 /// reader tells from the quoted).
 [[nodiscard]] std::string yaml_flow(const YamlNode& node);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/errors.hpp"
 #include "harness/text/text_encoding.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 int line_of(const YAML::Mark& mark) { return mark.line >= 0 ? mark.line + 1 : 0; }
@@ -214,4 +214,4 @@ YamlNode parse_yaml(const std::string& text, const std::string& file) {
   return builder.take_root();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

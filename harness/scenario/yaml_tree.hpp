@@ -13,7 +13,7 @@
 
 #include "harness/files/text_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr std::size_t kMaxYamlBytes = kMaxTextFileBytes;
 inline constexpr std::size_t kMaxYamlDepth = 16;
@@ -43,4 +43,4 @@ struct YamlNode {
 /// deeper than kMaxYamlDepth, or that has a key twice or something else that is not accepted.
 [[nodiscard]] YamlNode parse_yaml(const std::string& text, const std::string& file);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

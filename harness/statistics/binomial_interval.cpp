@@ -4,7 +4,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 RateInterval clopper_pearson(std::int64_t events, std::int64_t trials, double tail) {
   if (trials < 1 || events < 0 || events > trials || !(tail > 0.0 && tail < 1.0)) {
@@ -17,4 +17,4 @@ RateInterval clopper_pearson(std::int64_t events, std::int64_t trials, double ta
           .upper = Binomial::find_upper_bound_on_p(n, k, tail)};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct RateInterval {
   double lower = 0.0;
@@ -17,4 +17,4 @@ struct RateInterval {
 /// 1934.)
 [[nodiscard]] RateInterval clopper_pearson(std::int64_t events, std::int64_t trials, double tail);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

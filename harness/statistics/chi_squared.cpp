@@ -6,7 +6,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 double chi_squared_tail(double value, int degrees) {
   if (!std::isfinite(value)) return kNotANumber;
@@ -14,4 +14,4 @@ double chi_squared_tail(double value, int degrees) {
   return boost::math::cdf(boost::math::complement(law, value));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kIntervals = 20'000;      // of the integral: finer than the peak of 10⁶ events
@@ -63,4 +63,4 @@ void PeriodTallies::end_episode(std::int64_t periods, double certified) {
   add(periods, certified, false);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

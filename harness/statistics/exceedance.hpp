@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Events of a sequence, and the sum of the certified probabilities.
 struct EventTally {
@@ -49,4 +49,4 @@ class PeriodTallies {
   std::vector<EventTally> tallies_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

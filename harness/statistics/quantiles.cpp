@@ -7,7 +7,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 SortedQuantiles::SortedQuantiles(std::int64_t count, const std::vector<double>& shares)
     : values_(shares.size(), kNotANumber) {
@@ -67,4 +67,4 @@ double RunningMean::standard_error() const {
   return std::sqrt(squares_ / (count - 1.0) / count);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

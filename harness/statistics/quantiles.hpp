@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Quantiles by nearest rank: the smallest value that at least the share q of the values do not
 /// exceed, which is the one of rank max(1, ⌈q count⌉).
@@ -73,4 +73,4 @@ class RunningMean {
   double squares_ = 0.0;  ///< Σ (value − mean)²
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

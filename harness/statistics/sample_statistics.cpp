@@ -6,7 +6,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 double mean_of(const std::vector<double>& sample) {
   if (sample.empty()) return kNotANumber;
@@ -52,4 +52,4 @@ double standard_deviation_about(const std::vector<double>& sample, double mean) 
   return std::sqrt(variance);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The mean; not a number for an empty sample.
 [[nodiscard]] double mean_of(const std::vector<double>& sample);
@@ -29,4 +29,4 @@ namespace qsmpc {
 /// number for fewer than two numbers.
 [[nodiscard]] double standard_deviation_about(const std::vector<double>& sample, double mean);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

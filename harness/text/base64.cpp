@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::string_view kAlphabet =
@@ -45,4 +45,4 @@ std::string base64_of_hex(std::string_view digits) {
   return base64(bytes);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// RFC 4648, section 4, with padding.
 [[nodiscard]] std::string base64(std::span<const std::uint8_t> bytes);
@@ -15,4 +15,4 @@ namespace qsmpc {
 /// or on another character.
 [[nodiscard]] std::string base64_of_hex(std::string_view digits);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

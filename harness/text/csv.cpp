@@ -1,6 +1,6 @@
 #include "harness/text/csv.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
@@ -9,4 +9,4 @@ std::string csv_field(const std::string& text) {
   return quoted + "\"";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

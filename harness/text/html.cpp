@@ -4,7 +4,7 @@
 
 #include "harness/text/utf8.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kReplacement = "\xEF\xBF\xBD";  // U+FFFD
@@ -67,4 +67,4 @@ std::string url_beside(std::string_view name) {
   return url;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// `text` as character data or as a quoted attribute's value: markup characters become references;
 /// bytes that are no UTF-8 and control characters other than tab and line feed become U+FFFD.
@@ -14,4 +14,4 @@ namespace qsmpc {
 /// '-', '_', '.' and '~' is percent-encoded, so that it can name nothing else.
 [[nodiscard]] std::string url_beside(std::string_view name);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kIndent = 2;
@@ -19,4 +19,4 @@ std::string json_text(const nlohmann::ordered_json& json) { return dumped(json, 
 
 std::string compact_json_text(const nlohmann::ordered_json& json) { return dumped(json, kOneLine); }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

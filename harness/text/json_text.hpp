@@ -5,7 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// `json` indented by two spaces, ending in a new line. Names may come from files: bytes that are
 /// not UTF-8 become U+FFFD. Numbers that are not finite are null.
@@ -14,4 +14,4 @@ namespace qsmpc {
 /// The same on one line, without a new line at its end.
 [[nodiscard]] std::string compact_json_text(const nlohmann::ordered_json& json);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

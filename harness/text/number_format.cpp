@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kSmallestPlain = -3;  // exponents that are written out as a plain decimal
@@ -87,4 +87,4 @@ std::string format_power_of_ten(int exponent) {
   return "10" + superscript(exponent);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// `value` with `digits` significant digits; very large and very small ones as "1.2 × 10⁻⁵".
 /// What is not finite is "∞", "−∞" or "not a number".
@@ -26,4 +26,4 @@ namespace qsmpc {
 /// "10⁻⁵".
 [[nodiscard]] std::string format_power_of_ten(int exponent);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

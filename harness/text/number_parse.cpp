@@ -1,6 +1,6 @@
 #include "harness/text/number_parse.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 std::optional<double> parse_decimal(std::string_view text) {
   const bool negative = text.starts_with('-');
@@ -17,4 +17,4 @@ std::optional<double> parse_decimal(std::string_view text) {
   return negative ? -value : value;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

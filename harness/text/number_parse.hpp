@@ -7,7 +7,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The integer that the whole of `text` is, in decimal digits after an optional '-' for signed
 /// types; nothing if it is something else or does not fit into `Integer`.
@@ -24,4 +24,4 @@ template <std::integral Integer>
 /// is something else, words such as "inf" included, or too large or small for a double.
 [[nodiscard]] std::optional<double> parse_decimal(std::string_view text);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

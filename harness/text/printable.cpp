@@ -2,7 +2,7 @@
 
 #include "harness/text/utf8.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr unsigned char kFirstNotAscii = 0x80;
@@ -27,4 +27,4 @@ std::string printable(const std::string& text, std::size_t limit) {
   return line;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "harness/text/utf8.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 bool is_allowed(std::string_view rest) {
@@ -33,4 +33,4 @@ std::optional<TextProblem> find_text_problem(std::string_view text) {
   return std::nullopt;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct TextProblem {
   int line = 0;  ///< from 1
@@ -16,4 +16,4 @@ struct TextProblem {
 /// line feed and a carriage return before one; nothing if there is none.
 [[nodiscard]] std::optional<TextProblem> find_text_problem(std::string_view text);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

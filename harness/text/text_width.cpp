@@ -4,7 +4,7 @@
 
 #include "harness/text/utf8.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 double estimated_width(const std::string& text, double size) {
   constexpr double kWidthOfSize = 0.56;        // of a letter on average, with some to spare
@@ -40,4 +40,4 @@ std::string padded(std::string text, std::size_t columns) {
   return text;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

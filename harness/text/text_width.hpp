@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// About how wide `text` is in a sans-serif font of `size`, rather more than less.
 [[nodiscard]] double estimated_width(const std::string& text, double size);
@@ -16,4 +16,4 @@ namespace qsmpc {
 /// `text` with spaces after it up to `columns` characters; each character takes one column.
 [[nodiscard]] std::string padded(std::string text, std::size_t columns);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::uint32_t kFirstSurrogate = 0xD800;
@@ -32,4 +32,4 @@ std::size_t utf8_characters(std::string_view text) {
   return static_cast<std::size_t>(std::ranges::count_if(text, begins_utf8_character));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

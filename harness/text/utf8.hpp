@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string_view>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Bytes of the well-formed UTF-8 character at the start of `text`, 1 to 4; 0 where there is none.
 /// Overlong forms, surrogates and values above U+10FFFF are not well-formed.
@@ -27,4 +27,4 @@ namespace qsmpc {
   return value < kSpace || value == kDelete;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

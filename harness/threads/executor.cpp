@@ -7,7 +7,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// How work goes to other threads and comes back, where the thread sanitizer can see it: TBB, which
@@ -32,11 +32,11 @@ class Handover {
 
 }  // namespace
 
-Executor executor_of(int threads) {
+controller::Executor executor_of(int threads) {
   if (threads < 1) throw std::invalid_argument("threads: at least one is needed");
-  if (threads == 1) return run_in_turn;
+  if (threads == 1) return controller::run_in_turn;
   auto arena = std::make_shared<tbb::task_arena>(threads);
-  return [arena](int count, TaskRef task) {
+  return [arena](int count, controller::TaskRef task) {
     Handover handover;
     arena->execute([&] {
       tbb::parallel_for(0, count, [&](int n) {
@@ -49,4 +49,4 @@ Executor executor_of(int threads) {
   };
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

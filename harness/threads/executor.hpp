@@ -7,12 +7,12 @@
 
 #include "controller/parallel.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Runs tasks on up to `threads` threads (≥ 1; throws std::invalid_argument else), the calling one
 /// among them; one thread runs them in turn. The threads live as long as the executor or a copy.
 /// What a task throws passes through, once all that have begun have ended; those that have not may
 /// then never run. If several throw, it is one of theirs.
-[[nodiscard]] Executor executor_of(int threads);
+[[nodiscard]] controller::Executor executor_of(int threads);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

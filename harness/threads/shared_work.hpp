@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 class SharedWork {
  public:
@@ -48,4 +48,4 @@ class SharedWork {
   std::atomic<bool> stopped_ = false;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

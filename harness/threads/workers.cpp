@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 int available_threads() {
   // 0 where the system does not tell.
@@ -42,4 +42,4 @@ void run_workers(int count, const Workers::Work& work) {
   workers.join();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

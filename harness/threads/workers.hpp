@@ -14,7 +14,7 @@
 #include <thread>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Threads that the processor runs at once, at least 1.
 [[nodiscard]] int available_threads();
@@ -59,4 +59,4 @@ class Workers {
 /// std::invalid_argument else.
 void run_workers(int count, const Workers::Work& work);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

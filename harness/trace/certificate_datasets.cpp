@@ -5,7 +5,7 @@
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/rows.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 std::vector<DatasetSpec> certificate_layout(std::optional<std::size_t> horizon) {
   const std::vector<std::string> axes =
@@ -47,20 +47,20 @@ std::vector<DatasetSpec> certificate_layout(std::optional<std::size_t> horizon) 
   return layout;
 }
 
-void append_certificates(Hdf5File& file, const std::vector<StageBudget>& budgets,
-                         const std::vector<StageCertificate>& certificates) {
+void append_certificates(Hdf5File& file, const std::vector<controller::StageBudget>& budgets,
+                         const std::vector<controller::StageCertificate>& certificates) {
   std::vector<double> columns;
-  for (const StageBudget& stage : budgets) {
+  for (const controller::StageBudget& stage : budgets) {
     for (const BudgetField& field : kBudgetColumns) columns.push_back(stage.*field.member);
   }
   file.append("/certificate/budget", columns);
-  file.append(kModelErrorPath, column_of(budgets, &StageBudget::model));
-  file.append(kDynamicsPath, column_of(budgets, &StageBudget::dynamics));
-  file.append("/certificate/lipschitz", column_of(budgets, &StageBudget::lipschitz));
+  file.append(kModelErrorPath, column_of(budgets, &controller::StageBudget::model));
+  file.append(kDynamicsPath, column_of(budgets, &controller::StageBudget::dynamics));
+  file.append("/certificate/lipschitz", column_of(budgets, &controller::StageBudget::lipschitz));
   for (const CertificateField& field : kCertificateFields) {
     file.append(certificate_path(field), column_of(certificates, field.member));
   }
-  file.append("/certificate/kind", column_of(certificates, &StageCertificate::kind));
+  file.append("/certificate/kind", column_of(certificates, &controller::StageCertificate::kind));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "controller/certification/error_budget.hpp"
 #include "harness/trace/hdf5_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Its datasets. With `horizon`, a row is a step and holds all stages (0 … horizon of budgets,
 /// 1 … horizon of certificates); without, a row is a stage.
@@ -18,7 +18,7 @@ namespace qsmpc {
 
 /// Appends `budgets` of stages 0 … horizon and `certificates` of stages 1 … horizon: one step, or
 /// all stages. Throws IoError.
-void append_certificates(Hdf5File& file, const std::vector<StageBudget>& budgets,
-                         const std::vector<StageCertificate>& certificates);
+void append_certificates(Hdf5File& file, const std::vector<controller::StageBudget>& budgets,
+                         const std::vector<controller::StageCertificate>& certificates);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,42 +10,43 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct CertificateField {
   const char* name;  ///< of the dataset, in the group /certificate
-  double StageCertificate::*member;
+  double controller::StageCertificate::*member;
   const char* meaning;
 };
 
 inline constexpr std::array<CertificateField, 7> kCertificateFields = {{
-    {"value", &StageCertificate::value,
+    {"value", &controller::StageCertificate::value,
      "the least of the sound upper bounds of the probability that the state, the model's or with a "
      "model_error the plant's, is unsafe; the first is that of stage 1"},
-    {"particles", &StageCertificate::particles,
+    {"particles", &controller::StageCertificate::particles,
      "c1: worst case over the W2 ball around the particles; sound"},
-    {"mixture", &StageCertificate::mixture,
+    {"mixture", &controller::StageCertificate::mixture,
      "c2: the same before the last noise, which stays Gaussian; sound"},
-    {"surrogate", &StageCertificate::surrogate,
+    {"surrogate", &controller::StageCertificate::surrogate,
      "c3: affine-Gaussian surrogate, 1 where it does not apply; sound"},
-    {"smoothed", &StageCertificate::smoothed,
+    {"smoothed", &controller::StageCertificate::smoothed,
      "c4: the surrogate smoothed by the noise, 1 where it does not apply; sound"},
-    {"thesis", &StageCertificate::thesis, "the reference algorithm as printed; not sound"},
-    {"unsafe_mass", &StageCertificate::unsafe_mass,
+    {"thesis", &controller::StageCertificate::thesis,
+     "the reference algorithm as printed; not sound"},
+    {"unsafe_mass", &controller::StageCertificate::unsafe_mass,
      "weight of the particles that are unsafe; no bound"},
 }};
 
 struct BudgetField {
   const char* name;
-  double StageBudget::*member;
+  double controller::StageBudget::*member;
 };
 
 /// The columns of /certificate/budget.
 inline constexpr std::array<BudgetField, 4> kBudgetColumns = {{
-    {"belief", &StageBudget::belief},
-    {"noise", &StageBudget::noise},
-    {"compression", &StageBudget::compression},
-    {"total", &StageBudget::total},
+    {"belief", &controller::StageBudget::belief},
+    {"noise", &controller::StageBudget::noise},
+    {"compression", &controller::StageBudget::compression},
+    {"total", &controller::StageBudget::total},
 }};
 
 [[nodiscard]] inline std::vector<std::string> budget_column_names() {
@@ -76,4 +77,4 @@ inline constexpr const char* kLipschitzMeaning =
     "bound of the closed loop's Lipschitz constant from this stage to the next; 1 at the last";
 inline constexpr const char* kKindMeaning = "which bound the value is: c1, c2, c3 or c4";
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

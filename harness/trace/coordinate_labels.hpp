@@ -6,20 +6,21 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct CoordinateLabels {
   std::vector<std::string> names;
   std::vector<std::string> units;
 };
 
-[[nodiscard]] inline CoordinateLabels labels_of(const std::vector<Coordinate>& coordinates) {
+[[nodiscard]] inline CoordinateLabels labels_of(
+    const std::vector<models::Coordinate>& coordinates) {
   CoordinateLabels labels;
-  for (const Coordinate& coordinate : coordinates) {
+  for (const models::Coordinate& coordinate : coordinates) {
     labels.names.push_back(coordinate.name);
     labels.units.push_back(coordinate.unit);
   }
   return labels;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,20 +9,20 @@
 
 #include "controller/planning/cost/horizon_cost.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct CostField {
   const char* name;
-  double CostParts::*member;
+  double controller::CostParts::*member;
 };
 
 /// The columns of /plan/cost.
 inline constexpr std::array<CostField, 5> kCostFields = {{
-    {"state", &CostParts::state},
-    {"input", &CostParts::input},
-    {"terminal", &CostParts::terminal},
-    {"box", &CostParts::box},
-    {"obstacle", &CostParts::obstacle},
+    {"state", &controller::CostParts::state},
+    {"input", &controller::CostParts::input},
+    {"terminal", &controller::CostParts::terminal},
+    {"box", &controller::CostParts::box},
+    {"obstacle", &controller::CostParts::obstacle},
 }};
 
 [[nodiscard]] inline std::vector<std::string> cost_part_names() {
@@ -32,11 +32,11 @@ inline constexpr std::array<CostField, 5> kCostFields = {{
 }
 
 /// The parts in the order of the columns.
-[[nodiscard]] inline std::vector<double> cost_row(const CostParts& cost) {
+[[nodiscard]] inline std::vector<double> cost_row(const controller::CostParts& cost) {
   std::vector<double> row;
   row.reserve(kCostFields.size());
   for (const CostField& field : kCostFields) row.push_back(cost.*field.member);
   return row;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -1,6 +1,6 @@
 #include "harness/trace/file_header.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 void write_file_header(Hdf5File& file, const FileHeader& header) {
   if (!header.kind.empty()) file.set_text("/", "kind", header.kind);
@@ -11,4 +11,4 @@ void write_file_header(Hdf5File& file, const FileHeader& header) {
   file.set_unsigned("/", "seed", header.seed);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "harness/trace/hdf5_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct FileHeader {
   std::string kind{};         ///< of file, e.g. "prediction"; empty: not said
@@ -20,4 +20,4 @@ struct FileHeader {
 /// Writes it as attributes of "/". Throws IoError.
 void write_file_header(Hdf5File& file, const FileHeader& header);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

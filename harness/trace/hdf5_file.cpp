@@ -8,7 +8,7 @@
 #include "harness/trace/hdf5_handle.hpp"
 #include "harness/trace/hdf5_impl.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using hdf5::Handle;
@@ -97,4 +97,4 @@ const std::string& Hdf5File::path() const { return impl_->path; }
 
 bool Hdf5File::left_open_by_writer() const { return impl_->left_open; }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -21,7 +21,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A dataset: its name, what a row is, and what it means. Its shape is rows x row_shape, and it
 /// begins without rows.
@@ -110,4 +110,4 @@ class Hdf5File {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

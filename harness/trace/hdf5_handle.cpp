@@ -12,7 +12,7 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc::hdf5 {
+namespace qsmpc::harness::hdf5 {
 namespace {
 
 std::recursive_mutex& mutex() {
@@ -103,4 +103,4 @@ bool opened_for_writing(const std::string& path) {
   return head[kVersion] >= 3 && head[kFlags] != 0;
 }
 
-}  // namespace qsmpc::hdf5
+}  // namespace qsmpc::harness::hdf5

@@ -8,7 +8,7 @@
 
 #include <hdf5.h>
 
-namespace qsmpc::hdf5 {
+namespace qsmpc::harness::hdf5 {
 
 /// HDF5's lock; taking it also silences the printing of its error stack.
 class Lock {
@@ -56,4 +56,4 @@ void abandon(Handle& handle);
 /// there is no file, and IoError where it cannot be read.
 [[nodiscard]] bool opened_for_writing(const std::string& path);
 
-}  // namespace qsmpc::hdf5
+}  // namespace qsmpc::harness::hdf5

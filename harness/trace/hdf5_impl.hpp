@@ -12,7 +12,7 @@
 #include "harness/trace/hdf5_file.hpp"
 #include "harness/trace/hdf5_handle.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Its functions are called under HDF5's lock; those that fail throw as Hdf5File does.
 struct Hdf5File::Impl {
@@ -91,4 +91,4 @@ struct Hdf5File::Impl {
   [[nodiscard]] hsize_t readable_elements(const std::string& name, H5T_class_t wanted);
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

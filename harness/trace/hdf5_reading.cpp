@@ -7,7 +7,7 @@
 #include "harness/trace/hdf5_handle.hpp"
 #include "harness/trace/hdf5_impl.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using hdf5::Handle;
@@ -174,4 +174,4 @@ std::vector<std::string> Hdf5File::texts(const std::string& path) const {
   return texts_in(bytes, kTextBytes);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/trace/hdf5_handle.hpp"
 #include "harness/trace/hdf5_impl.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using hdf5::Handle;
@@ -181,4 +181,4 @@ void Hdf5File::append(const std::string& path, std::span<const std::string> valu
   impl_->append_rows(path, text_type(kTextBytes).get(), padded.data(), values.size());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

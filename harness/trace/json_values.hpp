@@ -8,7 +8,7 @@
 
 #include "harness/statistics/binomial_interval.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 [[nodiscard]] inline nlohmann::ordered_json vector_json(const Eigen::VectorXd& values) {
   return std::vector<double>(values.begin(), values.end());
@@ -26,4 +26,4 @@ namespace qsmpc {
   return {interval.lower, interval.upper};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 Eigen::MatrixXd true_states(const Trace& trace) {
   const bool ended = trace.final_state.size() > 0;
@@ -24,19 +24,19 @@ Eigen::Index completed_periods(const Trace& trace) {
   return end_is_known || steps == 0 ? steps : steps - 1;
 }
 
-Eigen::MatrixXd one_step_residuals(const Trace& trace, const Dynamics& model) {
+Eigen::MatrixXd one_step_residuals(const Trace& trace, const models::Dynamics& model) {
   const Eigen::MatrixXd states = true_states(trace);
   const Eigen::Index periods = completed_periods(trace);
   Eigen::MatrixXd residuals(model.state_dim(), periods);
-  StateBatch predicted(model.state_dim(), 1);
+  models::StateBatch predicted(model.state_dim(), 1);
   for (Eigen::Index k = 0; k < periods; ++k) {
     const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
-    const StateBatch state = states.col(k);
-    const StateBatch input = step.input;
+    const models::StateBatch state = states.col(k);
+    const models::StateBatch input = step.input;
     model.step(state, input, predicted);
     residuals.col(k) = states.col(k + 1) - step.disturbance - predicted.col(0);
   }
   return residuals;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

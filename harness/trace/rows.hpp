@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// `matrix` with its rows one after the other.
 template <class Matrix>
@@ -32,4 +32,4 @@ template <class Item, class Value>
   return values;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

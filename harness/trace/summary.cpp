@@ -15,7 +15,7 @@
 #include "harness/trace/residuals.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
@@ -38,7 +38,7 @@ void add_clearance(const Trace& trace, Summary& summary) {
   const Eigen::MatrixXd states = true_states(trace);
   for (const auto& state : states.colwise()) {
     summary.min_clearance =
-        std::min(summary.min_clearance, clearance(state, trace.scenario.safe_set));
+        std::min(summary.min_clearance, controller::clearance(state, trace.scenario.safe_set));
   }
   summary.collision = summary.min_clearance <= 0.0;
 }
@@ -46,8 +46,8 @@ void add_clearance(const Trace& trace, Summary& summary) {
 void add_cost(const Trace& trace, Summary& summary) {
   const Scenario::Cost& cost = trace.scenario.controller.cost;
   for (const StepRecord& step : trace.steps) {
-    const Eigen::VectorXd offset =
-        target_offset(trace.scenario.target.state, trace.scenario.target.angles, step.state);
+    const Eigen::VectorXd offset = controller::target_offset(
+        trace.scenario.target.state, trace.scenario.target.angles, step.state);
     summary.closed_loop_cost +=
         0.5 * offset.dot(cost.state * offset) + step.input.dot(cost.input * step.input);
   }
@@ -65,7 +65,7 @@ void add_timing(const Trace& trace, Summary& summary) {
   summary.breakdown.certify =
       median_over_steps(trace, [](const auto& s) { return s.timing.certify; });
   const double deadline = kMillisecondsPerSecond * trace.scenario.time_step;
-  const std::string cut_short = solver_status_name(SolverStatus::kDeadline);
+  const std::string cut_short = controller::solver_status_name(controller::SolverStatus::kDeadline);
   for (const StepRecord& step : trace.steps) {
     if (step.timing.total > deadline) ++summary.deadline_misses;
     if (step.fallback) ++summary.fallbacks;
@@ -81,8 +81,9 @@ void add_certificates(const Trace& trace, Summary& summary) {
     const double next = step.certificates.front().value;
     summary.next_step_max = std::max(summary.next_step_max, next);
     summary.next_step_sum += next;
-    summary.horizon_max = std::max(summary.horizon_max, horizon_bound(step.certificates));
-    for (const StageCertificate& certificate : step.certificates) {
+    summary.horizon_max =
+        std::max(summary.horizon_max, controller::horizon_bound(step.certificates));
+    for (const controller::StageCertificate& certificate : step.certificates) {
       summary.thesis_max = std::max(summary.thesis_max, certificate.thesis);
     }
   }
@@ -92,7 +93,7 @@ void add_certificates(const Trace& trace, Summary& summary) {
 void add_mismatch(const Trace& trace, Summary& summary) {
   const Scenario& scenario = trace.scenario;
   const auto model =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   const int dim = model->state_dim();
   const Eigen::MatrixXd residuals = one_step_residuals(trace, *model);
   summary.mismatch_mean = Eigen::VectorXd::Zero(dim);
@@ -174,4 +175,4 @@ std::string summary_json(const Trace& trace, const SummaryOptions& options) {
   return json_text(json);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

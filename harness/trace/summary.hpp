@@ -10,7 +10,7 @@
 #include "harness/statistics/quantiles.hpp"
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct Summary {
   std::string scenario;
@@ -51,4 +51,4 @@ struct SummaryOptions {
 /// null.
 [[nodiscard]] std::string summary_json(const Trace& trace, const SummaryOptions& options = {});
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::array<std::pair<Outcome, const char*>, 5> kOutcomeNames = {{
@@ -32,4 +32,4 @@ Outcome outcome_from_name(const std::string& name) {
       "\"" + name + "\" is no outcome: reached, timeout, left_safe_set, fault or interrupted");
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

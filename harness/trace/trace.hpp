@@ -15,10 +15,10 @@
 #include "harness/plant/plant.hpp"
 #include "harness/scenario/scenario.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The weighted points of one stage of the horizon.
-using StageParticles = DiscreteMeasure;
+using StageParticles = controller::DiscreteMeasure;
 
 /// Wall-clock times of one control step, in milliseconds; never part of the state.
 struct StepTiming {
@@ -42,13 +42,13 @@ struct StepRecord {
   Eigen::MatrixXd belief_covariance;
   Eigen::MatrixXd plan_inputs;  ///< input_dim x horizon
   Eigen::MatrixXd plan_states;  ///< nominal states, state_dim x (horizon + 1)
-  CostParts cost;
-  std::string solver_status;                   ///< name of the solver's status
-  bool fallback = false;                       ///< the shifted previous plan was applied instead
-  int iterations = 0;                          ///< cost-and-gradient evaluations
-  std::vector<StageParticles> particles;       ///< horizon + 1
-  std::vector<StageBudget> budgets;            ///< horizon + 1
-  std::vector<StageCertificate> certificates;  ///< stages 1 … horizon
+  controller::CostParts cost;
+  std::string solver_status;                     ///< name of the solver's status
+  bool fallback = false;                         ///< the shifted previous plan was applied instead
+  int iterations = 0;                            ///< cost-and-gradient evaluations
+  std::vector<StageParticles> particles;         ///< horizon + 1
+  std::vector<controller::StageBudget> budgets;  ///< horizon + 1
+  std::vector<controller::StageCertificate> certificates;  ///< stages 1 … horizon
   StepTiming timing;
 };
 
@@ -72,4 +72,4 @@ struct Trace {
   std::string fault;  ///< the simulator's words where the outcome is kFault
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "harness/trace/hdf5_file.hpp"
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What the trace of an episode is called within its folder.
 inline constexpr const char* kTraceFile = "episode.h5";
@@ -66,4 +66,4 @@ void write_trace(const std::string& path, const Trace& trace);
 /// another schema, and IoError where the system refuses to read it.
 [[nodiscard]] Trace read_trace(const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/trace/coordinate_labels.hpp"
 #include "harness/trace/cost_fields.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Type = DatasetSpec::Type;
@@ -28,7 +28,7 @@ struct TraceSizes {
 
 TraceSizes trace_sizes(const Scenario& scenario) {
   const auto dynamics =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   return {.horizon = static_cast<std::size_t>(scenario.controller.horizon),
           .states = labels_of(dynamics->description().states),
           .inputs = labels_of(dynamics->description().inputs)};
@@ -181,4 +181,4 @@ bool may_be_missing(std::string_view path) {
          path == "/certificate/smoothed";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

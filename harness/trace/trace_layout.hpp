@@ -9,7 +9,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/hdf5_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Grows with every change that an older reader would misread.
 inline constexpr std::int64_t kTraceSchema = 1;
@@ -25,4 +25,4 @@ inline constexpr const char* kObservationPath = "/plant/observation";
 /// is read all the same.
 [[nodiscard]] bool may_be_missing(std::string_view path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/trace/trace_layout.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
@@ -228,9 +228,9 @@ void TraceReader::read_budgets() {
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
     for (std::size_t i = k * stages; i < (k + 1) * stages; ++i) {
       // Without the dataset no model error was known to the program.
-      StageBudget budget{.model = model.empty() ? 0.0 : model[i],
-                         .dynamics = dynamics.empty() ? kNotANumber : dynamics[i],
-                         .lipschitz = lipschitz[i]};
+      controller::StageBudget budget{.model = model.empty() ? 0.0 : model[i],
+                                     .dynamics = dynamics.empty() ? kNotANumber : dynamics[i],
+                                     .lipschitz = lipschitz[i]};
       const double* const columns = row_of(budgets, i, std::ssize(kBudgetColumns));
       for (std::size_t c = 0; c < kBudgetColumns.size(); ++c) {
         budget.*kBudgetColumns[c].member = columns[c];
@@ -280,4 +280,4 @@ void TraceReader::read_timing() {
 
 Trace read_trace(const std::string& path) { return TraceReader(path).read(); }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

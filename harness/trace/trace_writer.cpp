@@ -12,7 +12,7 @@
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 void require(bool condition, const char* what) {
@@ -168,4 +168,4 @@ void write_trace(const std::string& path, const Trace& trace) {
   writer.finish(trace);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kHalf = 0.50;
@@ -15,7 +15,7 @@ constexpr double kMost = 0.95;
 // Radius of the circle that holds `probability` of the standard Gaussian in the plane.
 double planar_quantile(double probability) { return std::sqrt(-2.0 * std::log1p(-probability)); }
 
-PlanarPoint point_of(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
+render::PlanarPoint point_of(const Eigen::Vector2d& vector) { return {vector.x(), vector.y()}; }
 
 // The way's direction at stage `i`, from its neighbours; along x where it stands still.
 Eigen::Vector2d direction_at(const std::vector<PlanarMoments>& stages, std::size_t i) {
@@ -27,7 +27,7 @@ Eigen::Vector2d direction_at(const std::vector<PlanarMoments>& stages, std::size
 
 }  // namespace
 
-PlanarMoments planar_moments(const ParticleStage& stage) {
+PlanarMoments planar_moments(const render::ParticleStage& stage) {
   PlanarMoments moments;
   for (std::size_t i = 0; i < stage.points.size(); ++i) {
     moments.mean += stage.weights[i] * Eigen::Vector2d(stage.points[i].x, stage.points[i].y);
@@ -40,8 +40,8 @@ PlanarMoments planar_moments(const ParticleStage& stage) {
   return moments;
 }
 
-PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probability) {
-  const SymmetricEigen axes = symmetric_eigen(moments.covariance);
+render::PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probability) {
+  const models::SymmetricEigen axes = models::symmetric_eigen(moments.covariance);
   const double radius = planar_quantile(probability);
   const auto axis = [&](Eigen::Index i) {
     const double deviation = std::sqrt(std::max(axes.values[i], 0.0));
@@ -50,8 +50,8 @@ PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probabili
   return {.centre = point_of(moments.mean), .first_axis = axis(1), .second_axis = axis(0)};
 }
 
-std::vector<BeliefEllipses> belief_ellipses(const std::vector<PlanarMoments>& stages) {
-  std::vector<BeliefEllipses> ellipses;
+std::vector<render::BeliefEllipses> belief_ellipses(const std::vector<PlanarMoments>& stages) {
+  std::vector<render::BeliefEllipses> ellipses;
   ellipses.reserve(stages.size());
   for (const PlanarMoments& stage : stages) {
     ellipses.push_back(
@@ -60,9 +60,9 @@ std::vector<BeliefEllipses> belief_ellipses(const std::vector<PlanarMoments>& st
   return ellipses;
 }
 
-std::vector<TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
-                                     const std::vector<double>& bounds) {
-  std::vector<TubeSection> tube;
+std::vector<render::TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
+                                             const std::vector<double>& bounds) {
+  std::vector<render::TubeSection> tube;
   if (bounds.empty() || bounds.size() + 1 < stages.size()) return tube;
   for (std::size_t i = 0; i < stages.size(); ++i) {
     const Eigen::Vector2d along = direction_at(stages, i);
@@ -77,4 +77,4 @@ std::vector<TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
   return tube;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Mean and covariance of weighted points in the plane.
 struct PlanarMoments {
@@ -16,19 +16,21 @@ struct PlanarMoments {
 };
 
 /// The weighted moments of `stage`, which has points.
-[[nodiscard]] PlanarMoments planar_moments(const ParticleStage& stage);
+[[nodiscard]] PlanarMoments planar_moments(const render::ParticleStage& stage);
 
 /// The ellipse about the mean that holds `probability` in (0, 1) of the Gaussian with these
 /// moments; its first axis is the longer one.
-[[nodiscard]] PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probability);
+[[nodiscard]] render::PlanarEllipse probability_ellipse(const PlanarMoments& moments,
+                                                        double probability);
 
 /// 50 % and 95 % of each stage.
-[[nodiscard]] std::vector<BeliefEllipses> belief_ellipses(const std::vector<PlanarMoments>& stages);
+[[nodiscard]] std::vector<render::BeliefEllipses> belief_ellipses(
+    const std::vector<PlanarMoments>& stages);
 
 /// A tube through the stages' means, as wide across the way as the ellipses of 95 %, with
 /// `bounds[k - 1]` at stage k (and at stage 0 the one of stage 1: there is none for the present).
 /// Empty without a bound for each later stage.
-[[nodiscard]] std::vector<TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
-                                                   const std::vector<double>& bounds);
+[[nodiscard]] std::vector<render::TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
+                                                           const std::vector<double>& bounds);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,13 +12,14 @@
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/thinning.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kFlatHalfWidth = 0.5;  // m, of an obstacle in a direction that a system lacks
 
 // The box's sides along x and y.
-PlanarRectangle planar_box(const SystemDescription& system, const Box& box, double missing) {
+render::PlanarRectangle planar_box(const models::SystemDescription& system,
+                                   const controller::Box& box, double missing) {
   const auto side = [missing](const Eigen::VectorXd& values, int index, double sign) {
     return index >= 0 ? values[index] : sign * missing;
   };
@@ -43,13 +44,13 @@ std::string banner(const Trace& trace, double time) {
 }
 
 // The safe set in the plane of position.
-SafeSet planar_safe_set(const World& world) {
-  const auto box = [](const PlanarRectangle& area) {
-    return Box{Eigen::Vector2d(area.x_lower, area.y_lower),
-               Eigen::Vector2d(area.x_upper, area.y_upper)};
+controller::SafeSet planar_safe_set(const render::World& world) {
+  const auto box = [](const render::PlanarRectangle& area) {
+    return controller::Box{Eigen::Vector2d(area.x_lower, area.y_lower),
+                           Eigen::Vector2d(area.x_upper, area.y_upper)};
   };
-  SafeSet safe_set{.bounds = box(world.bounds), .obstacles = {}};
-  for (const PlanarRectangle& obstacle : world.obstacles) {
+  controller::SafeSet safe_set{.bounds = box(world.bounds), .obstacles = {}};
+  for (const render::PlanarRectangle& obstacle : world.obstacles) {
     safe_set.obstacles.push_back(box(obstacle));
   }
   return safe_set;
@@ -62,8 +63,8 @@ std::string every_nth(std::size_t every) { return fmt::format("1 of {}", every);
 EpisodeFrames::EpisodeFrames(const Trace& trace, const Overlays& overlays)
     : trace_(trace),
       overlays_(overlays),
-      dynamics_(make_dynamics(trace.scenario.model.system, trace.scenario.model.parameters,
-                              trace.scenario.time_step)),
+      dynamics_(models::make_dynamics(trace.scenario.model.system, trace.scenario.model.parameters,
+                                      trace.scenario.time_step)),
       track_(trace, dynamics_->description()),
       planar_safe_set_(planar_safe_set(world())),
       ranges_(chart_ranges(trace)) {
@@ -77,24 +78,24 @@ std::string EpisodeFrames::heading() const {
                      closed ? "closed loop" : "open loop");
 }
 
-World EpisodeFrames::world() const {
-  const SystemDescription& system = dynamics_->description();
+render::World EpisodeFrames::world() const {
+  const models::SystemDescription& system = dynamics_->description();
   const Scenario& scenario = trace_.scenario;
-  World world;
+  render::World world;
   world.bounds =
       planar_box(system, scenario.safe_set.bounds, std::numeric_limits<double>::infinity());
-  for (const Box& obstacle : scenario.safe_set.obstacles) {
+  for (const controller::Box& obstacle : scenario.safe_set.obstacles) {
     world.obstacles.push_back(planar_box(system, obstacle, kFlatHalfWidth));
   }
-  const PlanarPose target = planar_pose(system, scenario.target.state);
+  const render::PlanarPose target = planar_pose(system, scenario.target.state);
   world.target = {target.x, target.y};
   world.target_radius = scenario.target.radius;
   return world;
 }
 
-PlanarRectangle EpisodeFrames::region() const {
-  const PlanarRectangle still = world_region(world());
-  const PlanarRectangle way = track_.extent();
+render::PlanarRectangle EpisodeFrames::region() const {
+  const render::PlanarRectangle still = render::world_region(world());
+  const render::PlanarRectangle way = track_.extent();
   return {std::min(still.x_lower, way.x_lower), std::max(still.x_upper, way.x_upper),
           std::min(still.y_lower, way.y_lower), std::max(still.y_upper, way.y_upper)};
 }
@@ -104,8 +105,9 @@ double EpisodeFrames::longest_plan() const {
   for (const StepRecord& step : trace_.steps) {
     double length = 0.0;
     for (Eigen::Index i = 1; i < step.plan_states.cols(); ++i) {
-      const PlanarPose from = planar_pose(dynamics_->description(), step.plan_states.col(i - 1));
-      const PlanarPose to = planar_pose(dynamics_->description(), step.plan_states.col(i));
+      const render::PlanarPose from =
+          planar_pose(dynamics_->description(), step.plan_states.col(i - 1));
+      const render::PlanarPose to = planar_pose(dynamics_->description(), step.plan_states.col(i));
       length += std::hypot(to.x - from.x, to.y - from.y);
     }
     longest = std::max(longest, length);
@@ -121,9 +123,9 @@ std::size_t EpisodeFrames::step_at(double time) const {
   return index == 0 ? 0 : index - 1;
 }
 
-Frame EpisodeFrames::at(double time) const {
+render::Frame EpisodeFrames::at(double time) const {
   const double now = std::clamp(time, 0.0, duration());
-  Frame frame;
+  render::Frame frame;
   frame.time = now;
   frame.title = trace_.scenario.name;
   frame.qpos = track_.qpos(now);
@@ -135,8 +137,9 @@ Frame EpisodeFrames::at(double time) const {
   frame.followed = track_.smooth_pose(now);
   frame.driven_path = track_.driven_path(now);
   if (overlays_.path) {
-    for (const PlanarPoint& point : frame.driven_path) {
-      frame.clearances.push_back(clearance(Eigen::Vector2d(point.x, point.y), planar_safe_set_));
+    for (const render::PlanarPoint& point : frame.driven_path) {
+      frame.clearances.push_back(
+          controller::clearance(Eigen::Vector2d(point.x, point.y), planar_safe_set_));
     }
   }
   const std::size_t step = step_at(now);
@@ -151,26 +154,26 @@ Frame EpisodeFrames::at(double time) const {
   return frame;
 }
 
-void EpisodeFrames::add_plan(const StepRecord& step, Frame& frame) const {
-  const SystemDescription& system = dynamics_->description();
+void EpisodeFrames::add_plan(const StepRecord& step, render::Frame& frame) const {
+  const models::SystemDescription& system = dynamics_->description();
   for (Eigen::Index i = 0; i < step.plan_states.cols(); ++i) {
-    const PlanarPose pose = planar_pose(system, step.plan_states.col(i));
+    const render::PlanarPose pose = planar_pose(system, step.plan_states.col(i));
     frame.planned_path.push_back({pose.x, pose.y});
   }
 }
 
-ParticleStage EpisodeFrames::planar(const DiscreteMeasure& measure) const {
-  ParticleStage stage;
+render::ParticleStage EpisodeFrames::planar(const controller::DiscreteMeasure& measure) const {
+  render::ParticleStage stage;
   for (Eigen::Index i = 0; i < measure.size(); ++i) {
-    const PlanarPose pose = planar_pose(dynamics_->description(), measure.locations.col(i));
+    const render::PlanarPose pose = planar_pose(dynamics_->description(), measure.locations.col(i));
     stage.points.push_back({pose.x, pose.y});
     stage.weights.push_back(measure.weights[i]);
   }
   return stage;
 }
 
-void EpisodeFrames::add_belief(const StepRecord& step, Frame& frame) const {
-  std::vector<ParticleStage> stages;
+void EpisodeFrames::add_belief(const StepRecord& step, render::Frame& frame) const {
+  std::vector<render::ParticleStage> stages;
   std::vector<PlanarMoments> moments;
   std::size_t points = 0;
   for (const StageParticles& stage : step.particles) {
@@ -181,12 +184,13 @@ void EpisodeFrames::add_belief(const StepRecord& step, Frame& frame) const {
   if (overlays_.ellipses) frame.ellipses = belief_ellipses(moments);
   if (overlays_.tube) {
     std::vector<double> bounds;
-    for (const StageCertificate& stage : step.certificates) bounds.push_back(stage.value);
+    for (const controller::StageCertificate& stage : step.certificates)
+      bounds.push_back(stage.value);
     frame.tube = belief_tube(moments, bounds);
   }
   if (overlays_.particles) {
-    const std::size_t every = thinning(points, kMostOverlayPoints);
-    for (ParticleStage& stage : stages) stage = thinned(stage, every);
+    const std::size_t every = render::thinning(points, render::kMostOverlayPoints);
+    for (render::ParticleStage& stage : stages) stage = render::thinned(stage, every);
     frame.particles = std::move(stages);
     if (every > 1) frame.hud.push_back({"particles drawn", every_nth(every)});
   }
@@ -195,26 +199,27 @@ void EpisodeFrames::add_belief(const StepRecord& step, Frame& frame) const {
 
 // As many as the particles leave room for, but at least a quarter of all: they would be none where
 // the particles fill the room.
-void EpisodeFrames::add_raw_points(const StepRecord& step, Frame& frame) const {
+void EpisodeFrames::add_raw_points(const StepRecord& step, render::Frame& frame) const {
   std::size_t drawn = 0;
-  for (const ParticleStage& stage : frame.particles) drawn += stage.points.size();
+  for (const render::ParticleStage& stage : frame.particles) drawn += stage.points.size();
   const std::size_t room =
-      std::max(kMostOverlayPoints - std::min(drawn, kMostOverlayPoints), kMostOverlayPoints / 4);
-  const std::size_t every = thinning(raw_->count(step), room);
-  for (const DiscreteMeasure& stage : raw_->stages(step)) {
-    const ParticleStage kept = thinned(planar(stage), every);
+      std::max(render::kMostOverlayPoints - std::min(drawn, render::kMostOverlayPoints),
+               render::kMostOverlayPoints / 4);
+  const std::size_t every = render::thinning(raw_->count(step), room);
+  for (const controller::DiscreteMeasure& stage : raw_->stages(step)) {
+    const render::ParticleStage kept = render::thinned(planar(stage), every);
     frame.raw_points.insert(frame.raw_points.end(), kept.points.begin(), kept.points.end());
   }
   frame.hud.push_back({"raw points drawn", every > 1 ? every_nth(every) : "all"});
 }
 
 // From the plan of the period before; in the first period, or without one, from its own.
-std::optional<PlanarPose> EpisodeFrames::ghost(std::size_t step, double time) const {
+std::optional<render::PlanarPose> EpisodeFrames::ghost(std::size_t step, double time) const {
   const bool known_before = step > 0 && trace_.steps[step - 1].plan_states.cols() > 2;
   const Eigen::MatrixXd& states = trace_.steps[known_before ? step - 1 : step].plan_states;
   const Eigen::Index stage = known_before ? 1 : 0;
   if (states.cols() < stage + 2) return std::nullopt;
-  const SystemDescription& system = dynamics_->description();
+  const models::SystemDescription& system = dynamics_->description();
   const double share =
       std::clamp((time - trace_.steps[step].time) / trace_.scenario.time_step, 0.0, 1.0);
   return between(planar_pose(system, states.col(stage)), planar_pose(system, states.col(stage + 1)),
@@ -222,9 +227,9 @@ std::optional<PlanarPose> EpisodeFrames::ghost(std::size_t step, double time) co
 }
 
 double EpisodeFrames::speed(double time) const {
-  const ParameterMap& parameters = trace_.scenario.model.parameters;
+  const models::ParameterMap& parameters = trace_.scenario.model.parameters;
   const auto constant = parameters.find("speed");
   return constant != parameters.end() ? constant->second : track_.smooth_speed(time);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "models/dynamics/dynamics.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Frames of one trace; const functions may be called from several threads at once.
 class EpisodeFrames {
@@ -33,10 +33,10 @@ class EpisodeFrames {
   [[nodiscard]] std::string heading() const;
 
   /// Bounds, obstacles and target of the scenario, as far as they lie in the plane of position.
-  [[nodiscard]] World world() const;
+  [[nodiscard]] render::World world() const;
 
   /// The smallest rectangle about the world and the whole way driven.
-  [[nodiscard]] PlanarRectangle region() const;
+  [[nodiscard]] render::PlanarRectangle region() const;
 
   /// m, the longest plan of the episode: how far a camera must see.
   [[nodiscard]] double longest_plan() const;
@@ -48,24 +48,24 @@ class EpisodeFrames {
   /// The frame at `time` (s); from `duration()` on with a banner that tells the outcome. Plan,
   /// particles and certificate are those of the control period that `time` is in. More than
   /// kMostOverlayPoints points are thinned, and a row says so.
-  [[nodiscard]] Frame at(double time) const;
+  [[nodiscard]] render::Frame at(double time) const;
 
  private:
   [[nodiscard]] std::size_t step_at(double time) const;
-  void add_plan(const StepRecord& step, Frame& frame) const;
-  void add_belief(const StepRecord& step, Frame& frame) const;
-  void add_raw_points(const StepRecord& step, Frame& frame) const;
-  [[nodiscard]] std::optional<PlanarPose> ghost(std::size_t step, double time) const;
+  void add_plan(const StepRecord& step, render::Frame& frame) const;
+  void add_belief(const StepRecord& step, render::Frame& frame) const;
+  void add_raw_points(const StepRecord& step, render::Frame& frame) const;
+  [[nodiscard]] std::optional<render::PlanarPose> ghost(std::size_t step, double time) const;
   [[nodiscard]] double speed(double time) const;
-  [[nodiscard]] ParticleStage planar(const DiscreteMeasure& measure) const;
+  [[nodiscard]] render::ParticleStage planar(const controller::DiscreteMeasure& measure) const;
 
   const Trace& trace_;
   Overlays overlays_;
-  std::unique_ptr<const Dynamics> dynamics_;
+  std::unique_ptr<const models::Dynamics> dynamics_;
   EpisodeTrack track_;
-  SafeSet planar_safe_set_;
+  controller::SafeSet planar_safe_set_;
   std::optional<RawPoints> raw_;  // where they are drawn
   ChartRanges ranges_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kLongestHistory = 20.0;  // s
@@ -37,9 +37,9 @@ class History {
     begin_ = end_ > slots_ ? end_ - slots_ : 0;
   }
 
-  [[nodiscard]] StripChart chart(std::string label,
-                                 const std::function<double(const StepRecord&)>& value) const {
-    StripChart chart;
+  [[nodiscard]] render::StripChart chart(
+      std::string label, const std::function<double(const StepRecord&)>& value) const {
+    render::StripChart chart;
     chart.label = std::move(label);
     chart.slots = slots_;
     for (std::size_t i = begin_; i < end_; ++i) chart.values.push_back(value(trace_.steps[i]));
@@ -53,19 +53,20 @@ class History {
   std::size_t end_ = 0;
 };
 
-StripChart certificate_chart(const History& history, const ChartRanges& ranges) {
-  StripChart chart = history.chart("next P(unsafe) ≤", next_certificate);
+render::StripChart certificate_chart(const History& history, const ChartRanges& ranges) {
+  render::StripChart chart = history.chart("next P(unsafe) ≤", next_certificate);
   chart.value = fmt::format("{:.1e}", chart.values.back());
   chart.lower = ranges.least_certificate;
   chart.logarithmic = true;
   return chart;
 }
 
-StripChart input_chart(const History& history, const Scenario::Controller& controller,
-                       const SystemDescription& system, Eigen::Index index) {
-  const Coordinate& input = system.inputs[static_cast<std::size_t>(index)];
-  StripChart chart = history.chart(fmt::format("{} [{}]", input.name, input.unit),
-                                   [index](const StepRecord& step) { return step.input[index]; });
+render::StripChart input_chart(const History& history, const Scenario::Controller& controller,
+                               const models::SystemDescription& system, Eigen::Index index) {
+  const models::Coordinate& input = system.inputs[static_cast<std::size_t>(index)];
+  render::StripChart chart =
+      history.chart(fmt::format("{} [{}]", input.name, input.unit),
+                    [index](const StepRecord& step) { return step.input[index]; });
   chart.value = fmt::format("{:+.2f}", chart.values.back());
   const bool bounded = controller.input_lower.size() > 0 && controller.input_upper.size() > 0;
   chart.lower = bounded ? controller.input_lower[index] : system.input_lower[index];
@@ -73,8 +74,8 @@ StripChart input_chart(const History& history, const Scenario::Controller& contr
   return chart;
 }
 
-StripChart cost_chart(const History& history, const ChartRanges& ranges) {
-  StripChart chart =
+render::StripChart cost_chart(const History& history, const ChartRanges& ranges) {
+  render::StripChart chart =
       history.chart("cost of plan", [](const StepRecord& step) { return step.cost.total(); });
   chart.value = fmt::format("{:.4g}", chart.values.back());
   chart.lower = ranges.least_cost;
@@ -83,10 +84,10 @@ StripChart cost_chart(const History& history, const ChartRanges& ranges) {
   return chart;
 }
 
-StripChart solve_time_chart(const History& history, const Scenario& scenario,
-                            const ChartRanges& ranges) {
+render::StripChart solve_time_chart(const History& history, const Scenario& scenario,
+                                    const ChartRanges& ranges) {
   constexpr double kMillisecondsPerSecond = 1000.0;
-  StripChart chart =
+  render::StripChart chart =
       history.chart("planning time [ms]", [](const StepRecord& step) { return step.timing.total; });
   chart.value = fmt::format("{:.0f}", chart.values.back());
   const bool deadline = std::isfinite(scenario.controller.deadline);
@@ -130,11 +131,12 @@ ChartRanges united(const ChartRanges& a, const ChartRanges& b) {
           .largest_solve_time = std::max(a.largest_solve_time, b.largest_solve_time)};
 }
 
-std::vector<StripChart> strip_charts(const Trace& trace, const SystemDescription& system,
-                                     const ChartRanges& ranges, std::size_t step) {
+std::vector<render::StripChart> strip_charts(const Trace& trace,
+                                             const models::SystemDescription& system,
+                                             const ChartRanges& ranges, std::size_t step) {
   const Scenario& scenario = trace.scenario;
   const History history(trace, ranges, step);
-  std::vector<StripChart> charts;
+  std::vector<render::StripChart> charts;
   if (!trace.steps[step].certificates.empty()) {
     charts.push_back(certificate_chart(history, ranges));
   }
@@ -149,14 +151,15 @@ std::vector<StripChart> strip_charts(const Trace& trace, const SystemDescription
   return charts;
 }
 
-std::vector<HudRow> hud_rows(const StepRecord& step, double time, double speed) {
-  std::vector<HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
-                           {"speed", fmt::format("{:.2f} m/s", speed)}};
+std::vector<render::HudRow> hud_rows(const StepRecord& step, double time, double speed) {
+  std::vector<render::HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
+                                   {"speed", fmt::format("{:.2f} m/s", speed)}};
   if (!step.certificates.empty()) {
-    rows.push_back({"P(unsafe) whole plan", bound_text(horizon_bound(step.certificates))});
+    rows.push_back(
+        {"P(unsafe) whole plan", bound_text(controller::horizon_bound(step.certificates))});
   }
   if (step.fallback) rows.push_back({"applied", "the plan before, shifted"});
   return rows;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

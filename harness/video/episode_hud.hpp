@@ -8,7 +8,7 @@
 #include "models/dynamics/dynamics.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Ranges of an episode's strip charts, the same in all its frames.
 struct ChartRanges {
@@ -28,12 +28,14 @@ struct ChartRanges {
 /// Histories up to step `step` of the certificate, the first input, the plan's cost, the planning
 /// time against its deadline (without one: the control period), and the second input. They hold up
 /// to 20 s; longer episodes scroll.
-[[nodiscard]] std::vector<StripChart> strip_charts(const Trace& trace,
-                                                   const SystemDescription& system,
-                                                   const ChartRanges& ranges, std::size_t step);
+[[nodiscard]] std::vector<render::StripChart> strip_charts(const Trace& trace,
+                                                           const models::SystemDescription& system,
+                                                           const ChartRanges& ranges,
+                                                           std::size_t step);
 
 /// Time (s), speed (m/s), the bound for the whole plan of `step`, and whether the plan before was
 /// applied instead.
-[[nodiscard]] std::vector<HudRow> hud_rows(const StepRecord& step, double time, double speed);
+[[nodiscard]] std::vector<render::HudRow> hud_rows(const StepRecord& step, double time,
+                                                   double speed);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kPlansInView = 2.8;  // chase camera's distance in lengths of the longest plan
@@ -20,8 +20,8 @@ const Trace& drawable(const Trace& trace) {
 
 std::string why_not_drawn(const Scenario& scenario) {
   const auto model =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const SystemDescription& system = model->description();
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const models::SystemDescription& system = model->description();
   if (system.position_x < 0 || system.position_y < 0) {
     return system.name + " has no position in the plane";
   }
@@ -41,25 +41,25 @@ double EpisodePictures::duration() const {
   return std::max(frames_.duration(), beside_ ? beside_->duration() : 0.0);
 }
 
-std::vector<Frame> EpisodePictures::at(double time) const {
-  std::vector<Frame> frames{frames_.at(time)};
+std::vector<render::Frame> EpisodePictures::at(double time) const {
+  std::vector<render::Frame> frames{frames_.at(time)};
   if (beside_) frames.push_back(beside_->at(time));
   return frames;
 }
 
-PictureOptions EpisodePictures::options() const {
+render::PictureOptions EpisodePictures::options() const {
   return {.width = layout_.width, .height = layout_.height, .camera = layout_.camera};
 }
 
-std::vector<EpisodeScene> EpisodePictures::scenes() const {
+std::vector<render::EpisodeScene> EpisodePictures::scenes() const {
   const auto scene = [this](const EpisodeFrames& frames) {
-    return EpisodeScene{.world = frames.world(),
-                        .mjcf_path = frames.vehicle(),
-                        .chase_distance = kPlansInView * frames.longest_plan(),
-                        .region = frames.region(),
-                        .heading = beside_ ? frames.heading() : ""};
+    return render::EpisodeScene{.world = frames.world(),
+                                .mjcf_path = frames.vehicle(),
+                                .chase_distance = kPlansInView * frames.longest_plan(),
+                                .region = frames.region(),
+                                .heading = beside_ ? frames.heading() : ""};
   };
-  std::vector<EpisodeScene> scenes{scene(frames_)};
+  std::vector<render::EpisodeScene> scenes{scene(frames_)};
   if (beside_) scenes.push_back(scene(*beside_));
   return scenes;
 }
@@ -67,6 +67,8 @@ std::vector<EpisodeScene> EpisodePictures::scenes() const {
 EpisodePainter::EpisodePainter(const EpisodePictures& pictures)
     : pictures_(pictures), renderer_(pictures.options(), pictures.scenes()) {}
 
-void EpisodePainter::draw(double time, Image& out) { renderer_.draw(pictures_.at(time), out); }
+void EpisodePainter::draw(double time, render::Image& out) {
+  renderer_.draw(pictures_.at(time), out);
+}
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "render/frame.hpp"
 #include "render/renderer.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// How pictures of episodes look.
 struct VideoLayout {
@@ -38,10 +38,10 @@ class EpisodePictures {
   [[nodiscard]] double duration() const;
 
   /// One frame an episode. The shorter one stands on its last frame, with its banner.
-  [[nodiscard]] std::vector<Frame> at(double time) const;
+  [[nodiscard]] std::vector<render::Frame> at(double time) const;
 
-  [[nodiscard]] PictureOptions options() const;
-  [[nodiscard]] std::vector<EpisodeScene> scenes() const;
+  [[nodiscard]] render::PictureOptions options() const;
+  [[nodiscard]] std::vector<render::EpisodeScene> scenes() const;
 
  private:
   VideoLayout layout_;
@@ -56,15 +56,15 @@ class EpisodePainter {
   explicit EpisodePainter(const EpisodePictures& pictures);
 
   /// The picture at `time` (s). Throws as Renderer::draw.
-  void draw(double time, Image& out);
+  void draw(double time, render::Image& out);
 
  private:
   const EpisodePictures& pictures_;
-  Renderer renderer_;
+  render::Renderer renderer_;
 };
 
 /// Why an episode of this scenario cannot be drawn, e.g. "double_integrator has no position in the
 /// plane"; empty if it has a position and a vehicle.
 [[nodiscard]] std::string why_not_drawn(const Scenario& scenario);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

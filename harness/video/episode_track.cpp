@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kCameraWindow = 0.35;  // s, standard deviation of the camera's smoothing
@@ -45,18 +45,18 @@ std::vector<double> between(const std::vector<double>& a, const std::vector<doub
 
 }  // namespace
 
-PlanarPose planar_pose(const SystemDescription& system,
-                       const Eigen::Ref<const Eigen::VectorXd>& state) {
+render::PlanarPose planar_pose(const models::SystemDescription& system,
+                               const Eigen::Ref<const Eigen::VectorXd>& state) {
   const auto value = [&state](int index) { return index >= 0 ? state[index] : 0.0; };
   return {value(system.position_x), value(system.position_y), value(system.heading)};
 }
 
-PlanarPose between(const PlanarPose& a, const PlanarPose& b, double share) {
+render::PlanarPose between(const render::PlanarPose& a, const render::PlanarPose& b, double share) {
   return {a.x + share * (b.x - a.x), a.y + share * (b.y - a.y),
           a.heading + share * (b.heading - a.heading)};
 }
 
-EpisodeTrack::EpisodeTrack(const Trace& trace, const SystemDescription& system) {
+EpisodeTrack::EpisodeTrack(const Trace& trace, const models::SystemDescription& system) {
   if (trace.steps.empty()) {
     return;
   }
@@ -65,8 +65,8 @@ EpisodeTrack::EpisodeTrack(const Trace& trace, const SystemDescription& system) 
   add_motion(trace);
 }
 
-void EpisodeTrack::add_poses(const Trace& trace, const SystemDescription& system) {
-  const auto add_instant = [this](double time, PlanarPose pose) {
+void EpisodeTrack::add_poses(const Trace& trace, const models::SystemDescription& system) {
+  const auto add_instant = [this](double time, render::PlanarPose pose) {
     if (!instants_.empty()) {
       pose.heading = unwrapped(pose.heading, instants_.back().pose.heading);
     }
@@ -84,10 +84,10 @@ void EpisodeTrack::add_poses(const Trace& trace, const SystemDescription& system
   const double ease_share = std::min(kEaseTime / trace.scenario.time_step, 0.5);
   drawn_.push_back(instants_.front());
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
-    PlanarPose end = instants_[k + 1].pose;
+    render::PlanarPose end = instants_[k + 1].pose;
     const bool disturbed = end_is_known || k + 1 < trace.steps.size();
     if (disturbed && trace.steps[k].disturbance.size() == trace.steps[k].state.size()) {
-      const PlanarPose jump = planar_pose(system, trace.steps[k].disturbance);
+      const render::PlanarPose jump = planar_pose(system, trace.steps[k].disturbance);
       end = {end.x - jump.x, end.y - jump.y, end.heading - jump.heading};
     }
     if (k > 0) {
@@ -115,7 +115,7 @@ void EpisodeTrack::add_motion(const Trace& trace) {
   }
 }
 
-PlanarPose EpisodeTrack::pose(double time) const {
+render::PlanarPose EpisodeTrack::pose(double time) const {
   if (drawn_.empty()) {
     return {};
   }
@@ -137,15 +137,15 @@ std::vector<double> EpisodeTrack::qpos(double time) const {
   return between(motion_[index].qpos, motion_[index + 1].qpos, share_after(motion_, index, time));
 }
 
-std::vector<PlanarPoint> EpisodeTrack::driven_path(double time) const {
-  std::vector<PlanarPoint> path;
+std::vector<render::PlanarPoint> EpisodeTrack::driven_path(double time) const {
+  std::vector<render::PlanarPoint> path;
   for (const TimedPose& drawn : drawn_) {
     if (drawn.time >= time) {
       break;
     }
     path.push_back({drawn.pose.x, drawn.pose.y});
   }
-  const PlanarPose now = pose(time);
+  const render::PlanarPose now = pose(time);
   path.push_back({now.x, now.y});
   return path;
 }
@@ -180,19 +180,19 @@ EpisodeTrack::LocalLine EpisodeTrack::local_line(double time) const {
   return {{value[0], value[1], value[2]}, {slope[0], slope[1], slope[2]}};
 }
 
-PlanarPose EpisodeTrack::smooth_pose(double time) const { return local_line(time).value; }
+render::PlanarPose EpisodeTrack::smooth_pose(double time) const { return local_line(time).value; }
 
 double EpisodeTrack::smooth_speed(double time) const {
-  const PlanarPose slope = local_line(time).slope;
+  const render::PlanarPose slope = local_line(time).slope;
   return std::hypot(slope.x, slope.y);
 }
 
-PlanarRectangle EpisodeTrack::extent() const {
+render::PlanarRectangle EpisodeTrack::extent() const {
   if (instants_.empty()) {
     return {};
   }
-  const PlanarPose& start = instants_.front().pose;
-  PlanarRectangle extent{start.x, start.x, start.y, start.y};
+  const render::PlanarPose& start = instants_.front().pose;
+  render::PlanarRectangle extent{start.x, start.x, start.y, start.y};
   for (const TimedPose& instant : instants_) {
     extent.x_lower = std::min(extent.x_lower, instant.pose.x);
     extent.x_upper = std::max(extent.x_upper, instant.pose.x);
@@ -202,4 +202,4 @@ PlanarRectangle EpisodeTrack::extent() const {
   return extent;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

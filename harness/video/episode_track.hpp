@@ -12,57 +12,58 @@
 #include "models/dynamics/dynamics.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The coordinates of `state` that are drawn; 0 where a system has none.
-[[nodiscard]] PlanarPose planar_pose(const SystemDescription& system,
-                                     const Eigen::Ref<const Eigen::VectorXd>& state);
+[[nodiscard]] render::PlanarPose planar_pose(const models::SystemDescription& system,
+                                             const Eigen::Ref<const Eigen::VectorXd>& state);
 
 /// Times that differ by less are the same.
 inline constexpr double kTimeTolerance = 1e-9;  // s
 
 /// The pose at `share` of the way from `a` to `b`, linear in each coordinate.
-[[nodiscard]] PlanarPose between(const PlanarPose& a, const PlanarPose& b, double share);
+[[nodiscard]] render::PlanarPose between(const render::PlanarPose& a, const render::PlanarPose& b,
+                                         double share);
 
 class EpisodeTrack {
  public:
   static constexpr double kEaseTime = 0.04;  ///< s
 
   /// Takes what it needs from `trace`.
-  EpisodeTrack(const Trace& trace, const SystemDescription& system);
+  EpisodeTrack(const Trace& trace, const models::SystemDescription& system);
 
   /// s, the end of the last control period; 0 without steps.
   [[nodiscard]] double duration() const { return duration_; }
 
   /// The vehicle's pose; `time` is clamped to the episode, here and below.
-  [[nodiscard]] PlanarPose pose(double time) const;
+  [[nodiscard]] render::PlanarPose pose(double time) const;
 
   /// Values of all joints of the MuJoCo model; empty where the trace has none.
   [[nodiscard]] std::vector<double> qpos(double time) const;
 
   /// The way from the start to `pose(time)`.
-  [[nodiscard]] std::vector<PlanarPoint> driven_path(double time) const;
+  [[nodiscard]] std::vector<render::PlanarPoint> driven_path(double time) const;
 
   /// A pose near the vehicle's that moves smoothly: what a camera follows.
-  [[nodiscard]] PlanarPose smooth_pose(double time) const;
+  [[nodiscard]] render::PlanarPose smooth_pose(double time) const;
 
   /// m/s, of the smooth pose.
   [[nodiscard]] double smooth_speed(double time) const;
 
   /// The smallest rectangle about the way; of no area without steps.
-  [[nodiscard]] PlanarRectangle extent() const;
+  [[nodiscard]] render::PlanarRectangle extent() const;
 
  private:
   struct TimedPose {
     double time = 0.0;
-    PlanarPose pose;
+    render::PlanarPose pose;
   };
   struct LocalLine {
-    PlanarPose value;
-    PlanarPose slope;
+    render::PlanarPose value;
+    render::PlanarPose slope;
   };
 
-  void add_poses(const Trace& trace, const SystemDescription& system);
+  void add_poses(const Trace& trace, const models::SystemDescription& system);
   void add_motion(const Trace& trace);
   [[nodiscard]] LocalLine local_line(double time) const;
 
@@ -72,4 +73,4 @@ class EpisodeTrack {
   std::vector<MotionSample> motion_;  // with the jumps eased
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -16,7 +16,7 @@
 #include "render/gl/gl_library.hpp"
 #include "render/media/png_image.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -70,7 +70,9 @@ class Timetable {
 // What each drawing thread draws with; OpenGL contexts belong to a thread, so each has its own.
 OrderedDrawing::Drawer make_drawer(const EpisodePictures& pictures, const Timetable& timetable) {
   const auto painter = std::make_shared<EpisodePainter>(pictures);
-  return [painter, timetable](int index, Image& out) { painter->draw(timetable.time(index), out); };
+  return [painter, timetable](int index, render::Image& out) {
+    painter->draw(timetable.time(index), out);
+  };
 }
 
 double mean_simulation_ms(const Trace& trace) {
@@ -96,7 +98,8 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
   const Clock::time_point begin = Clock::now();
   const EpisodePictures pictures(trace, layout_of(options), options.beside);
   const Timetable timetable(options, pictures.duration());
-  const VideoFormat format = options.format ? *options.format : known_video_format(path);
+  const render::VideoFormat format =
+      options.format ? *options.format : render::known_video_format(path);
   VideoFile video(path, {.format = format,
                          .width = options.width,
                          .height = options.height,
@@ -109,10 +112,10 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
                        .speed = options.speed,
                        .width = options.width,
                        .height = options.height,
-                       .codec = video_codec(format),
+                       .codec = render::video_codec(format),
                        .simulation_ms = mean_simulation_ms(trace)};
   double encoding = 0.0;
-  Image image;
+  render::Image image;
   bool go_on = true;
   while (go_on && timings.frames < timetable.total()) {
     drawing.take(image);
@@ -128,20 +131,22 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
   encoding += seconds_since(added);
   timings.wall_s = seconds_since(begin);
   timings.drawing_ms = 1e3 * drawn / timings.frames;
-  timings.gl = gl_description();
+  timings.gl = render::gl_description();
   timings.encoding_ms = 1e3 * encoding / timings.frames;
   return timings;
 }
 
-Frame episode_frame(const Trace& trace, double time) { return EpisodeFrames(trace).at(time); }
+render::Frame episode_frame(const Trace& trace, double time) {
+  return EpisodeFrames(trace).at(time);
+}
 
 void write_episode_still(const Trace& trace, const EpisodeVideoOptions& options, double time,
                          const std::string& path) {
   const EpisodePictures pictures(trace, layout_of(options), options.beside);
   EpisodePainter painter(pictures);
-  Image image;
+  render::Image image;
   painter.draw(time, image);
-  write_file(path, encode_png(image));
+  write_file(path, render::encode_png(image));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "render/frame.hpp"
 #include "render/media/video_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct EpisodeVideoOptions {
   int width = 1280;              ///< pixels, even
@@ -26,8 +26,8 @@ struct EpisodeVideoOptions {
   double speed = 1.0;             ///< s of the episode shown in a second, 0.1 … 100
   double from = 0.0;              ///< s of the episode, where the video begins
   double to = std::numeric_limits<double>::infinity();  ///< s, where it ends; at most the whole
-  std::optional<VideoFormat> format = std::nullopt;     ///< without: by the path's ending
-  int quality = kUsualQuality;                          ///< see VideoSettings
+  std::optional<render::VideoFormat> format = std::nullopt;  ///< without: by the path's ending
+  int quality = render::kUsualQuality;                       ///< see VideoSettings
 };
 
 /// s, from the start to the end of the last control period.
@@ -45,10 +45,10 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
 
 /// What the video shows at `time` (s since the start). To draw more than one frame of a trace, make
 /// an EpisodeFrames.
-[[nodiscard]] Frame episode_frame(const Trace& trace, double time);
+[[nodiscard]] render::Frame episode_frame(const Trace& trace, double time);
 
 /// One picture of the episode as a PNG. Throws like `write_episode_video`.
 void write_episode_still(const Trace& trace, const EpisodeVideoOptions& options, double time,
                          const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // A picture may be slow to draw: the other threads go on for as long as this many are ahead of it.
@@ -39,7 +39,7 @@ OrderedDrawing::~OrderedDrawing() {
   }
 }
 
-void OrderedDrawing::take(Image& image) {
+void OrderedDrawing::take(render::Image& image) {
   std::unique_lock lock(mutex_);
   if (taken_ >= total_) {
     throw std::out_of_range("drawing: all pictures are taken");
@@ -96,4 +96,4 @@ void OrderedDrawing::draw_all(const DrawerFactory& make_drawer) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

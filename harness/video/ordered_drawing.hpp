@@ -16,12 +16,12 @@
 
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 class OrderedDrawing {
  public:
   /// Draws picture `index` into `out`, whose memory is that of an earlier picture.
-  using Drawer = std::function<void(int index, Image& out)>;
+  using Drawer = std::function<void(int index, render::Image& out)>;
   /// Called once on each drawing thread; what it returns is called and destroyed there too.
   using DrawerFactory = std::function<Drawer()>;
 
@@ -40,7 +40,7 @@ class OrderedDrawing {
 
   /// Waits for the next picture, the first at the first call, and swaps it into `image`. Throws
   /// what a drawing thread threw, std::out_of_range when all pictures are taken.
-  void take(Image& image);
+  void take(render::Image& image);
 
   /// Pictures that may be held at once, drawn or being drawn; besides the one that was taken.
   [[nodiscard]] int slots() const { return static_cast<int>(slots_.size()); }
@@ -51,7 +51,7 @@ class OrderedDrawing {
  private:
   struct Slot {
     bool drawn = false;
-    Image image;
+    render::Image image;
   };
 
   Slot& slot_of(int index) { return slots_[static_cast<std::size_t>(index) % slots_.size()]; }
@@ -70,4 +70,4 @@ class OrderedDrawing {
   std::vector<std::thread> threads_;  // last: they use the rest
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 bool* switch_of(Overlays& overlays, std::string_view name) {
@@ -53,4 +53,4 @@ Overlays parse_overlays(std::string_view text, std::string_view option) {
   return overlays;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

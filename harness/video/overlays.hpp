@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct Overlays {
   bool particles = true;  ///< every stage's points, area by weight
@@ -23,4 +23,4 @@ struct Overlays {
 /// Throws InputError, whose key is `option`, on anything else.
 [[nodiscard]] Overlays parse_overlays(std::string_view text, std::string_view option);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

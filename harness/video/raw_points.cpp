@@ -4,22 +4,22 @@
 #include "controller/planning/policy_maker.hpp"
 #include "harness/episode/assembly.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
-DiscreteMeasure noise_points(const Scenario& scenario) {
+controller::DiscreteMeasure noise_points(const Scenario& scenario) {
   const Eigen::MatrixXd& covariance = scenario.disturbance.covariance;
   const Scenario::Controller& controller = scenario.controller;
   if (!controller.propagate_noise) {
-    return {Points::Zero(covariance.rows(), 1), Eigen::VectorXd::Ones(1)};
+    return {controller::Points::Zero(covariance.rows(), 1), Eigen::VectorXd::Ones(1)};
   }
-  const Gaussian noise{Eigen::VectorXd::Zero(covariance.rows()), covariance};
-  return quantise(noise, controller.quantisation.noise).measure;
+  const controller::Gaussian noise{Eigen::VectorXd::Zero(covariance.rows()), covariance};
+  return controller::quantise(noise, controller.quantisation.noise).measure;
 }
 
 }  // namespace
 
-RawPoints::RawPoints(const Scenario& scenario, const Dynamics& dynamics)
+RawPoints::RawPoints(const Scenario& scenario, const models::Dynamics& dynamics)
     : dynamics_(dynamics), settings_(planner_settings(scenario)), noise_(noise_points(scenario)) {}
 
 std::size_t RawPoints::count(const StepRecord& step) const {
@@ -30,22 +30,22 @@ std::size_t RawPoints::count(const StepRecord& step) const {
   return static_cast<std::size_t>(count);
 }
 
-std::vector<DiscreteMeasure> RawPoints::stages(const StepRecord& step) const {
-  std::vector<DiscreteMeasure> stages;
+std::vector<controller::DiscreteMeasure> RawPoints::stages(const StepRecord& step) const {
+  std::vector<controller::DiscreteMeasure> stages;
   if (step.particles.empty()) return stages;
-  Policy policy;
+  controller::Policy policy;
   const Eigen::MatrixXd no_change =
       Eigen::MatrixXd::Zero(dynamics_.input_dim(), dynamics_.state_dim());
-  PolicyMaker(dynamics_, settings_)
+  controller::PolicyMaker(dynamics_, settings_)
       .make(step.plan_states.col(0), step.plan_inputs, no_change, policy);
   for (std::size_t k = 0; k + 1 < step.particles.size(); ++k) {
-    const DiscreteMeasure& before = step.particles[k];
-    Points inputs(dynamics_.input_dim(), before.size());
-    Points stepped(before.dim(), before.size());
-    policy_inputs(policy, static_cast<Eigen::Index>(k), before.locations, inputs);
+    const controller::DiscreteMeasure& before = step.particles[k];
+    controller::Points inputs(dynamics_.input_dim(), before.size());
+    controller::Points stepped(before.dim(), before.size());
+    controller::policy_inputs(policy, static_cast<Eigen::Index>(k), before.locations, inputs);
     dynamics_.step(before.locations, inputs, stepped);
-    DiscreteMeasure raw{Points(before.dim(), before.size() * noise_.size()),
-                        Eigen::VectorXd(before.size() * noise_.size())};
+    controller::DiscreteMeasure raw{controller::Points(before.dim(), before.size() * noise_.size()),
+                                    Eigen::VectorXd(before.size() * noise_.size())};
     for (Eigen::Index j = 0; j < noise_.size(); ++j) {
       const Eigen::Index first = j * before.size();
       raw.locations.middleCols(first, before.size()) = stepped.colwise() + noise_.locations.col(j);
@@ -56,4 +56,4 @@ std::vector<DiscreteMeasure> RawPoints::stages(const StepRecord& step) const {
   return stages;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

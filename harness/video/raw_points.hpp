@@ -9,12 +9,12 @@
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 class RawPoints {
  public:
   /// `dynamics`: the planner's model of `scenario`; must outlive it.
-  RawPoints(const Scenario& scenario, const Dynamics& dynamics);
+  RawPoints(const Scenario& scenario, const models::Dynamics& dynamics);
 
   /// How many there are in all stages of `step`.
   [[nodiscard]] std::size_t count(const StepRecord& step) const;
@@ -24,12 +24,12 @@ class RawPoints {
   /// propagate the noise), and the products of their weights. The gains are those that belong to
   /// the plan's inputs; a change of gain that was optimised with them is not in the trace and is
   /// left out. Empty for a step without particles. Const, and safe from several threads.
-  [[nodiscard]] std::vector<DiscreteMeasure> stages(const StepRecord& step) const;
+  [[nodiscard]] std::vector<controller::DiscreteMeasure> stages(const StepRecord& step) const;
 
  private:
-  const Dynamics& dynamics_;
-  PlannerSettings settings_;
-  DiscreteMeasure noise_;
+  const models::Dynamics& dynamics_;
+  controller::PlannerSettings settings_;
+  controller::DiscreteMeasure noise_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,10 +11,10 @@
 #include "harness/files/atomic_file.hpp"
 #include "harness/files/random_access_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A file that is created when it is cleared.
-class VideoFile::Bytes final : public ByteFile {
+class VideoFile::Bytes final : public render::ByteFile {
  public:
   explicit Bytes(std::string path) : path_(std::move(path)) {}
 
@@ -34,15 +34,15 @@ class VideoFile::Bytes final : public ByteFile {
   std::optional<RandomAccessFile> file_;
 };
 
-VideoFile::VideoFile(std::string path, VideoSettings settings)
+VideoFile::VideoFile(std::string path, render::VideoSettings settings)
     : path_(std::move(path)), partial_(std::make_unique<Bytes>(path_ + ".partial")) {
   settings.name = path_;
-  writer_ = std::make_unique<VideoWriter>(*partial_, settings);
+  writer_ = std::make_unique<render::VideoWriter>(*partial_, settings);
 }
 
 VideoFile::~VideoFile() = default;
 
-void VideoFile::add(const Image& image) { writer_->add(image); }
+void VideoFile::add(const render::Image& image) { writer_->add(image); }
 
 void VideoFile::finish() {
   Bytes aside(path_ + ".finished.partial");
@@ -56,4 +56,4 @@ void VideoFile::finish() {
   remove_file(partial_->path());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -1,9 +1,8 @@
 // Video files, written so that whatever happens there is either a whole file or none under the name
 // asked for, and something playable beside it.
 //
-//   qsmpc::VideoFile video("a.mp4", {.width = 1280, .height = 720, .frames_per_second = 30});
-//   for (…) { renderer.draw(frame, image); video.add(image); }
-//   video.finish();
+//   qsmpc::harness::VideoFile video("a.mp4", {.width = 1280, .height = 720, .frames_per_second =
+//   30}); for (…) { renderer.draw(frame, image); video.add(image); } video.finish();
 #pragma once
 
 #include <memory>
@@ -12,7 +11,7 @@
 #include "render/frame.hpp"
 #include "render/media/video_writer.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Writes PATH.partial, which stays playable if the process is killed, and turns it into PATH at
 /// the end. What cannot be written is an IoError with the file's path and the system's words.
@@ -20,7 +19,7 @@ class VideoFile {
  public:
   /// `settings.name` becomes `path`. Throws like VideoWriter, and IoError. PATH.partial is there
   /// only once the settings are found to be right.
-  VideoFile(std::string path, VideoSettings settings);
+  VideoFile(std::string path, render::VideoSettings settings);
 
   /// Without `finish` nothing is left under the final name; PATH.partial keeps what was added.
   ~VideoFile();
@@ -28,7 +27,7 @@ class VideoFile {
   VideoFile& operator=(const VideoFile&) = delete;
 
   /// Adds the next frame. Throws like VideoWriter, and IoError.
-  void add(const Image& image);
+  void add(const render::Image& image);
 
   /// Writes PATH, flushed to disk, and removes PATH.partial. At least one frame must have been
   /// added. Throws like VideoWriter, and IoError; PATH is then as it was before.
@@ -39,7 +38,7 @@ class VideoFile {
 
   std::string path_;
   std::unique_ptr<Bytes> partial_;
-  std::unique_ptr<VideoWriter> writer_;
+  std::unique_ptr<render::VideoWriter> writer_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 double VideoTimings::seconds() const { return fps > 0 ? static_cast<double>(frames) / fps : 0.0; }
 
@@ -66,4 +66,4 @@ VideoTimings read_video_timings(const std::string& path) {
   throw InputError({.file = path, .found = found, .expected = "what qsmpc render wrote"});
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

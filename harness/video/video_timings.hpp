@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Times are wall-clock times, so that they are longer where other work shares the processor.
 struct VideoTimings {
@@ -37,4 +37,4 @@ struct VideoTimings {
 /// What `video_json` wrote into the file at `path`. Throws InputError.
 [[nodiscard]] VideoTimings read_video_timings(const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

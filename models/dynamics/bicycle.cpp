@@ -8,7 +8,7 @@
 #include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 constexpr const char* kBicycleName = "bicycle";
@@ -89,4 +89,4 @@ SystemEntry bicycle_entry() {
                        {"rear_tyre_stiffness", -85944.0}}};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

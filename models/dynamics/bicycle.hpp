@@ -10,7 +10,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 struct Bicycle {
   static constexpr int kStateDim = 6;
@@ -95,4 +95,4 @@ struct Bicycle {
 /// The entry of the table of systems.
 [[nodiscard]] SystemEntry bicycle_entry();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

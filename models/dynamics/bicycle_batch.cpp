@@ -7,7 +7,7 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::models {
 namespace HWY_NAMESPACE {
 
 /// The constants of Bicycle::step in all lanes, and what both directions need of a state.
@@ -133,11 +133,11 @@ void bicycle_pullback(const Bicycle& car, const Dynamics::BatchView& states,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::models {
 
 HWY_EXPORT(bicycle_step);
 HWY_EXPORT(bicycle_pullback);
@@ -154,5 +154,5 @@ void pullback_bicycle(const Bicycle& car, const Dynamics::BatchView& states,
   (car, states, inputs, next_adjoint, state_adjoint, input_adjoint);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 #endif

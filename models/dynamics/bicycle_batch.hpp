@@ -3,7 +3,7 @@
 
 #include "models/dynamics/bicycle.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// As Dynamics::step.
 void step_bicycle(const Bicycle& car, const Dynamics::BatchView& states,
@@ -14,4 +14,4 @@ void pullback_bicycle(const Bicycle& car, const Dynamics::BatchView& states,
                       const Dynamics::BatchView& inputs, const Dynamics::BatchView& next_adjoint,
                       Dynamics::BatchOut state_adjoint, Dynamics::BatchOut input_adjoint);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

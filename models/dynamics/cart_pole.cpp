@@ -6,7 +6,7 @@
 #include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 constexpr const char* kCartPoleName = "cart_pole";
@@ -60,4 +60,4 @@ SystemEntry cart_pole_entry() {
               {"cart_mass", 1.0}, {"pole_mass", 0.1}, {"pole_half_length", 0.5}, {"gravity", 9.8}}};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -10,7 +10,7 @@
 #include "models/dynamics/dynamics.hpp"
 #include "models/dynamics/runge_kutta.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 struct CartPole {
   static constexpr int kStateDim = 4;
@@ -72,4 +72,4 @@ struct CartPole {
 /// The entry of the table of systems.
 [[nodiscard]] SystemEntry cart_pole_entry();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

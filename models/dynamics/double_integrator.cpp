@@ -7,7 +7,7 @@
 #include "models/dynamics/templated_dynamics.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 // m/s². Table B-4 bounds the speed (2 m/s) only; this reaches it within a second.
@@ -53,4 +53,4 @@ SystemEntry double_integrator_entry() {
   return {.name = kDoubleIntegratorName, .summary = kDoubleIntegratorSummary, .defaults = {}};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -8,7 +8,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 struct DoubleIntegrator {
   static constexpr int kStateDim = 2;
@@ -39,4 +39,4 @@ struct DoubleIntegrator {
 /// The entry of the table of systems.
 [[nodiscard]] SystemEntry double_integrator_entry();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -8,7 +8,7 @@
 #include "models/dynamics/spectral_norm.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 constexpr double kDefaultSpeed = 1.5;         // m/s, Table B-1
@@ -89,4 +89,4 @@ SystemEntry dubins_entry() {
   return {.name = "dubins", .summary = kDubinsSummary, .defaults = {{"speed", kDefaultSpeed}}};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

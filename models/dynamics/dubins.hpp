@@ -8,7 +8,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 struct Dubins {
   static constexpr int kStateDim = 3;
@@ -43,4 +43,4 @@ struct Dubins {
 /// The entry of the table of systems.
 [[nodiscard]] SystemEntry dubins_entry();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -7,7 +7,7 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::models {
 namespace HWY_NAMESPACE {
 
 void dubins_step(const Dubins& car, const Dynamics::BatchView& states,
@@ -57,11 +57,11 @@ void dubins_pullback(const Dubins& car, const Dynamics::BatchView& states,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::models {
 
 HWY_EXPORT(dubins_step);
 HWY_EXPORT(dubins_pullback);
@@ -77,5 +77,5 @@ void pullback_dubins(const Dubins& car, const Dynamics::BatchView& states,
   HWY_DYNAMIC_DISPATCH(dubins_pullback)(car, states, next_adjoint, state_adjoint, input_adjoint);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 #endif

@@ -3,7 +3,7 @@
 
 #include "models/dynamics/dubins.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// As Dynamics::step.
 void step_dubins(const Dubins& car, const Dynamics::BatchView& states,
@@ -14,4 +14,4 @@ void pullback_dubins(const Dubins& car, const Dynamics::BatchView& states,
                      const Dynamics::BatchView& next_adjoint, Dynamics::BatchOut state_adjoint,
                      Dynamics::BatchOut input_adjoint);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

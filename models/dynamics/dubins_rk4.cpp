@@ -10,7 +10,7 @@
 #include "models/dynamics/spectral_norm.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 constexpr const char* kDubinsRk4Name = "dubins_rk4";
@@ -88,4 +88,4 @@ SystemEntry dubins_rk4_entry() {
       .name = kDubinsRk4Name, .summary = kDubinsRk4Summary, .defaults = dubins_entry().defaults};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -11,7 +11,7 @@
 #include "models/dynamics/dynamics.hpp"
 #include "models/dynamics/runge_kutta.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 struct DubinsRk4 {
   static constexpr int kStateDim = 3;
@@ -59,4 +59,4 @@ struct DubinsRk4 {
 /// The entry of the table of systems.
 [[nodiscard]] SystemEntry dubins_rk4_entry();
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

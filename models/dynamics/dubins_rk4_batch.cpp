@@ -7,7 +7,7 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::models {
 namespace HWY_NAMESPACE {
 
 /// Where the car points at the beginning, the middle and the end of the period. The latter two
@@ -94,11 +94,11 @@ void rk4_pullback(const DubinsRk4& car, const Dynamics::BatchView& states,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::models {
 
 HWY_EXPORT(rk4_step);
 HWY_EXPORT(rk4_pullback);
@@ -115,5 +115,5 @@ void pullback_dubins_rk4(const DubinsRk4& car, const Dynamics::BatchView& states
   (car, states, inputs, next_adjoint, state_adjoint, input_adjoint);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 #endif

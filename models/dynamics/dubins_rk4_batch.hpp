@@ -3,7 +3,7 @@
 
 #include "models/dynamics/dubins_rk4.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// As Dynamics::step.
 void step_dubins_rk4(const DubinsRk4& car, const Dynamics::BatchView& states,
@@ -14,4 +14,4 @@ void pullback_dubins_rk4(const DubinsRk4& car, const Dynamics::BatchView& states
                          const Dynamics::BatchView& inputs, const Dynamics::BatchView& next_adjoint,
                          Dynamics::BatchOut state_adjoint, Dynamics::BatchOut input_adjoint);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

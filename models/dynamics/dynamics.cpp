@@ -10,7 +10,7 @@
 #include "models/dynamics/dubins.hpp"
 #include "models/dynamics/dubins_rk4.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 using Factory = std::unique_ptr<const Dynamics> (*)(const ParameterMap&, double);
@@ -88,4 +88,4 @@ std::unique_ptr<const Dynamics> make_dynamics(std::string_view name, const Param
   throw std::invalid_argument("no system '" + std::string(name) + "'; known are: " + known);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -3,7 +3,7 @@
 // The planner, the propagators and the certificates know systems only through this interface;
 // process noise is additive and belongs to the one who propagates: x⁺ = f(x, u) + w.
 //
-//   auto car = qsmpc::make_dynamics("dubins", {{"speed", 1.5}}, /*time_step=*/0.1);
+//   auto car = qsmpc::models::make_dynamics("dubins", {{"speed", 1.5}}, /*time_step=*/0.1);
 //   StateBatch next(3, n);
 //   car->step(states, inputs, next);
 #pragma once
@@ -17,7 +17,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// A batch of vectors, one coordinate a row and one particle a column, so that a coordinate of all
 /// particles is contiguous in memory.
@@ -142,4 +142,4 @@ struct SystemEntry {
                                                             const ParameterMap& parameters,
                                                             double time_step);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -17,7 +17,7 @@
 #include <limits>
 #include <numbers>
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 class Interval {
  public:
@@ -161,4 +161,4 @@ inline Interval tan(const Interval& angle) {
                            interval_detail::kLibraryRoundings);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -8,7 +8,7 @@
 #include "models/dynamics/interval.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 // Midpoints, radii and norms are rounded: far more than 1e-15 for each entry of a small matrix.
@@ -59,4 +59,4 @@ double local_lipschitz(const DerivativeBounds& bounds,
   return std::min(split, largest) * (1.0 + kRoundingAllowance);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -5,7 +5,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// A rigorous upper bound of the Lipschitz constant, in the Euclidean norm, of the closed loop
 /// x ↦ f(x, sat(v + K (x − x̄))) over a box of states, for all v and x̄, where `sat` clamps to a box
@@ -17,4 +17,4 @@ namespace qsmpc {
 [[nodiscard]] double local_lipschitz(const DerivativeBounds& bounds,
                                      const Eigen::Ref<const Eigen::MatrixXd>& gain);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace {
 
 [[noreturn]] void refuse(std::string_view system, std::string_view name, std::string_view range) {
@@ -36,4 +36,4 @@ double negative_parameter(std::string_view system, const ParameterMap& parameter
   refuse(system, name, "below 0");
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -5,7 +5,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// Throws std::invalid_argument unless time_step (s) is finite and above 0.
 void check_time_step(std::string_view system, double time_step);
@@ -18,4 +18,4 @@ void check_time_step(std::string_view system, double time_step);
 [[nodiscard]] double negative_parameter(std::string_view system, const ParameterMap& parameters,
                                         std::string_view name);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

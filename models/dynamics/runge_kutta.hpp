@@ -1,7 +1,7 @@
 // The classical Runge-Kutta method of fourth order, for any scalar.
 #pragma once
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// next = x + h (k₁ + 2k₂ + 2k₃ + k₄)/6 for ẋ = derivative(x), one step of h = time_step (s).
 /// derivative(const Scalar* x, Scalar* slope); all arrays have `kDim` entries; `next` may be `x`.
@@ -25,4 +25,4 @@ void runge_kutta_step(const Derivative& derivative, const Scalar* x, double time
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

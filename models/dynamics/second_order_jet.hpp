@@ -17,7 +17,7 @@
 
 #include "models/dynamics/interval.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// A function of `kVariables` variables. Most parts of a model depend on two or three of them: each
 /// jet knows which, and all derivatives by others are zero without being computed.
@@ -170,4 +170,4 @@ class SecondOrderJet {
   VariableSet variables_ = 0;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

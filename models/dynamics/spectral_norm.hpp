@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 /// Largest singular value of [[a, b], [c, d]].
 [[nodiscard]] inline double spectral_norm(double a, double b, double c, double d) {
@@ -14,4 +14,4 @@ namespace qsmpc {
   return std::sqrt(0.5 * (sum + root));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

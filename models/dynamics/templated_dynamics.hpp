@@ -22,7 +22,7 @@
 #include "models/dynamics/interval.hpp"
 #include "models/dynamics/second_order_jet.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 template <class Model>
 class TemplatedDynamics : public Dynamics {
@@ -132,4 +132,4 @@ class TemplatedDynamics : public Dynamics {
   SystemDescription description_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -26,7 +26,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::models {
 namespace HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -208,7 +208,7 @@ HWY_INLINE SineCosine sine_cosine(Vector x) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 HWY_AFTER_NAMESPACE();
 
 #endif

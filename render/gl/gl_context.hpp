@@ -10,7 +10,7 @@
 
 #include "render/gl/gl_functions.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// A context that is current on the thread that made it until it is destroyed there.
 class GlContext {
@@ -37,4 +37,4 @@ void find_function(void* library, const char* name, Function& function) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

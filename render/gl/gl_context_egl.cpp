@@ -8,7 +8,7 @@
 
 #include "render/gl/gl_context.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 struct EglFunctions {
@@ -171,4 +171,4 @@ std::unique_ptr<GlContext> make_egl_context(void* library) {
   return std::make_unique<EglContext>(library);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

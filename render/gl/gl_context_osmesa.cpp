@@ -5,7 +5,7 @@
 
 #include "render/gl/gl_context.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 // MuJoCo draws into a framebuffer object of its own; the context's buffer only has to exist.
@@ -63,4 +63,4 @@ std::unique_ptr<GlContext> make_osmesa_context(void* library) {
   return std::make_unique<OsmesaContext>(library);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

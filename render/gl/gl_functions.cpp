@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 // A declared name cannot stand in parentheses. NOLINTNEXTLINE(bugprone-macro-parentheses)
 #define QSMPC_DEFINE_GL(name) decltype(&::name) name = nullptr;
@@ -32,4 +32,4 @@ void load_gl_functions(GlLookup lookup) {
   });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

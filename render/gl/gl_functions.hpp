@@ -48,7 +48,7 @@
   FUNCTION(glVertexPointer)          \
   FUNCTION(glViewport)
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 // A declared name cannot stand in parentheses. NOLINTNEXTLINE(bugprone-macro-parentheses)
 #define QSMPC_DECLARE_GL(name) extern decltype(&::name) name;
@@ -62,4 +62,4 @@ using GlLookup = void (*(*)(const char* name))();
 /// function, when `lookup` does not find one.
 void load_gl_functions(GlLookup lookup);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -8,7 +8,7 @@
 
 #include <dlfcn.h>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr const char* kAuto = "auto";
@@ -118,4 +118,4 @@ void describe_gl(const std::string& version, const std::string& renderer) {
   s.description = name_of(s.library.value().backend) + ": " + version + ", " + renderer;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// OSMesa draws on the CPU and needs no driver; its pictures depend on no graphics card. EGL, made
 /// current without any surface, draws with whatever driver it finds.
@@ -50,4 +50,4 @@ struct GlLibrary {
 /// Remembers what `gl_description` says.
 void describe_gl(const std::string& version, const std::string& renderer);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -8,7 +8,7 @@
 
 #include "render/gl/gl_functions.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr float kLargestSquare = 2.5F;        // pixels
@@ -135,4 +135,4 @@ void draw_points(const View& view, const std::vector<GlPoint>& points) {
   glDisableClientState(GL_COLOR_ARRAY);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

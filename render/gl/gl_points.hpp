@@ -6,7 +6,7 @@
 #include "render/camera.hpp"
 #include "render/colour.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// A round point of `size` pixels across.
 struct GlPoint {
@@ -20,4 +20,4 @@ struct GlPoint {
 /// difference, and many of them cost a fraction of what discs do.
 void draw_points(const View& view, const std::vector<GlPoint>& points);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

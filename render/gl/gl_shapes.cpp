@@ -7,7 +7,7 @@
 
 #include "render/gl/gl_functions.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kCircleSides = 64;
@@ -248,4 +248,4 @@ void draw_translucent(const std::vector<ColouredPoint>& corners) {
   glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -7,7 +7,7 @@
 #include "render/colour.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Keeps OpenGL's state as it was, and sets up flat drawing with `view` until it is destroyed:
 /// blending and depth test on, lighting and textures off.
@@ -66,4 +66,4 @@ void draw_band(const std::vector<ColouredPoint>& edges);
 /// seen through it, and where it touches something drawn before, that is in front.
 void draw_translucent(const std::vector<ColouredPoint>& corners);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -6,7 +6,7 @@
 #include "render/gl/gl_functions.hpp"
 #include "render/gl/gl_library.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 const char* gl_string(GLenum name) { return reinterpret_cast<const char*>(glGetString(name)); }
@@ -40,4 +40,4 @@ OffscreenContext::~OffscreenContext() = default;
 
 const std::string& OffscreenContext::description() const { return handle_->description; }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Owns one context, current on the thread that made it from construction to destruction. Use and
 /// destroy it on that thread; each thread may have one of its own.
@@ -27,4 +27,4 @@ class OffscreenContext {
   std::unique_ptr<Handle> handle_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 // Metres that a shadow is shifted for each metre of height; the sun of the vehicles' own files.
@@ -63,4 +63,4 @@ std::vector<PlanarPoint> box_shadow(const PlanarRectangle& area, double height) 
   return cast_shadow(corners);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

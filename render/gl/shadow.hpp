@@ -6,7 +6,7 @@
 #include "render/camera.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// The outline of the shadow that the convex hull of `corners` casts on the ground,
 /// counter-clockwise.
@@ -18,4 +18,4 @@ namespace qsmpc {
 /// Counter-clockwise corners of the smallest convex polygon about `points`.
 [[nodiscard]] std::vector<PlanarPoint> convex_hull(std::vector<PlanarPoint> points);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstring>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kLeastContrast = 14;     // of 255: below it nobody sees an edge
@@ -168,4 +168,4 @@ void smooth_edges(Image& image, SmoothingWorkspace& workspace) {
   EdgeFilter(image, workspace).run();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -6,7 +6,7 @@
 
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Scratch of `smooth_edges`, kept between pictures so that none allocates.
 struct SmoothingWorkspace {
@@ -18,4 +18,4 @@ struct SmoothingWorkspace {
 /// Blends pixels along the edges that they lie on (T. Lottes, "FXAA", 2009, its shorter variant).
 void smooth_edges(Image& image, SmoothingWorkspace& workspace);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kTurns = 16;  // corners about the third axis
@@ -73,4 +73,4 @@ void append_solid(SolidShape shape, const SolidPlace& place, const Colour& colou
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

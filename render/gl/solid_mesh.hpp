@@ -8,7 +8,7 @@
 #include "render/colour.hpp"
 #include "render/gl/gl_shapes.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 enum class SolidShape { kBox, kCylinder, kEllipsoid };
 
@@ -25,4 +25,4 @@ struct SolidPlace {
 void append_solid(SolidShape shape, const SolidPlace& place, const Colour& colour,
                   std::vector<ColouredPoint>& corners);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

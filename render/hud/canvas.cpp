@@ -12,7 +12,7 @@
 #include <cairo.h>
 #include <fontconfig/fontconfig.h>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr const char* kFontFamily = "DejaVu Sans";
@@ -289,4 +289,4 @@ void Canvas::draw_text(const Font& font, std::string_view text, const PixelPoint
   surface_->fill(colour);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -14,7 +14,7 @@
 #include "render/colour.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// A place in an image: pixels from its upper left corner, x to the right and y down.
 struct PixelPoint {
@@ -81,4 +81,4 @@ class Canvas {
   std::unique_ptr<Surface> surface_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

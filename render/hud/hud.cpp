@@ -8,7 +8,7 @@
 #include "render/hud/legend.hpp"
 #include "render/hud/strip_chart.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 // Pixels of a picture of 1280x720.
@@ -200,4 +200,4 @@ void Hud::draw_heading(const std::string& text, const PixelRectangle& area, Imag
                    hud_colour::kText);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -6,7 +6,7 @@
 #include "render/hud/canvas.hpp"
 #include "render/hud/hud_style.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 class Hud {
  public:
@@ -51,4 +51,4 @@ class Hud {
   HudStyle style_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -7,7 +7,7 @@
 #include "render/colour.hpp"
 #include "render/hud/canvas.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// For a picture of this size (pixels). Lengths shrink with the picture; letters stay legible.
 struct HudStyle {
@@ -49,4 +49,4 @@ inline constexpr std::array<Colour, 5> kCharts{{{0.34F, 0.71F, 0.91F},
 
 }  // namespace hud_colour
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

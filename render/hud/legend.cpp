@@ -7,7 +7,7 @@
 
 #include "render/palette.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kRampSteps = 24;
@@ -150,4 +150,4 @@ void Legend::draw(const PixelPoint& corner, Canvas& canvas) const {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

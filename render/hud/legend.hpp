@@ -8,7 +8,7 @@
 #include "render/hud/canvas.hpp"
 #include "render/hud/hud_style.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 class Legend {
  public:
@@ -42,4 +42,4 @@ class Legend {
   std::size_t lines_ = 0;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

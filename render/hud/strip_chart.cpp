@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr double kInset = 3.0;        // pixels between the ground's edge and the curve
@@ -122,4 +122,4 @@ void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

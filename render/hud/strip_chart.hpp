@@ -5,7 +5,7 @@
 #include "render/hud/canvas.hpp"
 #include "render/hud/hud_style.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Pixels, the least height at which a chart with its title can be read.
 [[nodiscard]] double least_chart_height(const HudStyle& style);
@@ -19,4 +19,4 @@ void draw_strip_chart(const StripChart& chart, const PixelRectangle& area, const
 [[nodiscard]] PixelPoint chart_point(const StripChart& chart, const PixelRectangle& area,
                                      const HudStyle& style, std::size_t slot, double value);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -12,7 +12,7 @@
 #include "render/media/gif_palette.hpp"
 #include "render/media/media_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kMostColours = 255;  // a GIF has 256; one stays transparent
@@ -183,4 +183,4 @@ void write_animated_picture(const AnimatedPicture& wanted, ByteFile& source, Byt
                               " is no animated picture");
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

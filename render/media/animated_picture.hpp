@@ -6,7 +6,7 @@
 #include "render/media/byte_file.hpp"
 #include "render/media/video_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Writes what the video in `source` shows to `target`, `frames_per_second` pictures a second, as a
 /// GIF or WebP that is shown again and again. One picture at a time is held in memory. `quality`:
@@ -19,4 +19,4 @@ struct AnimatedPicture {
 void write_animated_picture(const AnimatedPicture& wanted, ByteFile& source, ByteFile& target,
                             const std::string& what);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

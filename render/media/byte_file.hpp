@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <span>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Bytes that can be read and written anywhere. Members throw what they like, e.g. that the disk is
 /// full; whoever writes a video is thrown it.
@@ -32,4 +32,4 @@ class ByteFile {
   virtual std::size_t read_at(std::int64_t position, std::span<std::uint8_t> out) = 0;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -3,7 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 
-namespace qsmpc::libav {
+namespace qsmpc::render::libav {
 namespace {
 
 constexpr int kStreamBuffer = 1 << 16;  // bytes
@@ -73,4 +73,4 @@ std::int64_t ByteStream::seek(void* stream, std::int64_t offset, int whence) {
   });
 }
 
-}  // namespace qsmpc::libav
+}  // namespace qsmpc::render::libav

@@ -8,7 +8,7 @@
 #include "render/media/byte_file.hpp"
 #include "render/media/libav.hpp"
 
-namespace qsmpc::libav {
+namespace qsmpc::render::libav {
 
 class ByteStream {
  public:
@@ -38,4 +38,4 @@ class ByteStream {
   AVIOContext* context_ = nullptr;
 };
 
-}  // namespace qsmpc::libav
+}  // namespace qsmpc::render::libav

@@ -8,7 +8,7 @@
 
 #include <libimagequant.h>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kSpeed = 4;            // libimagequant's: 1 slow … 10 coarse
@@ -131,4 +131,4 @@ std::uint8_t PaletteMap::nearest(const std::array<int, 3>& colour) const {
   return static_cast<std::uint8_t>(best - palette_.begin());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

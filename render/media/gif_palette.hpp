@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Counts the colours of pictures, then chooses those that show all of them best.
 class ColourCount {
@@ -52,4 +52,4 @@ class PaletteMap {
   std::vector<std::int16_t> known_;  // -1: not found yet
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

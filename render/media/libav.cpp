@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <stdexcept>
 
-namespace qsmpc::libav {
+namespace qsmpc::render::libav {
 namespace {
 
 thread_local std::string last_complaint;
@@ -43,4 +43,4 @@ int check(int code, const std::string& what) {
   throw std::runtime_error(message);
 }
 
-}  // namespace qsmpc::libav
+}  // namespace qsmpc::render::libav

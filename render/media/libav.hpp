@@ -10,7 +10,7 @@ extern "C" {
 #include <libswscale/swscale.h>
 }
 
-namespace qsmpc::libav {
+namespace qsmpc::render::libav {
 
 struct Deleter {
   void operator()(AVCodecContext* codec) const { avcodec_free_context(&codec); }
@@ -39,4 +39,4 @@ T* check_allocated(T* pointer, const std::string& what) {
   return pointer;
 }
 
-}  // namespace qsmpc::libav
+}  // namespace qsmpc::render::libav

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-namespace qsmpc::libav {
+namespace qsmpc::render::libav {
 namespace {
 
 class Dictionary {
@@ -236,4 +236,4 @@ void for_each_picture(ByteFile& file, const std::string& what,
   }
 }
 
-}  // namespace qsmpc::libav
+}  // namespace qsmpc::render::libav

@@ -13,7 +13,7 @@
 #include "render/media/byte_stream.hpp"
 #include "render/media/libav.hpp"
 
-namespace qsmpc::libav {
+namespace qsmpc::render::libav {
 
 /// Names and values of a library's options.
 using Settings = std::vector<std::pair<std::string, std::string>>;
@@ -91,4 +91,4 @@ void copy_stream(ByteFile& source, ByteFile& target, const Container& container,
 void for_each_picture(ByteFile& file, const std::string& what,
                       const std::function<void(const AVFrame&)>& action);
 
-}  // namespace qsmpc::libav
+}  // namespace qsmpc::render::libav

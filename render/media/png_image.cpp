@@ -6,7 +6,7 @@
 
 #include "render/media/media_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 std::string encode_png(const Image& image) {
   const std::string what = "PNG picture";
@@ -35,4 +35,4 @@ std::string encode_png(const Image& image) {
   return {reinterpret_cast<const char*>(packet->data), static_cast<std::size_t>(packet->size)};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 const std::vector<std::string>& video_format_names() {
   static const std::vector<std::string> names{"mp4", "webm", "gif", "webp"};
@@ -68,4 +68,4 @@ bool is_animated_picture(VideoFormat format) {
   return format == VideoFormat::kGif || format == VideoFormat::kWebp;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

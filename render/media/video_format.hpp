@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 enum class VideoFormat { kMp4, kWebm, kGif, kWebp };
 
@@ -36,4 +36,4 @@ inline constexpr int kBestQuality = 100;
 /// Whether it is an animated picture: shown where pictures are, again and again, but large.
 [[nodiscard]] bool is_animated_picture(VideoFormat format);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -9,7 +9,7 @@
 #include "render/media/animated_picture.hpp"
 #include "render/media/media_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 // `best` at quality 100, `worst` at quality 0, and between them in proportion.
@@ -208,4 +208,4 @@ void VideoWriter::finish(ByteFile& finished) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

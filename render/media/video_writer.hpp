@@ -1,8 +1,7 @@
 // Videos, written so that what was drawn can be played even if the process is killed.
 //
-//   qsmpc::VideoWriter video(partial, {.width = 1280, .height = 720, .frames_per_second = 30});
-//   for (…) { renderer.draw(frame, image); video.add(image); }
-//   video.finish(finished);
+//   qsmpc::render::VideoWriter video(partial, {.width = 1280, .height = 720, .frames_per_second =
+//   30}); for (…) { renderer.draw(frame, image); video.add(image); } video.finish(finished);
 #pragma once
 
 #include <memory>
@@ -12,7 +11,7 @@
 #include "render/media/byte_file.hpp"
 #include "render/media/video_format.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 struct VideoSettings {
   VideoFormat format = VideoFormat::kMp4;
@@ -55,4 +54,4 @@ class VideoWriter {
   std::unique_ptr<Encoder> encoder_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

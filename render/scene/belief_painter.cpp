@@ -10,7 +10,7 @@
 #include "render/gl/gl_shapes.hpp"
 #include "render/palette.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr double kNearScale = 150.0;      // pixels a metre, from which on marks have full size
@@ -154,4 +154,4 @@ void paint_belief(const Frame& frame, const View& view) {
   paint_plan(view, frame.planned_path, scale);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -5,7 +5,7 @@
 #include "render/camera.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// m above the ground, of all marks on it: paths, particles, ellipses, tube.
 inline constexpr double kMarkHeight = 0.01;
@@ -19,4 +19,4 @@ inline constexpr double kReferenceHeight = 720.0;
 /// Draws them within a FlatDrawing with `view`, in the order above.
 void paint_belief(const Frame& frame, const View& view);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -7,7 +7,7 @@
 
 #include "render/gl/gl_functions.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 // A point of the ground and its distance along the line of sight.
@@ -149,4 +149,4 @@ void draw_sky(const View& view, double reach, const Colour& top, const Colour& b
   glMatrixMode(GL_MODELVIEW);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -11,7 +11,7 @@
 #include "render/colour.hpp"
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// From `begin` to `end` metres along the line of sight, colours go over into `colour`.
 struct Fog {
@@ -37,4 +37,4 @@ void draw_fading_segments(const View& view, const std::vector<SpacePoint>& ends,
 /// ground, which reaches `reach` metres from the camera in all directions, will not be.
 void draw_sky(const View& view, double reach, const Colour& top, const Colour& bottom);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -6,7 +6,7 @@
 
 #include <mujoco/mujoco.h>
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 void throw_error(const char* message) {
@@ -28,4 +28,4 @@ void install_mujoco_guard() {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -12,7 +12,7 @@
 #include "render/scene/belief_painter.hpp"
 #include "render/scene/ground_shapes.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr double kObstacleHeight = 0.40;  // m
@@ -256,4 +256,4 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   draw_translucent(ghost);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -7,7 +7,7 @@
 #include "render/frame.hpp"
 #include "render/gl/gl_shapes.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// The smallest rectangle about what is finite in `world`: bounds, obstacles, target; at least 2 m
 /// wide and high.
@@ -39,4 +39,4 @@ class ScenePainter {
   std::vector<PlanarRectangle> walls_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -4,7 +4,7 @@
 #include <numeric>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 std::size_t thinning(std::size_t points, std::size_t limit) {
   return std::max<std::size_t>((points + limit - 1) / limit, 1);
@@ -36,4 +36,4 @@ ParticleStage thinned(const ParticleStage& stage, std::size_t every) {
   return kept;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -5,7 +5,7 @@
 
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Points of all overlays together that a frame should have at most: they cost about 10 ms.
 inline constexpr std::size_t kMostOverlayPoints = 18'000;
@@ -18,4 +18,4 @@ inline constexpr std::size_t kMostOverlayPoints = 18'000;
 /// sum they had. The same points every time.
 [[nodiscard]] ParticleStage thinned(const ParticleStage& stage, std::size_t every);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

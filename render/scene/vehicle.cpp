@@ -15,7 +15,7 @@
 #include "render/gl/solid_mesh.hpp"
 #include "render/scene/mujoco_guard.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 constexpr int kSpareGeoms = 64;  // MuJoCo's own decorations
@@ -329,4 +329,4 @@ std::vector<ColouredPoint> Vehicle::ghost(const PlanarPose& pose, const Colour& 
 
 double Vehicle::length() const { return simulator_->length; }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

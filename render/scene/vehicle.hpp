@@ -9,7 +9,7 @@
 #include "render/frame.hpp"
 #include "render/gl/gl_shapes.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 /// Needs an OffscreenContext that is current on the calling thread and outlives it.
 class Vehicle {
@@ -49,4 +49,4 @@ class Vehicle {
   std::unique_ptr<Simulator> simulator_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

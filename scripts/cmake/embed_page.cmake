@@ -28,11 +28,11 @@ string(SHA256 script_hash "${script}")
 
 set(delimiter "qsmpc_page")
 set(source "// Made by scripts/cmake/embed_page.cmake.\n#include \"harness/report/page_assets.hpp\"\n\n")
-string(APPEND source "namespace qsmpc {\n\n")
+string(APPEND source "namespace qsmpc::harness {\n\n")
 foreach(asset style script)
   string(APPEND source
     "std::string_view page_${asset}() {\n  return R\"${delimiter}(${${asset}})${delimiter}\";\n}\n\n"
     "std::string_view page_${asset}_sha256() { return \"${${asset}_hash}\"; }\n\n")
 endforeach()
-string(APPEND source "}  // namespace qsmpc\n")
+string(APPEND source "}  // namespace qsmpc::harness\n")
 file(WRITE "${OUTPUT}" "${source}")

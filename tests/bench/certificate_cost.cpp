@@ -21,12 +21,12 @@ namespace {
 constexpr int kHorizon = 8;
 constexpr double kYawRate = 0.3;  // rad/s
 
-SafeSet default_room() {
-  SafeSet room = unbounded_safe_set(3);
+controller::SafeSet default_room() {
+  controller::SafeSet room = controller::unbounded_safe_set(3);
   room.bounds.lower.head<2>().setConstant(-1.0);
   room.bounds.upper.head<2>().setConstant(12.0);
   const auto block = [](double x_lower, double x_upper, double y_lower, double y_upper) {
-    Box result = unbounded_safe_set(3).bounds;
+    controller::Box result = controller::unbounded_safe_set(3).bounds;
     result.lower.head<2>() << x_lower, y_lower;
     result.upper.head<2>() << x_upper, y_upper;
     return result;
@@ -35,8 +35,8 @@ SafeSet default_room() {
   return room;
 }
 
-PlannerSettings settings_for(int points, bool closed_loop) {
-  PlannerSettings settings;
+controller::PlannerSettings settings_for(int points, bool closed_loop) {
+  controller::PlannerSettings settings;
   settings.horizon = kHorizon;
   settings.closed_loop = closed_loop;
   settings.state_points = points;
@@ -56,30 +56,34 @@ PlannerSettings settings_for(int points, bool closed_loop) {
 class Motion {
  public:
   Motion(int points, bool closed_loop)
-      : car_(make_dynamics("dubins", {{"speed", 1.5}}, 0.1)),
+      : car_(models::make_dynamics("dubins", {{"speed", 1.5}}, 0.1)),
         planner_(*car_, settings_for(points, closed_loop)),
         belief_{.mean = Eigen::Vector3d::Zero(), .covariance = 0.01 * Eigen::Matrix3d::Identity()},
         plan_(planner_.prescribe(belief_, Eigen::MatrixXd::Constant(1, kHorizon, kYawRate))),
-        motion_(motion_of(planner_, belief_, plan_)),
-        budgets_(error_budget(motion_)) {}
+        motion_(controller::motion_of(planner_, belief_, plan_)),
+        budgets_(controller::error_budget(motion_)) {}
 
-  [[nodiscard]] GaussianQuantisation quantised() const {
-    return quantise(belief_, planner_.settings().state_points);
+  [[nodiscard]] controller::GaussianQuantisation quantised() const {
+    return controller::quantise(belief_, planner_.settings().state_points);
   }
-  [[nodiscard]] std::vector<StageBudget> budgets() const { return error_budget(motion_); }
-  [[nodiscard]] std::vector<StageCertificate> certificates(
-      const std::vector<StageBudget>& budgets) const {
-    return certify(motion_, planner_.settings().safe_set, budgets);
+  [[nodiscard]] std::vector<controller::StageBudget> budgets() const {
+    return controller::error_budget(motion_);
   }
-  [[nodiscard]] const std::vector<StageBudget>& known_budgets() const { return budgets_; }
+  [[nodiscard]] std::vector<controller::StageCertificate> certificates(
+      const std::vector<controller::StageBudget>& budgets) const {
+    return controller::certify(motion_, planner_.settings().safe_set, budgets);
+  }
+  [[nodiscard]] const std::vector<controller::StageBudget>& known_budgets() const {
+    return budgets_;
+  }
 
  private:
-  std::unique_ptr<const Dynamics> car_;
-  Planner planner_;
-  Gaussian belief_;
-  const Plan& plan_;
-  PredictedMotion motion_;
-  std::vector<StageBudget> budgets_;
+  std::unique_ptr<const models::Dynamics> car_;
+  controller::Planner planner_;
+  controller::Gaussian belief_;
+  const controller::Plan& plan_;
+  controller::PredictedMotion motion_;
+  std::vector<controller::StageBudget> budgets_;
 };
 
 Motion motion_for(const benchmark::State& state) {

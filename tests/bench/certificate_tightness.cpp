@@ -30,12 +30,13 @@ constexpr std::uint64_t kSeed = 20240229;
 
 struct Place {
   std::string name;
-  SafeSet safe_set;
+  controller::SafeSet safe_set;
 };
 
-Box box(Eigen::Index dim, double x_lower, double x_upper, double y_lower, double y_upper) {
-  Box result{.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
-             .upper = Eigen::VectorXd::Constant(dim, kInfinity)};
+controller::Box box(Eigen::Index dim, double x_lower, double x_upper, double y_lower,
+                    double y_upper) {
+  controller::Box result{.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
+                         .upper = Eigen::VectorXd::Constant(dim, kInfinity)};
   result.lower.head<2>() << x_lower, y_lower;
   result.upper.head<2>() << x_upper, y_upper;
   return result;
@@ -45,18 +46,19 @@ Box box(Eigen::Index dim, double x_lower, double x_upper, double y_lower, double
 /// of the way (m).
 std::vector<Place> places(Eigen::Index dim, double margin, double length) {
   const double far = 10.0 * length;
-  SafeSet walls{.bounds = box(dim, -margin, far, -margin, far), .obstacles = {}};
-  SafeSet corridor{.bounds = box(dim, -kInfinity, kInfinity, -margin, margin), .obstacles = {}};
-  SafeSet beside = walls;
+  controller::SafeSet walls{.bounds = box(dim, -margin, far, -margin, far), .obstacles = {}};
+  controller::SafeSet corridor{.bounds = box(dim, -kInfinity, kInfinity, -margin, margin),
+                               .obstacles = {}};
+  controller::SafeSet beside = walls;
   beside.obstacles.push_back(box(dim, 0.7 * length, 1.5 * length, 0.9 * margin, 1.9 * margin));
   return {{"box", walls}, {"corridor", corridor}, {"obstacle", beside}};
 }
 
 struct Vehicle {
   std::string name;
-  std::unique_ptr<const Dynamics> dynamics;
-  PlannerSettings settings;  ///< without a safe set
-  Gaussian belief;
+  std::unique_ptr<const models::Dynamics> dynamics;
+  controller::PlannerSettings settings;  ///< without a safe set
+  controller::Gaussian belief;
   Eigen::MatrixXd inputs;
   double margin = 1.0;   ///< m, of the places
   double length = 1.2;   ///< m, that it goes over the horizon
@@ -66,7 +68,7 @@ struct Vehicle {
 Vehicle dubins_car() {
   Vehicle car;
   car.name = "dubins";
-  car.dynamics = make_dynamics("dubins", {{"speed", 1.5}}, kTimeStep);
+  car.dynamics = models::make_dynamics("dubins", {{"speed", 1.5}}, kTimeStep);
   car.settings.noise_covariance = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
   car.settings.cost = {.state = Eigen::Vector3d(60.0, 60.0, 1.0).asDiagonal(),
                        .input = Eigen::MatrixXd::Constant(1, 1, 2.0),
@@ -83,7 +85,7 @@ Vehicle dubins_car() {
 Vehicle bicycle(double speed, double variance, double margin) {
   Vehicle vehicle;
   vehicle.name = fmt::format("bicycle at {} m/s, N(0, {} I)", speed, variance);
-  vehicle.dynamics = make_dynamics("bicycle", {}, kTimeStep);
+  vehicle.dynamics = models::make_dynamics("bicycle", {}, kTimeStep);
   Eigen::VectorXd noise(6);
   noise << 0.01, 0.01, 0.001, 0.01, 0.01, 0.001;
   Eigen::VectorXd weights(6);
@@ -120,17 +122,18 @@ struct Options {
 
 /// Prints one case; returns whether it keeps its promises.
 bool report(const Vehicle& vehicle, const Place& place, bool closed_loop, const Options& options) {
-  PlannerSettings settings = vehicle.settings;
+  controller::PlannerSettings settings = vehicle.settings;
   settings.horizon = kHorizon;
   settings.closed_loop = closed_loop;
   settings.safe_set = place.safe_set;
-  Planner planner(*vehicle.dynamics, settings);
-  const Plan& plan = vehicle.planned ? planner.plan(vehicle.belief)
+  controller::Planner planner(*vehicle.dynamics, settings);
+  const controller::Plan& plan = vehicle.planned
+                                     ? planner.plan(vehicle.belief)
                                      : planner.prescribe(vehicle.belief, vehicle.inputs);
-  const PredictedMotion motion = motion_of(planner, vehicle.belief, plan);
-  const std::vector<StageBudget> budgets = error_budget(motion);
-  const std::vector<StageCertificate> certificates =
-      certify(motion, settings.safe_set, budgets, CertificateEffort::kEvery);
+  const controller::PredictedMotion motion = controller::motion_of(planner, vehicle.belief, plan);
+  const std::vector<controller::StageBudget> budgets = controller::error_budget(motion);
+  const std::vector<controller::StageCertificate> certificates = controller::certify(
+      motion, settings.safe_set, budgets, controller::CertificateEffort::kEvery);
   std::mt19937_64 generator(kSeed);
   const UnsafeCounts counts = simulate(motion, settings.safe_set, options.paths, generator);
   bool kept = true;
@@ -139,7 +142,7 @@ bool report(const Vehicle& vehicle, const Place& place, bool closed_loop, const 
   std::cout << "stage     truth     bound   ratio  kind        C1        C2        C3        C4"
                "    thesis    W2<=\n";
   for (std::size_t k = 0; k < certificates.size(); ++k) {
-    const StageCertificate& stage = certificates[k];
+    const controller::StageCertificate& stage = certificates[k];
     const double truth = static_cast<double>(counts.stages[k]) / options.paths;
     const bool promised = k == 0 || k + 1 == certificates.size();
     const bool holds = !promised || stage.value <= promise(vehicle.dynamics->unicycle().has_value(),

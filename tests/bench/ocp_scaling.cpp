@@ -51,7 +51,7 @@ struct Measured {
   double value = 0.0;
   double value_without_noise = 0.0;
   Eigen::VectorXd gradient;
-  Points last_stage;
+  controller::Points last_stage;
   double parts = 0.0;  // product points with a share of their own, over all stages
 };
 
@@ -72,16 +72,17 @@ double median_time(int repetitions, const Work& work) {
 class Problem {
  public:
   Problem(int horizon, int points, int kept)
-      : scenario_(load_scenario(QSMPC_SOURCE_DIR "/tests/bench/scenarios/dubins_blocks.yaml",
-                                {fmt::format("controller.horizon={}", horizon)})),
-        model_(model_of(scenario_)),
-        settings_(planner_settings(scenario_)),
+      : scenario_(harness::load_scenario(QSMPC_SOURCE_DIR
+                                         "/tests/bench/scenarios/dubins_blocks.yaml",
+                                         {fmt::format("controller.horizon={}", horizon)})),
+        model_(harness::model_of(scenario_)),
+        settings_(harness::planner_settings(scenario_)),
         belief_{.mean = scenario_.initial_state.mean, .covariance = settings_.noise_covariance},
-        start_(quantise(belief_, points)),
+        start_(controller::quantise(belief_, points)),
         none_(Eigen::MatrixXd::Zero(model_->state_dim(), model_->state_dim())) {
     settings_.state_points = points;
     settings_.compressed_points = kept > 0 ? kept : points;
-    PolicyMaker policies(*model_, settings_);
+    controller::PolicyMaker policies(*model_, settings_);
     // Round the first block, more or less.
     const Eigen::MatrixXd inputs = Eigen::MatrixXd::Constant(1, horizon, 0.3);
     policies.make(belief_.mean, inputs,
@@ -89,32 +90,32 @@ class Problem {
   }
 
   [[nodiscard]] Measured measure(int threads, int repetitions) const {
-    const Executor run = executor_of(threads);
+    const controller::Executor run = harness::executor_of(threads);
     Measured result;
-    PredictionScratch scratch;
-    Prediction prediction;
+    controller::PredictionScratch scratch;
+    controller::Prediction prediction;
     const Eigen::VectorXd z = policy_.inputs.reshaped();
     const Eigen::VectorXd other = 0.99 * z;
     result.gradient.resize(z.size());
-    const auto predict_with = [&](Propagator& propagator) {
-      predict(*model_, propagator, start_.measure, policy_, run, scratch, prediction);
+    const auto predict_with = [&](controller::Propagator& propagator) {
+      controller::predict(*model_, propagator, start_.measure, policy_, run, scratch, prediction);
     };
     // At two places in turn: what was computed for the last one is of no use.
-    const auto evaluate_with = [&](HorizonCost& cost) {
+    const auto evaluate_with = [&](controller::HorizonCost& cost) {
       (void)cost.evaluate(other, result.gradient);
       return cost.evaluate(z, result.gradient);
     };
     {
-      const auto propagator = make_propagator("noise_free", propagation());
+      const auto propagator = controller::make_propagator("noise_free", propagation());
       predict_with(*propagator);
-      HorizonCost cost(terms(none_), run);
+      controller::HorizonCost cost(terms(none_), run);
       cost.freeze_assignments(prediction, policy_);
       result.without_noise =
           0.5 * median_time(repetitions, [&] { result.value_without_noise = evaluate_with(cost); });
     }
-    const auto propagator = make_propagator("mixture", propagation());
+    const auto propagator = controller::make_propagator("mixture", propagation());
     result.predict = median_time(repetitions, [&] { predict_with(*propagator); });
-    HorizonCost cost(terms(settings_.noise_covariance), run);
+    controller::HorizonCost cost(terms(settings_.noise_covariance), run);
     cost.freeze_assignments(prediction, policy_);
     result.evaluate = 0.5 * median_time(repetitions, [&] { result.value = evaluate_with(cost); });
     result.last_stage = prediction.stages.back().locations;
@@ -125,13 +126,13 @@ class Problem {
   }
 
  private:
-  [[nodiscard]] PropagatorSettings propagation() const {
+  [[nodiscard]] controller::PropagatorSettings propagation() const {
     return {.noise = {.mean = Eigen::VectorXd::Zero(model_->state_dim()),
                       .covariance = settings_.noise_covariance},
             .noise_points = settings_.noise_points,
             .compressed_points = settings_.compressed_points};
   }
-  [[nodiscard]] HorizonCostTerms terms(const Eigen::MatrixXd& noise) const {
+  [[nodiscard]] controller::HorizonCostTerms terms(const Eigen::MatrixXd& noise) const {
     return {.dynamics = *model_,
             .safe_set = settings_.safe_set,
             .cost = settings_.cost,
@@ -140,13 +141,13 @@ class Problem {
             .within_covariance = start_.within_covariance};
   }
 
-  Scenario scenario_;
-  std::unique_ptr<const Dynamics> model_;
-  PlannerSettings settings_;
-  Gaussian belief_;
-  GaussianQuantisation start_;
+  harness::Scenario scenario_;
+  std::unique_ptr<const models::Dynamics> model_;
+  controller::PlannerSettings settings_;
+  controller::Gaussian belief_;
+  controller::GaussianQuantisation start_;
   Eigen::MatrixXd none_;
-  Policy policy_;
+  controller::Policy policy_;
 };
 
 /// The slope of log(time) over log(size) by least squares.

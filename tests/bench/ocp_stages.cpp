@@ -42,19 +42,19 @@ struct Case {
 class Problem {
  public:
   explicit Problem(const Case& wanted)
-      : Problem(load_scenario(wanted.system == "bicycle" ? "bicycle_obstacles"
-                                                         : QSMPC_SOURCE_DIR
-                                  "/tests/bench/scenarios/dubins_blocks.yaml",
-                              {fmt::format("controller.horizon={}", wanted.horizon)}),
+      : Problem(harness::load_scenario(wanted.system == "bicycle" ? "bicycle_obstacles"
+                                                                  : QSMPC_SOURCE_DIR
+                                           "/tests/bench/scenarios/dubins_blocks.yaml",
+                                       {fmt::format("controller.horizon={}", wanted.horizon)}),
                 wanted) {}
 
-  [[nodiscard]] GaussianQuantisation quantised() const {
-    return quantise(belief_, settings_.state_points);
+  [[nodiscard]] controller::GaussianQuantisation quantised() const {
+    return controller::quantise(belief_, settings_.state_points);
   }
-  [[nodiscard]] Prediction predicted() {
-    return predict(*model_, *propagator_, plan_.belief.measure, plan_.policy);
+  [[nodiscard]] controller::Prediction predicted() {
+    return controller::predict(*model_, *propagator_, plan_.belief.measure, plan_.policy);
   }
-  [[nodiscard]] HorizonCost horizon_cost() const {
+  [[nodiscard]] controller::HorizonCost horizon_cost() const {
     return {{.dynamics = *model_,
              .safe_set = settings_.safe_set,
              .cost = settings_.cost,
@@ -64,12 +64,12 @@ class Problem {
             plan_.prediction,
             plan_.policy};
   }
-  [[nodiscard]] std::vector<StageCertificate> certificates() const {
-    const PredictedMotion motion = motion_of(planner_, belief_, plan_);
-    return certify(motion, settings_.safe_set, error_budget(motion));
+  [[nodiscard]] std::vector<controller::StageCertificate> certificates() const {
+    const controller::PredictedMotion motion = controller::motion_of(planner_, belief_, plan_);
+    return controller::certify(motion, settings_.safe_set, controller::error_budget(motion));
   }
   /// Plans for where the last plan leads to; now and then starts again from the start.
-  [[nodiscard]] const Plan& next_plan(benchmark::State& state) {
+  [[nodiscard]] const controller::Plan& next_plan(benchmark::State& state) {
     if (step_++ == kStepsOfAWay) {
       state.PauseTiming();
       step_ = 1;
@@ -78,23 +78,23 @@ class Problem {
       follow(planner_.plan(way_));
       state.ResumeTiming();
     }
-    const Plan& plan = planner_.plan(way_);
+    const controller::Plan& plan = planner_.plan(way_);
     follow(plan);
     return plan;
   }
-  [[nodiscard]] const Plan& plan() const { return plan_; }
+  [[nodiscard]] const controller::Plan& plan() const { return plan_; }
 
  private:
   static constexpr int kStepsOfAWay = 30;
 
-  Problem(const Scenario& scenario, const Case& wanted)
-      : model_(model_of(scenario)),
+  Problem(const harness::Scenario& scenario, const Case& wanted)
+      : model_(harness::model_of(scenario)),
         settings_(settings_of(scenario, wanted)),
-        propagator_(make_propagator(settings_.propagator,
-                                    {.noise = {.mean = Eigen::VectorXd::Zero(model_->state_dim()),
-                                               .covariance = settings_.noise_covariance},
-                                     .noise_points = settings_.noise_points,
-                                     .compressed_points = settings_.compressed_points})),
+        propagator_(controller::make_propagator(
+            settings_.propagator, {.noise = {.mean = Eigen::VectorXd::Zero(model_->state_dim()),
+                                             .covariance = settings_.noise_covariance},
+                                   .noise_points = settings_.noise_points,
+                                   .compressed_points = settings_.compressed_points})),
         planner_(*model_, settings_),
         belief_{.mean = scenario.initial_state.mean, .covariance = settings_.noise_covariance},
         way_(belief_),
@@ -102,23 +102,24 @@ class Problem {
     planner_.prepare(belief_.covariance);
   }
 
-  static PlannerSettings settings_of(const Scenario& scenario, const Case& wanted) {
-    PlannerSettings settings = planner_settings(scenario);
+  static controller::PlannerSettings settings_of(const harness::Scenario& scenario,
+                                                 const Case& wanted) {
+    controller::PlannerSettings settings = harness::planner_settings(scenario);
     settings.propagator = wanted.propagator;
     settings.state_points = wanted.points;
     settings.compressed_points = wanted.points;
     return settings;
   }
-  void follow(const Plan& plan) { way_.mean = plan.policy.states.col(1); }
+  void follow(const controller::Plan& plan) { way_.mean = plan.policy.states.col(1); }
 
-  std::unique_ptr<const Dynamics> model_;
-  PlannerSettings settings_;
-  std::unique_ptr<Propagator> propagator_;
-  Planner planner_;
-  Gaussian belief_;
-  Gaussian way_;  // belief that is planned for next
+  std::unique_ptr<const models::Dynamics> model_;
+  controller::PlannerSettings settings_;
+  std::unique_ptr<controller::Propagator> propagator_;
+  controller::Planner planner_;
+  controller::Gaussian belief_;
+  controller::Gaussian way_;  // belief that is planned for next
   int step_ = 0;
-  Plan plan_;
+  controller::Plan plan_;
 };
 
 /// Google Benchmark calls a function several times: what it works on is made once and kept.
@@ -138,7 +139,7 @@ void predict_stages(benchmark::State& state, Problem& problem) {
 }
 
 void evaluate_cost(benchmark::State& state, Problem& problem) {
-  HorizonCost cost = problem.horizon_cost();
+  controller::HorizonCost cost = problem.horizon_cost();
   // Two points in turn: what was computed for the last one is of no use.
   const Eigen::MatrixXd inputs = problem.plan().policy.inputs;
   const Eigen::MatrixXd other = 0.99 * inputs;
@@ -163,10 +164,11 @@ void compress_points(benchmark::State& state) {
   constexpr int kPointsEach = 100;
   constexpr int kDim = 3;
   const auto count = static_cast<int>(state.range(0));
-  const Gaussian law{.mean = Eigen::VectorXd::Zero(kDim),
-                     .covariance = Eigen::Vector3d(1.0, 0.7, 0.1).asDiagonal()};
-  const DiscreteMeasure measure = quantise(law, kPointsEach * count).measure;
-  for (auto _ : state) benchmark::DoNotOptimize(compress(measure, count, 0));
+  const controller::Gaussian law{.mean = Eigen::VectorXd::Zero(kDim),
+                                 .covariance = Eigen::Vector3d(1.0, 0.7, 0.1).asDiagonal()};
+  const controller::DiscreteMeasure measure =
+      controller::quantise(law, kPointsEach * count).measure;
+  for (auto _ : state) benchmark::DoNotOptimize(controller::compress(measure, count, 0));
   state.SetComplexityN(count);
 }
 

@@ -40,7 +40,7 @@ struct Options {
 
 double allowed(int horizon) { return horizon <= 8 ? 0.1 : 0.5; }
 
-PlannerSettings with(const Options& options, PlannerSettings settings) {
+controller::PlannerSettings with(const Options& options, controller::PlannerSettings settings) {
   settings.state_points = options.points;
   settings.noise_points = options.points;
   settings.compressed_points = options.points;
@@ -63,7 +63,8 @@ bool print(const std::string& name, int horizon, const Shortfall& shortfall, dou
       horizon, shortfall.planned, shortfall.best, shortfall.absolute(),
       100.0 * shortfall.relative(), limit, shortfall.predicted,
       shortfall.predicted_best - shortfall.predicted, shortfall.plan.evaluations,
-      solver_status_name(shortfall.plan.status), good ? "" : ", costs more than promised");
+      controller::solver_status_name(shortfall.plan.status),
+      good ? "" : ", costs more than promised");
   if (options.inputs) {
     print_inputs("planned", shortfall.plan.policy.inputs);
     print_inputs("best", shortfall.best_inputs);
@@ -81,9 +82,10 @@ bool report_open_loop(const Options& options) {
   print_header("Open loop without obstacles, evaluated exactly");
   bool good = true;
   for (const int horizon : options.horizons) {
-    const PlannerSettings settings = with(options, free_settings(horizon, /*closed_loop=*/false));
+    const controller::PlannerSettings settings =
+        with(options, free_settings(horizon, /*closed_loop=*/false));
     for (const double heading : {0.7, -1.5, 3.0}) {
-      const Gaussian belief = first_belief(0.0, 0.0, heading);
+      const controller::Gaussian belief = first_belief(0.0, 0.0, heading);
       good = print(fmt::format("start, heading {}", heading), horizon,
                    exact_shortfall(settings, belief), allowed(horizon), options) &&
              good;
@@ -99,12 +101,12 @@ bool report_open_loop(const Options& options) {
 
 bool report_closed_loop(const Options& options) {
   print_header("Closed loop among blocks, evaluated on simulated paths");
-  const std::unique_ptr<const Dynamics> car = default_car();
+  const std::unique_ptr<const models::Dynamics> car = default_car();
   const SamplingSettings sampling{
       .search = {.draws = {.paths = options.paths, .seed = 1}, .random_starts = options.starts}};
   bool good = true;
   for (const int horizon : options.horizons) {
-    const PlannerSettings settings = with(options, blocks_settings(horizon));
+    const controller::PlannerSettings settings = with(options, blocks_settings(horizon));
     for (const Place& place : places_among_blocks()) {
       const Shortfall shortfall = sampled_shortfall(*car, settings, place.belief, sampling);
       good = print(place.name, horizon, shortfall, kRelative * shortfall.best, options) && good;

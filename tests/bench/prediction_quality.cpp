@@ -38,13 +38,13 @@ struct Options {
   std::string propagator = "moment_matched";
 };
 
-std::vector<DiscreteMeasure> ideal_points(const QualityProblem& problem, int samples) {
+std::vector<controller::DiscreteMeasure> ideal_points(const QualityProblem& problem, int samples) {
   constexpr int kRounds = 60;
   constexpr int kPoints = 100;
   constexpr unsigned kSeed = 1000000;  // none of the references'
-  std::vector<DiscreteMeasure> result;
-  for (const DiscreteMeasure& law : simulated_states(problem, samples, kSeed, 0)) {
-    result.push_back(compress(law, kPoints, kRounds).measure);
+  std::vector<controller::DiscreteMeasure> result;
+  for (const controller::DiscreteMeasure& law : simulated_states(problem, samples, kSeed, 0)) {
+    result.push_back(controller::compress(law, kPoints, kRounds).measure);
   }
   return result;
 }

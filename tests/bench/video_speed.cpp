@@ -28,7 +28,7 @@
 #include "render/scene/vehicle.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr int kStages = 9;
@@ -52,7 +52,8 @@ Eigen::Vector3d state_at(double time) {
 
 // Points of a sunflower: evenly spread, without a random number.
 StageParticles particles_about(const Eigen::Vector3d& centre, int stage, int count) {
-  StageParticles particles{StateBatch(3, count), Eigen::VectorXd::Constant(count, 1.0 / count)};
+  StageParticles particles{models::StateBatch(3, count),
+                           Eigen::VectorXd::Constant(count, 1.0 / count)};
   for (int i = 0; i < count; ++i) {
     const double angle = 2.39996 * i;
     const double radius = 0.08 * (stage + 1) * std::sqrt((i + 0.5) / count);
@@ -86,11 +87,11 @@ Trace made_up_trace(const Options& options, int fps) {
   scenario.model = {"dubins", {{"speed", kSpeed}}};
   scenario.plant = {"analytic", QSMPC_SOURCE_DIR "/models/mjcf/dubins_car.xml"};
   scenario.time_step = kPeriod;
-  scenario.safe_set = unbounded_safe_set(3);
+  scenario.safe_set = controller::unbounded_safe_set(3);
   scenario.safe_set.bounds.lower << -7.0, -2.0, -HUGE_VAL;
   scenario.safe_set.bounds.upper << 7.0, 12.0, HUGE_VAL;
   for (const double x : {-2.0, 2.0}) {
-    Box obstacle = unbounded_safe_set(3).bounds;
+    controller::Box obstacle = controller::unbounded_safe_set(3).bounds;
     obstacle.lower.head(2) << x - 0.6, 4.0;
     obstacle.upper.head(2) << x + 0.6, 6.0;
     scenario.safe_set.obstacles.push_back(obstacle);
@@ -164,48 +165,48 @@ class PartByPart {
         vehicle_(trace.scenario.plant.mjcf, video.width, video.height),
         painter_(frames.world(), frames.region()),
         hud_(video.width, video.height),
-        writer_(path, {.format = known_video_format(path),
+        writer_(path, {.format = render::known_video_format(path),
                        .width = video.width,
                        .height = video.height,
                        .frames_per_second = video.fps}) {}
 
   void draw(int index, Parts& parts) {
-    const Frame frame = frames_.at(static_cast<double>(index) / video_.fps);
-    Frame bare = frame;
+    const render::Frame frame = frames_.at(static_cast<double>(index) / video_.fps);
+    render::Frame bare = frame;
     bare.particles.clear();
-    const View view =
-        chase_view(*frame.followed, 4.0, {video_.width, video_.height, hud_.covered_share(frame)});
+    const render::View view = render::chase_view(
+        *frame.followed, 4.0, {video_.width, video_.height, hud_.covered_share(frame)});
     vehicle_.place(frame);
     parts.vehicle.measure([&] { draw_vehicle(view); });
     parts.scene.measure([&] { paint(bare, view); });
     draw_vehicle(view);
     parts.scene_with_points.measure([&] { paint(frame, view); });
     parts.reading.measure([&] { vehicle_.read_picture(image_); });
-    parts.smoothing.measure([&] { smooth_edges(image_, workspace_); });
+    parts.smoothing.measure([&] { render::smooth_edges(image_, workspace_); });
     parts.hud.measure([&] { hud_.draw(frame, image_); });
     parts.encoding.measure([&] { writer_.add(image_); });
   }
 
  private:
-  void draw_vehicle(const View& view) {
+  void draw_vehicle(const render::View& view) {
     vehicle_.draw(view);
-    glFinish();
+    render::glFinish();
   }
-  void paint(const Frame& frame, const View& view) {
-    std::vector<ColouredPoint> ghost;
-    if (frame.ghost) ghost = vehicle_.ghost(*frame.ghost, palette::kGhost);
+  void paint(const render::Frame& frame, const render::View& view) {
+    std::vector<render::ColouredPoint> ghost;
+    if (frame.ghost) ghost = vehicle_.ghost(*frame.ghost, render::palette::kGhost);
     painter_.paint(frame, view, vehicle_.shadows(), ghost);
-    glFinish();
+    render::glFinish();
   }
 
   const EpisodeFrames& frames_;
   EpisodeVideoOptions video_;
-  OffscreenContext context_;  // before what draws with it
-  Vehicle vehicle_;
-  ScenePainter painter_;
-  Hud hud_;
-  SmoothingWorkspace workspace_;
-  Image image_;
+  render::OffscreenContext context_;  // before what draws with it
+  render::Vehicle vehicle_;
+  render::ScenePainter painter_;
+  render::Hud hud_;
+  render::SmoothingWorkspace workspace_;
+  render::Image image_;
   VideoFile writer_;
 };
 
@@ -239,10 +240,10 @@ bool run(const Options& options) {
 }
 
 }  // namespace
-}  // namespace qsmpc
+}  // namespace qsmpc::harness
 
 int main(int argc, char** argv) {
-  qsmpc::Options options;
+  qsmpc::harness::Options options;
   CLI::App app("Speed of drawing and encoding a video, and how it splits");
   app.add_option("--points", options.points, "Particles in a frame")->check(CLI::PositiveNumber);
   app.add_option("--size", options.size, "WIDTHxHEIGHT in pixels");
@@ -253,7 +254,7 @@ int main(int argc, char** argv) {
   app.add_option("--at-least", options.at_least, "Frames a second, below which it has failed");
   CLI11_PARSE(app, argc, argv);
   try {
-    return qsmpc::run(options) ? EXIT_SUCCESS : EXIT_FAILURE;
+    return qsmpc::harness::run(options) ? EXIT_SUCCESS : EXIT_FAILURE;
   } catch (const std::exception& error) {
     std::cerr << error.what() << '\n';
     return EXIT_FAILURE;

@@ -7,8 +7,10 @@
 
 #include "tests/integration/process.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace integration_campaign_file_test {
+
+using namespace testing;
 
 using ::testing::HasSubstr;
 
@@ -52,4 +54,4 @@ TEST(CampaignFiles, that_are_wrong_are_a_bad_input_with_every_problem) {
 }
 
 }  // namespace integration_campaign_file_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string row_text(const EpisodeRow& row) {
+std::string row_text(const harness::EpisodeRow& row) {
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", row.variant, row.seed,
                      row.outcome, row.fault, row.steps, row.time_to_target.value_or(-1.0),
                      row.unsafe, row.min_clearance, row.cost, row.next_step_max, row.next_step_sum,
@@ -80,17 +80,17 @@ std::string short_campaign(const TemporaryFolder& folder, int seeds, const std::
 }
 
 std::vector<std::string> rows_of(const std::string& folder) {
-  const StoreReader store(folder);
+  const harness::StoreReader store(folder);
   std::vector<std::string> rows;
-  for (const StoredVariant& variant : store.variants()) {
+  for (const harness::StoredVariant& variant : store.variants()) {
     rows.push_back(variant.name + " " + variant.scenario_text);
     store.for_each_episode(variant.id,
-                           [&](const EpisodeRow& row) { rows.push_back(row_text(row)); });
-    store.for_each_period(variant.id,
-                          [&](std::uint64_t seed, std::int64_t period, const PeriodRow& row) {
-                            rows.push_back(fmt::format("{} {} {} {} {}", seed, period,
-                                                       row.certified, row.published, row.unsafe));
-                          });
+                           [&](const harness::EpisodeRow& row) { rows.push_back(row_text(row)); });
+    store.for_each_period(
+        variant.id, [&](std::uint64_t seed, std::int64_t period, const harness::PeriodRow& row) {
+          rows.push_back(fmt::format("{} {} {} {} {}", seed, period, row.certified, row.published,
+                                     row.unsafe));
+        });
   }
   return rows;
 }

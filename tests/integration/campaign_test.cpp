@@ -22,7 +22,7 @@
 #include "tests/integration/campaign_fixture.hpp"
 #include "tests/support/effort.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace campaign_test {
 
 namespace fs = std::filesystem;
@@ -43,35 +43,36 @@ ProcessResult campaign(const std::string& file, const std::string& out,
                        std::vector<std::string> more = {}, const ProcessOptions& options = {}) {
   std::vector<std::string> arguments{"campaign", file, "--out", out};
   arguments.insert(arguments.end(), more.begin(), more.end());
-  return run_qsmpc(arguments, options);
+  return testing::run_qsmpc(arguments, options);
 }
 
 TEST(Campaign, leaves_a_store_numbers_and_figures) {
   const TemporaryFolder folder;
-  const ProcessResult result = campaign(short_campaign(folder, 3), folder / "out");
+  const ProcessResult result = campaign(testing::short_campaign(folder, 3), folder / "out");
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* name :
        {"campaign.sqlite", "campaign.json", "campaign.yaml", "episodes.csv", "variants.csv",
         "differences.csv", "calibration.csv", "reliability.svg", "report.html"}) {
-    EXPECT_TRUE(files_in(folder / "out").contains(name)) << name;
+    EXPECT_TRUE(testing::files_in(folder / "out").contains(name)) << name;
   }
   EXPECT_THAT(result.output, AllOf(HasSubstr("closed"), HasSubstr("open")));
   EXPECT_THAT(result.errors, HasSubstr("driving: 6 of 6"));
-  EXPECT_TRUE(files_below(folder / "out", ".partial").empty());
-  EXPECT_TRUE(files_below(folder / "out", "-wal").empty());
+  EXPECT_TRUE(testing::files_below(folder / "out", ".partial").empty());
+  EXPECT_TRUE(testing::files_below(folder / "out", "-wal").empty());
   fs::remove(folder / "out/report.html");
-  const ProcessResult report = run_qsmpc({"report", folder / "out"});
+  const ProcessResult report = testing::run_qsmpc({"report", folder / "out"});
   EXPECT_EQ(report.exit_code, 0) << report.errors;
   EXPECT_EQ(report.output, folder / "out/report.html" + std::string("\n"));
-  EXPECT_THAT(read_text(folder / "out/report.html"), HasSubstr("No certificate is refuted"));
+  EXPECT_THAT(testing::read_text(folder / "out/report.html"),
+              HasSubstr("No certificate is refuted"));
 }
 
 TEST(Campaign, json_has_the_keys_that_other_programs_read) {
   const TemporaryFolder folder;
   const ProcessResult result =
-      campaign(short_campaign(folder, 2), folder / "out", {"--json", "--quiet"});
+      campaign(testing::short_campaign(folder, 2), folder / "out", {"--json", "--quiet"});
   EXPECT_EQ(result.errors, "");
-  EXPECT_EQ(result.output, read_text(folder / "out/campaign.json"));
+  EXPECT_EQ(result.output, testing::read_text(folder / "out/campaign.json"));
   const auto json = nlohmann::json::parse(result.output);
   EXPECT_EQ(json["episodes"], 4);
   EXPECT_EQ(json["done"], 4);
@@ -87,11 +88,11 @@ TEST(Campaign, json_has_the_keys_that_other_programs_read) {
 
 TEST(Campaign, results_do_not_depend_on_the_number_of_jobs) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 6);
+  const std::string file = testing::short_campaign(folder, 6);
   ASSERT_EQ(campaign(file, folder / "one", {"--jobs", "1"}).exit_code, 0);
   ASSERT_EQ(campaign(file, folder / "three", {"--jobs", "3"}).exit_code, 0);
-  EXPECT_EQ(rows_of(folder / "one"), rows_of(folder / "three"));
-  EXPECT_EQ(results_of(folder / "one"), results_of(folder / "three"));
+  EXPECT_EQ(testing::rows_of(folder / "one"), testing::rows_of(folder / "three"));
+  EXPECT_EQ(testing::results_of(folder / "one"), testing::results_of(folder / "three"));
 }
 
 /// Starts the campaign and kills it after `delay`, unless it ends before.
@@ -108,29 +109,30 @@ int run_and_kill(const std::string& file, const std::string& out, std::chrono::m
 
 /// Number of episodes that the store in `out` says are done; 0 where there is no store yet.
 int done_in(const std::string& out) {
-  const ProcessResult status = run_qsmpc({"campaign", "status", out, "--json"});
+  const ProcessResult status = testing::run_qsmpc({"campaign", "status", out, "--json"});
   return status.exit_code == 0 ? nlohmann::json::parse(status.output)["done"].get<int>() : 0;
 }
 
 void expect_same_campaign(const std::string& again, const std::string& once) {
-  EXPECT_EQ(rows_of(again), rows_of(once));
-  EXPECT_EQ(results_of(again), results_of(once));
-  const std::vector<std::string> traces = files_below(again, ".h5");
-  EXPECT_EQ(traces, files_below(once, ".h5"));
+  EXPECT_EQ(testing::rows_of(again), testing::rows_of(once));
+  EXPECT_EQ(testing::results_of(again), testing::results_of(once));
+  const std::vector<std::string> traces = testing::files_below(again, ".h5");
+  EXPECT_EQ(traces, testing::files_below(once, ".h5"));
   for (const std::string& name : traces) {
     const Trace trace = read_trace(again + "/" + name);
     const Trace expected = read_trace(once + "/" + name);
     EXPECT_EQ(trace.outcome, expected.outcome);
     EXPECT_EQ(trace.final_state, expected.final_state);
   }
-  EXPECT_TRUE(files_below(again, ".partial").empty());
+  EXPECT_TRUE(testing::files_below(again, ".partial").empty());
 }
 
 TEST(Campaign, killed_at_any_moment_and_started_again_it_ends_as_if_it_never_was) {
   const TemporaryFolder folder;
   const std::string whole = folder / "whole";
   const std::string killed = folder / "killed";
-  const std::string file = short_campaign(folder, 100, "traces: failures\ntrace_sample: 3\n");
+  const std::string file =
+      testing::short_campaign(folder, 100, "traces: failures\ntrace_sample: 3\n");
   const auto start = std::chrono::steady_clock::now();
   ASSERT_EQ(campaign(file, whole, {"--quiet"}).exit_code, 0);
   const auto duration = std::chrono::duration_cast<std::chrono::microseconds>(
@@ -191,7 +193,7 @@ class SmallDisk {
 
 TEST(Campaign, a_full_disk_loses_nothing_that_was_done) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 60);
+  const std::string file = testing::short_campaign(folder, 60);
   ASSERT_EQ(campaign(file, folder / "whole", {"--quiet"}).exit_code, 0);
   const std::string out = folder / "small";
   const SmallDisk disk(out);
@@ -199,39 +201,39 @@ TEST(Campaign, a_full_disk_loses_nothing_that_was_done) {
     const ProcessResult full = campaign(file, out, {"--quiet"}, disk.when_small());
     EXPECT_EQ(full.exit_code, 3) << full.errors;
     EXPECT_THAT(full.errors, HasSubstr("campaign.sqlite"));
-    EXPECT_EQ(files_in(out).count("campaign.json"), 0U);
+    EXPECT_EQ(testing::files_in(out).count("campaign.json"), 0U);
   }
   disk.grow();
-  const std::size_t kept = rows_of(out).size();
+  const std::size_t kept = testing::rows_of(out).size();
   EXPECT_GT(kept, 2U + 7U) << "not even one episode had space";
-  EXPECT_LT(kept, rows_of(folder / "whole").size());
+  EXPECT_LT(kept, testing::rows_of(folder / "whole").size());
   const ProcessResult last = campaign(file, out, {"--quiet"});
   ASSERT_EQ(last.exit_code, 0) << last.errors;
-  EXPECT_EQ(rows_of(out), rows_of(folder / "whole"));
-  EXPECT_EQ(results_of(out), results_of(folder / "whole"));
+  EXPECT_EQ(testing::rows_of(out), testing::rows_of(folder / "whole"));
+  EXPECT_EQ(testing::results_of(out), testing::results_of(folder / "whole"));
 }
 
 TEST(Campaign, a_store_of_a_newer_schema_is_refused_and_left_alone) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 1);
+  const std::string file = testing::short_campaign(folder, 1);
   const std::string out = folder / "out";
   ASSERT_EQ(campaign(file, out).exit_code, 0);
   {
     SQLite::Database(out + "/campaign.sqlite", SQLite::OPEN_READWRITE)
         .exec("PRAGMA user_version = 77");
   }
-  const std::string before = read_text(out + "/campaign.sqlite");
+  const std::string before = testing::read_text(out + "/campaign.sqlite");
   for (const ProcessResult& result : {campaign(file, out), campaign(file, out, {"--update"}),
-                                      run_qsmpc({"campaign", "status", out})}) {
+                                      testing::run_qsmpc({"campaign", "status", out})}) {
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_THAT(result.errors, HasSubstr("schema 77, made by a newer qsmpc"));
   }
-  EXPECT_EQ(read_text(out + "/campaign.sqlite"), before);
+  EXPECT_EQ(testing::read_text(out + "/campaign.sqlite"), before);
 }
 
 TEST(Campaign, a_second_process_is_told_who_holds_the_folder) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 60);
+  const std::string file = testing::short_campaign(folder, 60);
   const std::string out = folder / "out";
   ProcessResult second;
   ProcessOptions options;
@@ -246,12 +248,12 @@ TEST(Campaign, a_second_process_is_told_who_holds_the_folder) {
   EXPECT_EQ(first.exit_code, 0) << first.errors;
   EXPECT_EQ(second.exit_code, 3);
   EXPECT_THAT(second.errors, HasSubstr(fmt::format("being run by process {} on", first_process)));
-  EXPECT_EQ(nlohmann::json::parse(read_text(out + "/campaign.json"))["done"], 120);
+  EXPECT_EQ(nlohmann::json::parse(testing::read_text(out + "/campaign.json"))["done"], 120);
 }
 
 TEST(Campaign, ctrl_c_keeps_what_is_done_and_says_how_to_go_on) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 200);
+  const std::string file = testing::short_campaign(folder, 200);
   const std::string out = folder / "out";
   ProcessOptions options;
   options.meanwhile = [&](pid_t process) {
@@ -262,11 +264,11 @@ TEST(Campaign, ctrl_c_keeps_what_is_done_and_says_how_to_go_on) {
   const ProcessResult stopped = campaign(file, out, {"--quiet", "--jobs", "1"}, options);
   EXPECT_EQ(stopped.exit_code, 130);
   EXPECT_THAT(stopped.errors, HasSubstr("of 400 episodes are done and kept"));
-  const auto json = nlohmann::json::parse(read_text(out + "/campaign.json"));
+  const auto json = nlohmann::json::parse(testing::read_text(out + "/campaign.json"));
   EXPECT_GE(json["done"], 3);
   EXPECT_LT(json["done"], 400);
   EXPECT_EQ(campaign(file, out, {"--quiet"}).exit_code, 0);
-  EXPECT_EQ(nlohmann::json::parse(read_text(out + "/campaign.json"))["done"], 400);
+  EXPECT_EQ(nlohmann::json::parse(testing::read_text(out + "/campaign.json"))["done"], 400);
 }
 
 TEST(Campaign, its_status_can_be_read_while_it_runs) {
@@ -276,43 +278,46 @@ TEST(Campaign, its_status_can_be_read_while_it_runs) {
   pid_t running = 0;
   ProcessOptions options;
   options.meanwhile = [&](pid_t process) {
-    status = run_qsmpc({"campaign", "status", out, "--json"});
+    status = testing::run_qsmpc({"campaign", "status", out, "--json"});
     running = process;
     return status.exit_code == 0 && nlohmann::json::parse(status.output)["done"] > 0;
   };
-  ASSERT_EQ(
-      campaign(short_campaign(folder, 60), out, {"--quiet", "--jobs", "1"}, options).exit_code, 0);
+  ASSERT_EQ(campaign(testing::short_campaign(folder, 60), out, {"--quiet", "--jobs", "1"}, options)
+                .exit_code,
+            0);
   const auto json = nlohmann::json::parse(status.output);
   EXPECT_EQ(json["episodes"], 120);
   EXPECT_EQ(json["running"]["process"], running);
   EXPECT_GT(json["rate"], 0.0);
   EXPECT_GT(json["left"], 0.0);
-  const auto after = nlohmann::json::parse(run_qsmpc({"campaign", "status", out, "--json"}).output);
+  const auto after =
+      nlohmann::json::parse(testing::run_qsmpc({"campaign", "status", out, "--json"}).output);
   EXPECT_EQ(after["done"], 120);
   EXPECT_TRUE(after["running"].is_null());
 }
 
 TEST(Campaign, shards_merge_into_what_one_machine_drives) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 5, "traces: all\n");
+  const std::string file = testing::short_campaign(folder, 5, "traces: all\n");
   ASSERT_EQ(campaign(file, folder / "whole").exit_code, 0);
   ASSERT_EQ(campaign(file, folder / "a", {"--shard", "1/2"}).exit_code, 0);
   const std::vector<std::string> merge{"campaign",   "merge", folder / "a",
                                        folder / "b", "--out", folder / "merged"};
-  EXPECT_EQ(run_qsmpc(merge).exit_code, 2);
+  EXPECT_EQ(testing::run_qsmpc(merge).exit_code, 2);
   ASSERT_EQ(campaign(file, folder / "b", {"--shard", "2/2"}).exit_code, 0);
-  const ProcessResult merged = run_qsmpc(merge);
+  const ProcessResult merged = testing::run_qsmpc(merge);
   ASSERT_EQ(merged.exit_code, 0) << merged.errors;
-  EXPECT_EQ(rows_of(folder / "merged"), rows_of(folder / "whole"));
-  EXPECT_EQ(results_of(folder / "merged"), results_of(folder / "whole"));
-  EXPECT_EQ(files_below(folder / "merged", ".h5"), files_below(folder / "whole", ".h5"));
+  EXPECT_EQ(testing::rows_of(folder / "merged"), testing::rows_of(folder / "whole"));
+  EXPECT_EQ(testing::results_of(folder / "merged"), testing::results_of(folder / "whole"));
+  EXPECT_EQ(testing::files_below(folder / "merged", ".h5"),
+            testing::files_below(folder / "whole", ".h5"));
 }
 
 TEST(Campaign, a_changed_campaign_is_refused_unless_told) {
   const TemporaryFolder folder;
   const std::string out = folder / "out";
-  ASSERT_EQ(campaign(short_campaign(folder, 3), out).exit_code, 0);
-  const std::string longer = short_campaign(folder, 5);
+  ASSERT_EQ(campaign(testing::short_campaign(folder, 3), out).exit_code, 0);
+  const std::string longer = testing::short_campaign(folder, 5);
   const ProcessResult refused = campaign(longer, out);
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.errors, AllOf(HasSubstr("seeds: found 3 to 5"), HasSubstr("--update")));
@@ -320,12 +325,13 @@ TEST(Campaign, a_changed_campaign_is_refused_unless_told) {
   EXPECT_EQ(told.exit_code, 0);
   EXPECT_THAT(told.errors, HasSubstr("6 episodes are kept, 0 are no longer asked for"));
   ASSERT_EQ(campaign(longer, folder / "fresh").exit_code, 0);
-  EXPECT_EQ(results_of(out), results_of(folder / "fresh"));
+  EXPECT_EQ(testing::results_of(out), testing::results_of(folder / "fresh"));
 }
 
 TEST(Campaign, a_dry_run_shows_the_plan_and_writes_nothing) {
   const TemporaryFolder folder;
-  const ProcessResult result = campaign(short_campaign(folder, 7), folder / "out", {"--dry-run"});
+  const ProcessResult result =
+      campaign(testing::short_campaign(folder, 7), folder / "out", {"--dry-run"});
   EXPECT_EQ(result.exit_code, 0);
   EXPECT_THAT(result.output, AllOf(HasSubstr("14"), HasSubstr("controller.policy=open_loop")));
   EXPECT_FALSE(fs::exists(folder / "out"));
@@ -333,7 +339,7 @@ TEST(Campaign, a_dry_run_shows_the_plan_and_writes_nothing) {
 
 TEST(Campaign, fails_on_what_the_user_asked_to_be_told) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 1);
+  const std::string file = testing::short_campaign(folder, 1);
   EXPECT_EQ(campaign(file, folder / "out").exit_code, 0);
   EXPECT_EQ(campaign(file, folder / "out", {"--fail-on", "timeout"}).exit_code, 1);
   EXPECT_EQ(campaign(file, folder / "out", {"--fail-on", "unsafe,fault"}).exit_code, 0);
@@ -341,13 +347,13 @@ TEST(Campaign, fails_on_what_the_user_asked_to_be_told) {
 
 TEST(Campaign, wrong_usage_is_told_in_one_line) {
   const TemporaryFolder folder;
-  const std::string file = short_campaign(folder, 1);
+  const std::string file = testing::short_campaign(folder, 1);
   const std::string out = folder / "out";
   for (const ProcessResult& result :
-       {run_qsmpc({"campaign"}), campaign(folder / "none.yaml", out),
+       {testing::run_qsmpc({"campaign"}), campaign(folder / "none.yaml", out),
         campaign(file, out, {"--shard", "3/2"}), campaign(file, out, {"--shard", "1"}),
-        campaign(file, out, {"--jobs", "0"}), run_qsmpc({"campaign", "status", out}),
-        run_qsmpc({"campaign", "merge", out, "--out", folder / "merged"}),
+        campaign(file, out, {"--jobs", "0"}), testing::run_qsmpc({"campaign", "status", out}),
+        testing::run_qsmpc({"campaign", "merge", out, "--out", folder / "merged"}),
         campaign(folder.file("broken.yaml", "name: x\nscenario: dubins_corridor\nseed: 3\n"),
                  out)}) {
     EXPECT_EQ(result.exit_code, 2) << result.errors;
@@ -357,4 +363,4 @@ TEST(Campaign, wrong_usage_is_told_in_one_line) {
 }
 
 }  // namespace campaign_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -14,8 +14,10 @@
 #include "harness/trace/hdf5_file.hpp"
 #include "tests/integration/process.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace compare_test {
+
+using namespace testing;
 
 namespace fs = std::filesystem;
 using ::testing::ElementsAre;
@@ -204,4 +206,4 @@ TEST(Compare, an_interrupt_leaves_nothing_under_a_final_name) {
 }
 
 }  // namespace compare_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

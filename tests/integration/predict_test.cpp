@@ -14,8 +14,10 @@
 #include "harness/trace/hdf5_file.hpp"
 #include "tests/integration/process.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace predict_test {
+
+using namespace testing;
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
@@ -192,4 +194,4 @@ TEST(Predict, a_kill_during_the_simulation_leaves_nothing) {
 }
 
 }  // namespace predict_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

@@ -16,8 +16,10 @@
 
 #include "tests/integration/process.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace render_test {
+
+using namespace testing;
 
 using ::testing::HasSubstr;
 using ::testing::Not;
@@ -190,4 +192,4 @@ TEST_F(WithoutOpenGl, all_else_of_a_run_works) {
 }
 
 }  // namespace render_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

@@ -13,8 +13,10 @@
 
 #include "tests/integration/process.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace reproduce_test {
+
+using namespace testing;
 
 namespace fs = std::filesystem;
 using ::testing::Contains;
@@ -133,4 +135,4 @@ TEST(Reproduce, help_lists_the_experiments) {
 }
 
 }  // namespace reproduce_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

@@ -16,8 +16,10 @@
 #include "harness/trace/trace_file.hpp"
 #include "tests/integration/process.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace run_test {
+
+using namespace testing;
 
 using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
@@ -291,4 +293,4 @@ TEST(Commands, a_folder_without_a_trace_is_a_bad_input) {
 }
 
 }  // namespace run_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

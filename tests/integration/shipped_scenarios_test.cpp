@@ -16,8 +16,10 @@
 #include "harness/trace/summary.hpp"
 #include "tests/support/effort.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace shipped_scenarios_test {
+
+using namespace testing;
 
 /// What a vehicle of `system` can be: the model, and each shipped MuJoCo one.
 std::vector<std::string> plants_of(const std::string& system) {
@@ -44,7 +46,7 @@ TEST_P(ShippedScenarios, run_on_every_plant_of_their_system_with_a_certificate_e
     for (const StepRecord& step : trace.steps) {
       EXPECT_FALSE(step.fallback);
       ASSERT_FALSE(step.certificates.empty());
-      for (const StageCertificate& certificate : step.certificates) {
+      for (const controller::StageCertificate& certificate : step.certificates) {
         EXPECT_GE(certificate.value, 0.0);
         EXPECT_LE(certificate.value, 1.0);
       }
@@ -131,4 +133,4 @@ INSTANTIATE_TEST_SUITE_P(All, ThesisExperiments, ::testing::ValuesIn(experiments
                          [](const auto& tested) { return tested.param.name; });
 
 }  // namespace shipped_scenarios_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

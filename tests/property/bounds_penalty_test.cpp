@@ -8,8 +8,10 @@
 #include "tests/support/planning_quality.hpp"
 #include "tests/support/simulated_truth.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace bounds_penalty_test {
+
+using namespace testing;
 
 /// The bounds' penalties over all stages for particles of equal weights at each.
 double price_of_paths(const std::vector<Points>& states, const PlannerSettings& settings) {
@@ -43,7 +45,7 @@ class BoundsPenalty : public ::testing::TestWithParam<bool> {};
 
 // Near the target of dubins_obstacles two walls are felt by few paths, at the end of the horizon.
 TEST_P(BoundsPenalty, of_a_hundred_particles_is_near_that_of_paths) {
-  const std::unique_ptr<const Dynamics> car = default_car();
+  const std::unique_ptr<const models::Dynamics> car = default_car();
   const Place place = places_among_blocks().back();
   PlannerSettings settings = blocks_settings(18);
   settings.closed_loop = GetParam();
@@ -74,4 +76,4 @@ INSTANTIATE_TEST_SUITE_P(loops, BoundsPenalty, ::testing::Bool(),
                          [](const auto& chosen) { return chosen.param ? "closed" : "open"; });
 
 }  // namespace bounds_penalty_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

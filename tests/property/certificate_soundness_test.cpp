@@ -15,8 +15,10 @@
 #include "tests/property/random_problem.hpp"
 #include "tests/support/effort.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace certificate_soundness_test {
+
+using namespace testing;
 
 const int kPaths = by_effort(20000, 100000, 100000);
 constexpr int kShards = 8;  // so that the test runner can use several cores
@@ -135,4 +137,4 @@ TEST_P(Bounds, are_never_below_the_simulated_truth) {
 INSTANTIATE_TEST_SUITE_P(shards, Bounds, ::testing::Range(0, kShards));
 
 }  // namespace certificate_soundness_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

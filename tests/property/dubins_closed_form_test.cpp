@@ -12,8 +12,10 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace dubins_closed_form_test {
+
+using namespace testing;
 
 Eigen::Matrix3d correlated(double x, double y, double heading) {
   Eigen::Matrix3d root;
@@ -170,4 +172,4 @@ TEST(DubinsOptimum, is_just_below_the_least_of_a_fine_grid_of_inputs) {
 }
 
 }  // namespace dubins_closed_form_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -12,7 +12,8 @@ constexpr double kSamplingFactor = 3.0 * 1.6;
 
 }  // namespace
 
-double marginal_w2(const DiscreteMeasure& particles, const Points& draws, Eigen::Index axis) {
+double marginal_w2(const controller::DiscreteMeasure& particles, const controller::Points& draws,
+                   Eigen::Index axis) {
   std::vector<double> sorted(draws.row(axis).begin(), draws.row(axis).end());
   std::sort(sorted.begin(), sorted.end());
   std::vector<Eigen::Index> order(particles.size());
@@ -42,7 +43,7 @@ double marginal_w2(const DiscreteMeasure& particles, const Points& draws, Eigen:
   return std::sqrt(squares);
 }
 
-double sampling_w2(const Points& draws, Eigen::Index axis) {
+double sampling_w2(const controller::Points& draws, Eigen::Index axis) {
   const double mean = draws.row(axis).mean();
   const double deviation = std::sqrt((draws.row(axis).array() - mean).square().mean());
   return kSamplingFactor * deviation / std::sqrt(static_cast<double>(draws.cols()));

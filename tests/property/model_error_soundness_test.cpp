@@ -19,8 +19,10 @@
 #include "tests/property/random_problem.hpp"
 #include "tests/support/effort.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace model_error_soundness_test {
+
+using namespace testing;
 const int kPaths = by_effort(10000, 50000, 50000);
 // Paths whose states are compared with the particles: each coordinate's are sorted.
 constexpr int kSorted = 10000;
@@ -406,4 +408,4 @@ TEST_P(ModelErrorBounds, hold_for_plants_with_the_error) {
 INSTANTIATE_TEST_SUITE_P(shards, ModelErrorBounds, ::testing::Range(0, kShards));
 
 }  // namespace model_error_soundness_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

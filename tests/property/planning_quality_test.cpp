@@ -10,8 +10,10 @@
 
 #include "tests/support/effort.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planning_quality_test {
+
+using namespace testing;
 
 class OpenLoopPlan : public ::testing::TestWithParam<std::tuple<int, double>> {};
 
@@ -38,7 +40,7 @@ TEST_P(ClosedLoopPlan, costs_hardly_more_than_the_best_policy_that_was_found) {
   SamplingSettings sampling;
   sampling.search.draws.paths = by_effort(1000, 1000, 4000);
   sampling.search.random_starts = by_effort(0, 0, 20);
-  const std::unique_ptr<const Dynamics> car = default_car();
+  const std::unique_ptr<const models::Dynamics> car = default_car();
   const Shortfall shortfall =
       sampled_shortfall(*car, blocks_settings(horizon), place.belief, sampling);
   RecordProperty("more_percent", std::to_string(100.0 * shortfall.relative()));
@@ -66,4 +68,4 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 }  // namespace planning_quality_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -8,8 +8,10 @@
 
 #include "tests/support/planning_quality.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace policy_search_test {
+
+using namespace testing;
 
 Eigen::MatrixXd wavy_inputs(int rows, int horizon) {
   return Eigen::MatrixXd::NullaryExpr(rows, horizon, [](Eigen::Index row, Eigen::Index k) {
@@ -38,14 +40,14 @@ void expect_slope(SampledProblem& problem, const Eigen::MatrixXd& inputs) {
 }
 
 TEST(SampledProblem, gives_the_slope_of_the_price_among_blocks) {
-  const std::unique_ptr<const Dynamics> car = default_car();
+  const std::unique_ptr<const models::Dynamics> car = default_car();
   SampledProblem problem(*car, blocks_settings(10), later_belief(1.2, 1.4, 0.7),
                          {.paths = 200, .seed = 3});
   expect_slope(problem, wavy_inputs(1, 10));
 }
 
 TEST(SampledProblem, gives_the_slope_of_the_price_of_two_inputs_and_a_given_gain) {
-  const auto bicycle = make_dynamics("bicycle", {}, 0.1);
+  const auto bicycle = models::make_dynamics("bicycle", {}, 0.1);
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(6);
   mean[3] = 5.0;
   PlannerSettings settings;
@@ -68,7 +70,7 @@ TEST(SampledProblem, gives_the_slope_of_the_price_of_two_inputs_and_a_given_gain
 }
 
 TEST(SampledProblem, prices_an_open_loop_as_the_closed_form_does) {
-  const std::unique_ptr<const Dynamics> car = default_car();
+  const std::unique_ptr<const models::Dynamics> car = default_car();
   const PlannerSettings settings = free_settings(12, /*closed_loop=*/false);
   const Gaussian belief = first_belief(5.0, 4.0, 0.5);
   SampledProblem problem(*car, settings, belief, {.paths = 200000, .seed = 5});
@@ -79,7 +81,7 @@ TEST(SampledProblem, prices_an_open_loop_as_the_closed_form_does) {
 }
 
 TEST(SampledProblem, descends_to_the_optimum_of_the_closed_form) {
-  const std::unique_ptr<const Dynamics> car = default_car();
+  const std::unique_ptr<const models::Dynamics> car = default_car();
   const PlannerSettings settings = free_settings(8, /*closed_loop=*/false);
   const Gaussian belief = first_belief(0.0, 0.0, 0.0);
   SampledProblem problem(*car, settings, belief, {.paths = 4000, .seed = 6});
@@ -89,4 +91,4 @@ TEST(SampledProblem, descends_to_the_optimum_of_the_closed_form) {
 }
 
 }  // namespace policy_search_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

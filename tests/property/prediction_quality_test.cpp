@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace prediction_quality_test {
+
+using namespace testing;
 
 // Of seven disjoint triples of seeds, the worst has 0.623.
 constexpr double kSquaredRatio = 0.68;
@@ -36,4 +38,4 @@ INSTANTIATE_TEST_SUITE_P(noises, PredictionQuality,
                                            Eigen::Vector3d(0.02, 0.02, 0.02)));
 
 }  // namespace prediction_quality_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

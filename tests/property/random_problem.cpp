@@ -54,7 +54,7 @@ Eigen::MatrixXd random_covariance(Generator& generator, Eigen::Index dim, double
 /// What is particular to a system: where it starts, and which coordinates walls stand in.
 struct Family {
   std::string system;
-  ParameterMap parameters;
+  models::ParameterMap parameters;
   Eigen::VectorXd start;
   std::vector<Eigen::Index> walls;  ///< the first two are those of the obstacles
   double largest_deviation = 0.3;   ///< of the belief
@@ -91,16 +91,16 @@ Family random_family(Generator& generator) {
           .largest_deviation = 0.2};
 }
 
-Box everywhere(Eigen::Index dim) {
+controller::Box everywhere(Eigen::Index dim) {
   return {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
           .upper = Eigen::VectorXd::Constant(dim, kInfinity)};
 }
 
 /// Bounds just beyond the extent of `path`, some of them left out, and obstacles beside it; all by
 /// the size of `spread`, about what the state deviates from the path.
-SafeSet random_safe_set(Generator& generator, const Family& family, const Eigen::MatrixXd& path,
-                        const Eigen::VectorXd& spread) {
-  SafeSet safe_set = unbounded_safe_set(path.rows());
+controller::SafeSet random_safe_set(Generator& generator, const Family& family,
+                                    const Eigen::MatrixXd& path, const Eigen::VectorXd& spread) {
+  controller::SafeSet safe_set = controller::unbounded_safe_set(path.rows());
   for (const Eigen::Index axis : family.walls) {
     const double likely = axis == 2 ? 0.2 : 0.6;
     const double least = path.row(axis).minCoeff();
@@ -114,7 +114,7 @@ SafeSet random_safe_set(Generator& generator, const Family& family, const Eigen:
   for (int i = 0; i < obstacles; ++i) {
     const Eigen::VectorXd beside =
         path.col(uniform_int(generator, 0, static_cast<int>(path.cols()) - 1));
-    Box box = everywhere(path.rows());
+    controller::Box box = everywhere(path.rows());
     for (std::size_t k = 0; k < family.walls.size(); ++k) {
       if (k == 2 && !chance(generator, 0.3)) continue;
       const Eigen::Index axis = family.walls[k];
@@ -129,7 +129,7 @@ SafeSet random_safe_set(Generator& generator, const Family& family, const Eigen:
 }
 
 /// The propagator and its points; few where each would take long.
-void random_propagation(Generator& generator, PlannerSettings& settings) {
+void random_propagation(Generator& generator, controller::PlannerSettings& settings) {
   const double which = uniform(generator, 0.0, 1.0);
   settings.propagator = which < 0.35   ? "mixture"
                         : which < 0.55 ? "compressed"
@@ -143,7 +143,7 @@ void random_propagation(Generator& generator, PlannerSettings& settings) {
 }
 
 void random_policy(Generator& generator, Problem& problem) {
-  PlannerSettings& settings = problem.settings;
+  controller::PlannerSettings& settings = problem.settings;
   const int dim = problem.dynamics->state_dim();
   const int inputs = problem.dynamics->input_dim();
   settings.closed_loop = chance(generator, 0.5);
@@ -151,7 +151,7 @@ void random_policy(Generator& generator, Problem& problem) {
     settings.feedback_gain =
         Eigen::MatrixXd::NullaryExpr(inputs, dim, [&] { return uniform(generator, -3.0, 3.0); });
   }
-  const SystemDescription& description = problem.dynamics->description();
+  const models::SystemDescription& description = problem.dynamics->description();
   const double share = uniform(generator, 0.1, 1.0);
   settings.bounds = {.lower = share * description.input_lower,
                      .upper = share * description.input_upper};
@@ -168,11 +168,11 @@ Problem random_problem(Generator& generator) {
   const Eigen::Index dim = family.start.size();
   Problem problem;
   problem.system = family.system;
-  problem.dynamics = make_dynamics(family.system, family.parameters, kTimeStep);
+  problem.dynamics = models::make_dynamics(family.system, family.parameters, kTimeStep);
   problem.belief = {
       .mean = family.start,
       .covariance = random_covariance(generator, dim, -2.5, std::log10(family.largest_deviation))};
-  PlannerSettings& settings = problem.settings;
+  controller::PlannerSettings& settings = problem.settings;
   settings.horizon = uniform_int(generator, 1, 8);
   random_policy(generator, problem);
   random_propagation(generator, settings);
@@ -181,8 +181,8 @@ Problem random_problem(Generator& generator) {
   Eigen::VectorXd input = settings.bounds.lower;
   const double share = uniform(generator, 0.0, 1.0);
   input += share * (settings.bounds.upper - settings.bounds.lower);
-  const Eigen::MatrixXd path =
-      nominal_states(*problem.dynamics, problem.belief.mean, input.replicate(1, settings.horizon));
+  const Eigen::MatrixXd path = controller::nominal_states(*problem.dynamics, problem.belief.mean,
+                                                          input.replicate(1, settings.horizon));
   const Eigen::VectorXd spread = (problem.belief.covariance.diagonal() +
                                   0.5 * settings.horizon * settings.noise_covariance.diagonal())
                                      .cwiseSqrt()

@@ -12,9 +12,9 @@ namespace qsmpc::testing {
 
 struct Problem {
   std::string system;
-  std::unique_ptr<const Dynamics> dynamics;
-  PlannerSettings settings;
-  Gaussian belief;
+  std::unique_ptr<const models::Dynamics> dynamics;
+  controller::PlannerSettings settings;
+  controller::Gaussian belief;
 };
 
 /// Any of the systems with correlated belief and noise (sometimes singular), 1 to 8 stages, 10 to

@@ -140,11 +140,11 @@ std::vector<DubinsMoments> dubins_moments(const DubinsProblem& problem,
   return result;
 }
 
-CostParts dubins_cost(const DubinsProblem& problem,
-                      const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
+controller::CostParts dubins_cost(const DubinsProblem& problem,
+                                  const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   const std::vector<DubinsMoments> moments = dubins_moments(problem, inputs);
-  const QuadraticCost& cost = problem.cost;
-  CostParts parts;
+  const controller::QuadraticCost& cost = problem.cost;
+  controller::CostParts parts;
   for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
     parts.state += 0.5 * quadratic(moments[k], cost.state, cost.target);
     parts.input += inputs.col(k).dot(cost.input * inputs.col(k));

@@ -19,12 +19,12 @@
 namespace qsmpc::testing {
 
 struct DubinsProblem {
-  double speed = 1.5;      ///< m/s
-  double time_step = 0.1;  ///< s
-  Gaussian belief;         ///< of (x, y, φ) at stage 0; any covariance
+  double speed = 1.5;           ///< m/s
+  double time_step = 0.1;       ///< s
+  controller::Gaussian belief;  ///< of (x, y, φ) at stage 0; any covariance
   Eigen::Matrix3d noise_covariance;
-  QuadraticCost cost;
-  InputBounds bounds;  ///< of the yaw rate
+  controller::QuadraticCost cost;
+  controller::InputBounds bounds;  ///< of the yaw rate
 };
 
 /// E xᵀ and E x xᵀ of the state at one stage.
@@ -39,8 +39,8 @@ struct DubinsMoments {
     const DubinsProblem& problem, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
 /// J of docs/theory/planning.md without penalties, exactly: the parts state, input and terminal.
-[[nodiscard]] CostParts dubins_cost(const DubinsProblem& problem,
-                                    const Eigen::Ref<const Eigen::MatrixXd>& inputs);
+[[nodiscard]] controller::CostParts dubins_cost(const DubinsProblem& problem,
+                                                const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
 struct DubinsOptimum {
   Eigen::MatrixXd inputs;  ///< 1 x horizon

@@ -62,10 +62,10 @@ inline std::string example_scenario(const ExampleTraceOptions& options) {
          "  cost: {state: [60, 60, 1], input: [2], terminal: [60, 60, 5]}\n";
 }
 
-inline StageParticles example_particles(const Eigen::VectorXd& centre, double spread, int points,
-                                        ExampleNoise& noise) {
-  StageParticles stage{.locations = StateBatch(centre.size(), points),
-                       .weights = Eigen::VectorXd(points)};
+inline harness::StageParticles example_particles(const Eigen::VectorXd& centre, double spread,
+                                                 int points, ExampleNoise& noise) {
+  harness::StageParticles stage{.locations = models::StateBatch(centre.size(), points),
+                                .weights = Eigen::VectorXd(points)};
   for (Eigen::Index i = 0; i < points; ++i) {
     for (Eigen::Index d = 0; d < centre.size(); ++d) {
       stage.locations(d, i) = centre[d] + spread * noise() * (1.0 + noise());
@@ -76,14 +76,14 @@ inline StageParticles example_particles(const Eigen::VectorXd& centre, double sp
   return stage;
 }
 
-inline void add_example_plan(StepRecord& step, const Scenario& scenario,
+inline void add_example_plan(harness::StepRecord& step, const harness::Scenario& scenario,
                              const ExampleTraceOptions& options, ExampleNoise& noise) {
   const auto dynamics =
-      make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   const Eigen::Index horizon = scenario.controller.horizon;
   step.plan_inputs = Eigen::MatrixXd::Constant(1, horizon, step.input[0]);
   step.plan_states = Eigen::MatrixXd(3, horizon + 1);
-  StateBatch state = step.state;
+  models::StateBatch state = step.state;
   for (Eigen::Index s = 0; s <= horizon; ++s) {
     step.plan_states.col(s) = state.col(0);
     // Stages differ in size, as they do after a compression.
@@ -109,16 +109,17 @@ inline void add_example_plan(StepRecord& step, const Scenario& scenario,
                                    .thesis = value * 0.3,
                                    .unsafe_mass = 0.0});
     }
-    StateBatch next(3, 1);
-    const StateBatch input = step.input;
+    models::StateBatch next(3, 1);
+    const models::StateBatch input = step.input;
     dynamics->step(state, input, next);
     state = next;
   }
 }
 
-inline StepRecord example_step(const Scenario& scenario, const Eigen::VectorXd& state, int k,
-                               const ExampleTraceOptions& options, ExampleNoise& noise) {
-  StepRecord step;
+inline harness::StepRecord example_step(const harness::Scenario& scenario,
+                                        const Eigen::VectorXd& state, int k,
+                                        const ExampleTraceOptions& options, ExampleNoise& noise) {
+  harness::StepRecord step;
   step.time = k * scenario.time_step;
   step.state = state;
   step.observation = state + Eigen::Vector3d(0.01, -0.02, 0.03);
@@ -147,22 +148,22 @@ inline StepRecord example_step(const Scenario& scenario, const Eigen::VectorXd& 
 
 /// A drive of a Dubins car towards the target, with `options.steps` steps and two motion samples a
 /// step; the plant turns a little less than the model says.
-inline Trace example_trace(const ExampleTraceOptions& options = {}) {
-  Trace trace;
-  trace.scenario = parse_scenario(example_scenario(options));
-  trace.scenario_text = to_yaml(trace.scenario);
-  trace.scenario = parse_scenario(trace.scenario_text);
+inline harness::Trace example_trace(const ExampleTraceOptions& options = {}) {
+  harness::Trace trace;
+  trace.scenario = harness::parse_scenario(example_scenario(options));
+  trace.scenario_text = harness::to_yaml(trace.scenario);
+  trace.scenario = harness::parse_scenario(trace.scenario_text);
   trace.seed = 0xFEDCBA9876543210ULL;
   trace.version = "1.2.3";
-  const auto dynamics = make_dynamics("dubins", trace.scenario.model.parameters, 0.1);
+  const auto dynamics = models::make_dynamics("dubins", trace.scenario.model.parameters, 0.1);
   ExampleNoise noise;
   Eigen::VectorXd state = trace.scenario.initial_state.mean;
   trace.motion.push_back({.time = 0.0, .qpos = {state[0], state[1], 0.1, state[2]}});
   for (int k = 0; k < options.steps; ++k) {
-    StepRecord step = example_step(trace.scenario, state, k, options, noise);
-    StateBatch next(3, 1);
-    const StateBatch from = state;
-    const StateBatch input = 0.95 * step.input;
+    harness::StepRecord step = example_step(trace.scenario, state, k, options, noise);
+    models::StateBatch next(3, 1);
+    const models::StateBatch from = state;
+    const models::StateBatch input = 0.95 * step.input;
     dynamics->step(from, input, next);
     state = next.col(0) + step.disturbance;
     for (const double part : {0.5, 1.0}) {
@@ -172,7 +173,7 @@ inline Trace example_trace(const ExampleTraceOptions& options = {}) {
     trace.steps.push_back(std::move(step));
   }
   trace.final_state = state;
-  trace.outcome = Outcome::kReached;
+  trace.outcome = harness::Outcome::kReached;
   return trace;
 }
 

@@ -9,12 +9,12 @@
 
 namespace qsmpc::testing {
 
-inline void run_backwards(int count, TaskRef task) {
+inline void run_backwards(int count, controller::TaskRef task) {
   for (int n = count - 1; n >= 0; --n) task(n);
 }
 
 /// Three threads take tasks as they come.
-inline void run_on_threads(int count, TaskRef task) {
+inline void run_on_threads(int count, controller::TaskRef task) {
   constexpr int kThreads = 3;
   std::atomic<int> next{0};
   std::vector<std::thread> threads;

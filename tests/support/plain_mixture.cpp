@@ -65,8 +65,8 @@ struct Cell {
 
 class PlainSplit {
  public:
-  PlainSplit(const Eigen::MatrixXd& covariance, int cells, int parts, const Points& sources,
-             const Eigen::VectorXd& weights)
+  PlainSplit(const Eigen::MatrixXd& covariance, int cells, int parts,
+             const controller::Points& sources, const Eigen::VectorXd& weights)
       : limit_(cells), least_share_(1.0 / parts), weights_(weights) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
     axes_ = eigen.eigenvectors();
@@ -267,7 +267,7 @@ class PlainSplit {
 }  // namespace
 
 PlainMixture plain_split(const Eigen::MatrixXd& covariance, int cells, int parts,
-                         const Points& sources, const Eigen::VectorXd& weights) {
+                         const controller::Points& sources, const Eigen::VectorXd& weights) {
   return PlainSplit(covariance, cells, parts, sources, weights).run();
 }
 

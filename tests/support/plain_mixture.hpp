@@ -33,6 +33,7 @@ struct PlainMixture {
 /// The mixture of N(sources.col(i), covariance) with `weights`, cut into at most `cells` cells, a
 /// source into at most `parts` parts.
 [[nodiscard]] PlainMixture plain_split(const Eigen::MatrixXd& covariance, int cells, int parts,
-                                       const Points& sources, const Eigen::VectorXd& weights);
+                                       const controller::Points& sources,
+                                       const Eigen::VectorXd& weights);
 
 }  // namespace qsmpc::testing

@@ -9,10 +9,10 @@
 namespace qsmpc::testing {
 namespace {
 
-Eigen::VectorXd step(const Dynamics& dynamics, const Eigen::VectorXd& state,
+Eigen::VectorXd step(const models::Dynamics& dynamics, const Eigen::VectorXd& state,
                      const Eigen::VectorXd& input) {
-  StateBatch next(state.size(), 1);
-  dynamics.step(StateBatch(state), StateBatch(input), next);
+  models::StateBatch next(state.size(), 1);
+  dynamics.step(models::StateBatch(state), models::StateBatch(input), next);
   return next.col(0);
 }
 
@@ -54,7 +54,7 @@ void displace(const PlainMixture& mixture, Taken& taken) {
     between += cell.weight * (cell.mean - mean) * (cell.mean - mean).transpose();
     within += cell.weight * cell.covariance;
   }
-  const Eigen::MatrixXd spread = spread_between(between, between + within);
+  const Eigen::MatrixXd spread = controller::spread_between(between, between + within);
   double cost = 0.0;
   for (std::size_t n = 0; n < mixture.cells.size(); ++n) {
     const Eigen::VectorXd offset = mixture.cells[n].mean - mean;
@@ -77,7 +77,7 @@ Taken take_up_noise(const std::vector<Eigen::VectorXd>& stepped, const std::vect
     taken.weights = weights;
     return taken;
   }
-  Points sources(dim, stepped.size());
+  controller::Points sources(dim, stepped.size());
   for (std::size_t i = 0; i < stepped.size(); ++i) sources.col(i) = stepped[i];
   const PlainMixture mixture =
       plain_split(noise.covariance, noise.cells, noise.parts, sources,
@@ -139,18 +139,19 @@ ExpectedHinge expected_hinge(double distance, double deviation, double length) {
           s * between / length};
 }
 
-bool bounded(const Box& box, Eigen::Index axis) {
+bool bounded(const controller::Box& box, Eigen::Index axis) {
   return std::isfinite(box.lower[axis]) || std::isfinite(box.upper[axis]);
 }
 
 /// The penalties of one particle, without its weight; gradients are added to `slope`.
 class PlainPenalty {
  public:
-  PlainPenalty(const SafeSet& safe_set, const Penalty& penalty)
+  PlainPenalty(const controller::SafeSet& safe_set, const controller::Penalty& penalty)
       : safe_set_(safe_set), penalty_(penalty) {}
 
-  PenaltyValue operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
-    return penalty_.shape == PenaltyShape::kThesis ? thesis(x, slope) : smooth(x, slope);
+  controller::PenaltyValue operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+    return penalty_.shape == controller::PenaltyShape::kThesis ? thesis(x, slope)
+                                                               : smooth(x, slope);
   }
 
   /// Of the bounds, for particles (d x n) that stand for normal laws of these deviations; 0 for the
@@ -162,8 +163,8 @@ class PlainPenalty {
     double value = 0.0;
     slopes.setZero(x.rows(), x.cols());
     deviation_slopes.setZero(x.rows());
-    if (penalty_.shape == PenaltyShape::kThesis) return value;
-    const Box& room = safe_set_.bounds;
+    if (penalty_.shape == controller::PenaltyShape::kThesis) return value;
+    const controller::Box& room = safe_set_.bounds;
     for (Eigen::Index axis = 0; axis < x.rows(); ++axis) {
       for (Eigen::Index i = 0; i < x.cols(); ++i) {
         for (const double side : {1.0, -1.0}) {
@@ -181,9 +182,9 @@ class PlainPenalty {
   }
 
  private:
-  PenaltyValue smooth(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
-    PenaltyValue value;
-    for (const Box& obstacle : safe_set_.obstacles) {
+  controller::PenaltyValue smooth(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+    controller::PenaltyValue value;
+    for (const controller::Box& obstacle : safe_set_.obstacles) {
       Eigen::VectorXd outward = Eigen::VectorXd::Zero(x.size());
       const double distance = signed_distance(x, obstacle, outward);
       const ValueAndSlope h = hinge(distance, penalty_.length);
@@ -194,7 +195,7 @@ class PlainPenalty {
   }
 
   /// Negative inside; `outward` is its gradient.
-  static double signed_distance(const Eigen::VectorXd& x, const Box& box,
+  static double signed_distance(const Eigen::VectorXd& x, const controller::Box& box,
                                 Eigen::VectorXd& outward) {
     const Eigen::VectorXd nearest = x.cwiseMax(box.lower).cwiseMin(box.upper);
     const double distance = (x - nearest).norm();
@@ -221,9 +222,9 @@ class PlainPenalty {
     return {};
   }
 
-  PenaltyValue thesis(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
-    PenaltyValue value;
-    const Box& room = safe_set_.bounds;
+  controller::PenaltyValue thesis(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+    controller::PenaltyValue value;
+    const controller::Box& room = safe_set_.bounds;
     for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
       const ValueAndSlope out = excess(x[axis], room.lower[axis], room.upper[axis]);
       value.box += penalty_.box * out.value;
@@ -231,7 +232,7 @@ class PlainPenalty {
     }
     double largest = 0.0;
     Eigen::VectorXd of_largest = Eigen::VectorXd::Zero(x.size());
-    for (const Box& obstacle : safe_set_.obstacles) {
+    for (const controller::Box& obstacle : safe_set_.obstacles) {
       double outside = 0.0;
       Eigen::VectorXd direction = Eigen::VectorXd::Zero(x.size());
       for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
@@ -249,8 +250,8 @@ class PlainPenalty {
     return value;
   }
 
-  const SafeSet& safe_set_;
-  const Penalty& penalty_;
+  const controller::SafeSet& safe_set_;
+  const controller::Penalty& penalty_;
 };
 
 /// One stage on the way forward.
@@ -265,8 +266,8 @@ struct Stage {
 
 class PlainHorizon {
  public:
-  PlainHorizon(const HorizonCostTerms& terms, const PlainPrediction& prediction,
-               const Policy& policy, bool optimises_gain)
+  PlainHorizon(const controller::HorizonCostTerms& terms, const PlainPrediction& prediction,
+               const controller::Policy& policy, bool optimises_gain)
       : terms_(terms),
         prediction_(prediction),
         policy_(policy),
@@ -278,7 +279,7 @@ class PlainHorizon {
 
   PlainCost run(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& gain_change) {
     policy_.inputs = inputs;
-    policy_.states = nominal_states(terms_.dynamics, policy_.states.col(0), inputs);
+    policy_.states = controller::nominal_states(terms_.dynamics, policy_.states.col(0), inputs);
     for (Eigen::MatrixXd& gain : policy_.gains) gain += gain_change;
     forward();
     backward();
@@ -326,7 +327,7 @@ class PlainHorizon {
       next.states = moved(prediction_.maps[k], stage.stepped);
       for (std::size_t n = 0; n < next.states.size(); ++n) {
         Eigen::VectorXd slope = Eigen::VectorXd::Zero(dim_);
-        const PenaltyValue value = penalty(next.states[n], slope);
+        const controller::PenaltyValue value = penalty(next.states[n], slope);
         result_.parts.box += weight(k + 1, n) * value.box;
         result_.parts.obstacle += weight(k + 1, n) * value.obstacle;
         next.penalty_slope.emplace_back(weight(k + 1, n) * slope);
@@ -339,7 +340,7 @@ class PlainHorizon {
   void evaluate_bounds(Eigen::Index k, const PlainPenalty& penalty) {
     Stage& stage = stages_[k];
     const auto count = static_cast<Eigen::Index>(stage.stepped.size());
-    const double smoothing = prediction_.compressed ? smoothing_of(count, dim_) : 0.0;
+    const double smoothing = prediction_.compressed ? controller::smoothing_of(count, dim_) : 0.0;
     const double share = std::sqrt(1.0 - smoothing);
     Eigen::VectorXd weights(count);
     Eigen::MatrixXd stepped(dim_, count);
@@ -447,9 +448,9 @@ class PlainHorizon {
     return of_states;
   }
 
-  const HorizonCostTerms& terms_;
+  const controller::HorizonCostTerms& terms_;
   const PlainPrediction& prediction_;
-  Policy policy_;
+  controller::Policy policy_;
   bool closed_;
   Eigen::Index dim_;
   Eigen::Index horizon_;
@@ -459,8 +460,9 @@ class PlainHorizon {
 
 }  // namespace
 
-PlainPrediction plain_predict(const Dynamics& dynamics, const DiscreteMeasure& start,
-                              const Policy& policy, const PlainNoise& noise) {
+PlainPrediction plain_predict(const models::Dynamics& dynamics,
+                              const controller::DiscreteMeasure& start,
+                              const controller::Policy& policy, const PlainNoise& noise) {
   PlainPrediction prediction;
   prediction.compressed = !noise.none;
   prediction.stages.emplace_back();
@@ -471,7 +473,8 @@ PlainPrediction plain_predict(const Dynamics& dynamics, const DiscreteMeasure& s
     std::vector<Eigen::VectorXd> stepped;
     std::vector<double> weights;
     for (const PlainParticle& particle : prediction.stages[k]) {
-      stepped.push_back(step(dynamics, particle.state, policy_input(policy, k, particle.state)));
+      stepped.push_back(
+          step(dynamics, particle.state, controller::policy_input(policy, k, particle.state)));
       weights.push_back(particle.weight);
     }
     const Taken taken = take_up_noise(stepped, weights, noise);
@@ -485,8 +488,8 @@ PlainPrediction plain_predict(const Dynamics& dynamics, const DiscreteMeasure& s
   return prediction;
 }
 
-PlainCost plain_cost(const HorizonCostTerms& terms, const PlainPrediction& prediction,
-                     const Policy& policy, const Eigen::MatrixXd& inputs,
+PlainCost plain_cost(const controller::HorizonCostTerms& terms, const PlainPrediction& prediction,
+                     const controller::Policy& policy, const Eigen::MatrixXd& inputs,
                      const Eigen::MatrixXd& gain_change, bool optimises_gain) {
   return PlainHorizon(terms, prediction, policy, optimises_gain).run(inputs, gain_change);
 }

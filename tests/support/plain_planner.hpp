@@ -44,11 +44,13 @@ struct PlainNoise {
   int parts = 1;
 };
 
-[[nodiscard]] PlainPrediction plain_predict(const Dynamics& dynamics, const DiscreteMeasure& start,
-                                            const Policy& policy, const PlainNoise& noise);
+[[nodiscard]] PlainPrediction plain_predict(const models::Dynamics& dynamics,
+                                            const controller::DiscreteMeasure& start,
+                                            const controller::Policy& policy,
+                                            const PlainNoise& noise);
 
 struct PlainCost {
-  CostParts parts;
+  controller::CostParts parts;
   Eigen::MatrixXd input_gradient;  ///< input_dim x horizon
   Eigen::MatrixXd gain_gradient;   ///< input_dim x state_dim; of a ΔK in all gains
 };
@@ -56,8 +58,9 @@ struct PlainCost {
 /// The expected cost at the maps of `prediction` if the nominal inputs become `inputs` and all
 /// gains change by `gain_change`, and its gradient by reverse mode. With `optimises_gain` false and
 /// all gains zero the loop counts as open, in which the clamp has the derivative one.
-[[nodiscard]] PlainCost plain_cost(const HorizonCostTerms& terms, const PlainPrediction& prediction,
-                                   const Policy& policy, const Eigen::MatrixXd& inputs,
+[[nodiscard]] PlainCost plain_cost(const controller::HorizonCostTerms& terms,
+                                   const PlainPrediction& prediction,
+                                   const controller::Policy& policy, const Eigen::MatrixXd& inputs,
                                    const Eigen::MatrixXd& gain_change, bool optimises_gain);
 
 }  // namespace qsmpc::testing

@@ -10,8 +10,8 @@ constexpr double kTimeStep = 0.1;  // s
 
 Eigen::Matrix3d noise_covariance() { return Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal(); }
 
-Box block(double x_lower, double x_upper, double y_lower, double y_upper) {
-  Box result = unbounded_safe_set(3).bounds;
+controller::Box block(double x_lower, double x_upper, double y_lower, double y_upper) {
+  controller::Box result = controller::unbounded_safe_set(3).bounds;
   result.lower.head<2>() << x_lower, y_lower;
   result.upper.head<2>() << x_upper, y_upper;
   return result;
@@ -19,8 +19,8 @@ Box block(double x_lower, double x_upper, double y_lower, double y_upper) {
 
 }  // namespace
 
-PlannerSettings free_settings(int horizon, bool closed_loop) {
-  PlannerSettings settings;
+controller::PlannerSettings free_settings(int horizon, bool closed_loop) {
+  controller::PlannerSettings settings;
   settings.horizon = horizon;
   settings.closed_loop = closed_loop;
   settings.noise_covariance = noise_covariance();
@@ -28,21 +28,22 @@ PlannerSettings free_settings(int horizon, bool closed_loop) {
                    .input = Eigen::MatrixXd::Constant(1, 1, 2.0),
                    .terminal = Eigen::Vector3d(60.0, 60.0, 5.0).asDiagonal(),
                    .target = Eigen::Vector3d(11.0, 9.0, 0.0)};
-  settings.safe_set = unbounded_safe_set(3);
+  settings.safe_set = controller::unbounded_safe_set(3);
   settings.bounds = {.lower = Eigen::VectorXd::Constant(1, -2.0),
                      .upper = Eigen::VectorXd::Constant(1, 2.0)};
   return settings;
 }
 
-PlannerSettings blocks_settings(int horizon) {
-  PlannerSettings settings = free_settings(horizon, /*closed_loop=*/true);
+controller::PlannerSettings blocks_settings(int horizon) {
+  controller::PlannerSettings settings = free_settings(horizon, /*closed_loop=*/true);
   settings.safe_set.bounds = block(-1.0, 12.0, -1.0, 12.0);
   settings.safe_set.obstacles = {block(2.0, 4.0, 2.0, 4.0), block(6.0, 8.0, 5.0, 8.0)};
   settings.penalty = {.box = 20000.0, .obstacle = 20000.0, .length = 0.6};
   return settings;
 }
 
-DubinsProblem closed_form_of(const PlannerSettings& settings, const Gaussian& belief) {
+DubinsProblem closed_form_of(const controller::PlannerSettings& settings,
+                             const controller::Gaussian& belief) {
   return {.speed = kSpeed,
           .time_step = kTimeStep,
           .belief = belief,
@@ -51,15 +52,15 @@ DubinsProblem closed_form_of(const PlannerSettings& settings, const Gaussian& be
           .bounds = settings.bounds};
 }
 
-std::unique_ptr<const Dynamics> default_car() {
-  return make_dynamics("dubins", {{"speed", kSpeed}}, kTimeStep);
+std::unique_ptr<const models::Dynamics> default_car() {
+  return models::make_dynamics("dubins", {{"speed", kSpeed}}, kTimeStep);
 }
 
-Gaussian first_belief(double x, double y, double heading) {
+controller::Gaussian first_belief(double x, double y, double heading) {
   return {.mean = Eigen::Vector3d(x, y, heading), .covariance = 0.01 * Eigen::Matrix3d::Identity()};
 }
 
-Gaussian later_belief(double x, double y, double heading) {
+controller::Gaussian later_belief(double x, double y, double heading) {
   return {.mean = Eigen::Vector3d(x, y, heading), .covariance = noise_covariance()};
 }
 
@@ -72,12 +73,13 @@ std::vector<Place> places_among_blocks() {
           {"near the target", later_belief(9.0, 7.6, 0.8)}};
 }
 
-Shortfall exact_shortfall(const PlannerSettings& settings, const Gaussian& belief) {
-  const std::unique_ptr<const Dynamics> car = default_car();
+Shortfall exact_shortfall(const controller::PlannerSettings& settings,
+                          const controller::Gaussian& belief) {
+  const std::unique_ptr<const models::Dynamics> car = default_car();
   const DubinsProblem problem = closed_form_of(settings, belief);
   const DubinsOptimum optimum = dubins_optimum(problem, settings.horizon);
   Shortfall result;
-  Planner planner(*car, settings);
+  controller::Planner planner(*car, settings);
   result.plan = planner.plan(belief);
   result.planned = dubins_cost(problem, result.plan.policy.inputs).total();
   result.predicted = result.plan.cost.total();
@@ -87,10 +89,11 @@ Shortfall exact_shortfall(const PlannerSettings& settings, const Gaussian& belie
   return result;
 }
 
-Shortfall sampled_shortfall(const Dynamics& dynamics, const PlannerSettings& settings,
-                            const Gaussian& belief, const SamplingSettings& sampling) {
+Shortfall sampled_shortfall(const models::Dynamics& dynamics,
+                            const controller::PlannerSettings& settings,
+                            const controller::Gaussian& belief, const SamplingSettings& sampling) {
   Shortfall result;
-  Planner planner(dynamics, settings);
+  controller::Planner planner(dynamics, settings);
   result.plan = planner.plan(belief);
   result.predicted = result.plan.cost.total();
   SampledProblem fresh(dynamics, settings, belief, sampling.price);

@@ -12,26 +12,27 @@
 namespace qsmpc::testing {
 
 /// The Dubins car of the default scenario, 100 points everywhere, nothing in its way.
-[[nodiscard]] PlannerSettings free_settings(int horizon, bool closed_loop);
+[[nodiscard]] controller::PlannerSettings free_settings(int horizon, bool closed_loop);
 
 /// The same with the walls, the blocks and the penalties of dubins_obstacles, closed loop.
-[[nodiscard]] PlannerSettings blocks_settings(int horizon);
+[[nodiscard]] controller::PlannerSettings blocks_settings(int horizon);
 
 /// The closed form's problem of these settings, which must be without walls and obstacles.
-[[nodiscard]] DubinsProblem closed_form_of(const PlannerSettings& settings, const Gaussian& belief);
+[[nodiscard]] DubinsProblem closed_form_of(const controller::PlannerSettings& settings,
+                                           const controller::Gaussian& belief);
 
 /// The car's model.
-[[nodiscard]] std::unique_ptr<const Dynamics> default_car();
+[[nodiscard]] std::unique_ptr<const models::Dynamics> default_car();
 
 /// At (x, y, φ) as at the start of an episode, N(·, 0.01 I).
-[[nodiscard]] Gaussian first_belief(double x, double y, double heading);
+[[nodiscard]] controller::Gaussian first_belief(double x, double y, double heading);
 
 /// At (x, y, φ) as in the course of an episode: with the covariance of one step's noise.
-[[nodiscard]] Gaussian later_belief(double x, double y, double heading);
+[[nodiscard]] controller::Gaussian later_belief(double x, double y, double heading);
 
 struct Place {
   std::string name;
-  Gaussian belief;
+  controller::Gaussian belief;
 };
 
 /// The start of dubins_obstacles, places along its episodes, some near to the blocks.
@@ -46,13 +47,14 @@ struct Shortfall {
   /// below where the solver ends too early or in another valley.
   double predicted_best = 0.0;
   Eigen::MatrixXd best_inputs;
-  Plan plan;
+  controller::Plan plan;
   [[nodiscard]] double absolute() const { return planned - best; }
   [[nodiscard]] double relative() const { return absolute() / best; }
 };
 
 /// By the closed form; open loop, no walls, no obstacles. A first plan, without one before it.
-[[nodiscard]] Shortfall exact_shortfall(const PlannerSettings& settings, const Gaussian& belief);
+[[nodiscard]] Shortfall exact_shortfall(const controller::PlannerSettings& settings,
+                                        const controller::Gaussian& belief);
 
 struct SamplingSettings {
   SearchSettings search{.draws = {.paths = 2000, .seed = 1}};
@@ -61,7 +63,9 @@ struct SamplingSettings {
 
 /// By simulated paths: the search sees other draws than the price. A first plan, without one
 /// before it.
-[[nodiscard]] Shortfall sampled_shortfall(const Dynamics& dynamics, const PlannerSettings& settings,
-                                          const Gaussian& belief, const SamplingSettings& sampling);
+[[nodiscard]] Shortfall sampled_shortfall(const models::Dynamics& dynamics,
+                                          const controller::PlannerSettings& settings,
+                                          const controller::Gaussian& belief,
+                                          const SamplingSettings& sampling);
 
 }  // namespace qsmpc::testing

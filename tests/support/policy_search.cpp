@@ -19,10 +19,11 @@ namespace {
 constexpr double kSameMinimum = 5e-4;
 
 /// Draws of N(0, covariance), positive definite, one a column.
-StateBatch normal_draws(const Eigen::MatrixXd& covariance, int count, std::mt19937_64& generator) {
+models::StateBatch normal_draws(const Eigen::MatrixXd& covariance, int count,
+                                std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
-  const StateBatch standard =
-      StateBatch::NullaryExpr(covariance.rows(), count, [&] { return normal(generator); });
+  const models::StateBatch standard =
+      models::StateBatch::NullaryExpr(covariance.rows(), count, [&] { return normal(generator); });
   return covariance.llt().matrixL() * standard;
 }
 
@@ -36,7 +37,8 @@ double hinge(double distance, double length, double& slope) {
 
 /// The signed distance of `state` to the box: negative inside, by the depth. `normal` receives its
 /// gradient.
-double signed_distance(const Eigen::VectorXd& state, const Box& box, Eigen::VectorXd& normal) {
+double signed_distance(const Eigen::VectorXd& state, const controller::Box& box,
+                       Eigen::VectorXd& normal) {
   normal = (state - box.upper).cwiseMax(0.0) - (box.lower - state).cwiseMax(0.0);
   const double distance = normal.norm();
   if (distance > 0.0) {
@@ -52,9 +54,9 @@ double signed_distance(const Eigen::VectorXd& state, const Box& box, Eigen::Vect
 }
 
 /// Σ over the columns of (x − r)ᵀW(x − r).
-double squares(const StateBatch& points, const Eigen::MatrixXd& weight,
+double squares(const models::StateBatch& points, const Eigen::MatrixXd& weight,
                const Eigen::VectorXd& centre) {
-  const StateBatch offset = points.colwise() - centre;
+  const models::StateBatch offset = points.colwise() - centre;
   return offset.cwiseProduct(weight * offset).sum();
 }
 
@@ -80,7 +82,7 @@ struct Descent {
 
 /// Each input in turn, constant in each half of the horizon, the others at their middle; and random
 /// ones.
-std::vector<Eigen::MatrixXd> search_starts(const PlannerSettings& settings,
+std::vector<Eigen::MatrixXd> search_starts(const controller::PlannerSettings& settings,
                                            const SearchSettings& search) {
   constexpr std::array<double, 3> kShares = {-0.9, 0.0, 0.9};
   const Eigen::VectorXd middle = 0.5 * (settings.bounds.lower + settings.bounds.upper);
@@ -110,18 +112,19 @@ std::vector<Eigen::MatrixXd> search_starts(const PlannerSettings& settings,
 
 }  // namespace
 
-SampledProblem::SampledProblem(const Dynamics& dynamics, const PlannerSettings& settings,
-                               const Gaussian& belief, Draws draws)
+SampledProblem::SampledProblem(const models::Dynamics& dynamics,
+                               const controller::PlannerSettings& settings,
+                               const controller::Gaussian& belief, Draws draws)
     : dynamics_(dynamics), settings_(settings), start_(belief.mean) {
-  if (settings.penalty.shape != PenaltyShape::kSmooth) {
+  if (settings.penalty.shape != controller::PenaltyShape::kSmooth) {
     throw std::invalid_argument("sampled problem: only the smooth penalty is known");
   }
   std::mt19937_64 generator(draws.seed);
   const int dim = dynamics.state_dim();
-  states_.resize(settings.horizon + 1, StateBatch(dim, draws.paths));
+  states_.resize(settings.horizon + 1, models::StateBatch(dim, draws.paths));
   states_[0] = normal_draws(belief.covariance, draws.paths, generator).colwise() + belief.mean;
-  penalty_slopes_.resize(settings.horizon + 1, StateBatch::Zero(dim, draws.paths));
-  inputs_.resize(settings.horizon, StateBatch(dynamics.input_dim(), draws.paths));
+  penalty_slopes_.resize(settings.horizon + 1, models::StateBatch::Zero(dim, draws.paths));
+  inputs_.resize(settings.horizon, models::StateBatch(dynamics.input_dim(), draws.paths));
   gain_gradients_.resize(settings.horizon);
   for (int k = 0; k < settings.horizon; ++k) {
     noise_.push_back(normal_draws(settings.noise_covariance, draws.paths, generator));
@@ -137,22 +140,22 @@ std::vector<Eigen::MatrixXd> SampledProblem::gains(const Eigen::MatrixXd& states
   if (settings_.feedback_gain) {
     return std::vector<Eigen::MatrixXd>(settings_.horizon, *settings_.feedback_gain);
   }
-  return lqr_gains(dynamics_, states, inputs,
-                   {.state = settings_.cost.state,
-                    .input = 2.0 * settings_.cost.input,
-                    .terminal = 2.0 * settings_.cost.terminal});
+  return controller::lqr_gains(dynamics_, states, inputs,
+                               {.state = settings_.cost.state,
+                                .input = 2.0 * settings_.cost.input,
+                                .terminal = 2.0 * settings_.cost.terminal});
 }
 
-Policy SampledProblem::policy_of(const Eigen::MatrixXd& inputs) const {
-  Policy policy{.inputs = inputs,
-                .states = nominal_states(dynamics_, start_, inputs),
-                .gains = {},
-                .bounds = settings_.bounds};
+controller::Policy SampledProblem::policy_of(const Eigen::MatrixXd& inputs) const {
+  controller::Policy policy{.inputs = inputs,
+                            .states = controller::nominal_states(dynamics_, start_, inputs),
+                            .gains = {},
+                            .bounds = settings_.bounds};
   policy.gains = gains(policy.states, inputs);
   return policy;
 }
 
-double SampledProblem::evaluate(const Policy& policy) {
+double SampledProblem::evaluate(const controller::Policy& policy) {
   forward(policy);
   return value_;
 }
@@ -162,18 +165,18 @@ double SampledProblem::evaluate(const Eigen::MatrixXd& inputs) {
 }
 
 double SampledProblem::evaluate(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) {
-  const Policy policy = policy_of(inputs);
+  const controller::Policy policy = policy_of(inputs);
   forward(policy);
   backward(policy, gradient);
   if (settings_.closed_loop && !settings_.feedback_gain) add_gain_gradient(inputs, gradient);
   return value_;
 }
 
-void SampledProblem::forward(const Policy& policy) {
-  const QuadraticCost& cost = settings_.cost;
+void SampledProblem::forward(const controller::Policy& policy) {
+  const controller::QuadraticCost& cost = settings_.cost;
   double sum = 0.0;
   for (Eigen::Index k = 0; k < policy.horizon(); ++k) {
-    StateBatch& inputs = inputs_[k];
+    models::StateBatch& inputs = inputs_[k];
     inputs = (policy.gains[k] * (states_[k].colwise() - policy.states.col(k))).colwise() +
              policy.inputs.col(k);
     inputs = inputs.cwiseMax(policy.bounds.lower.replicate(1, inputs.cols()))
@@ -188,9 +191,9 @@ void SampledProblem::forward(const Policy& policy) {
   value_ = sum / static_cast<double>(states_[0].cols());
 }
 
-double SampledProblem::penalty(const StateBatch& states, StateBatch& slope) const {
-  const Penalty& penalty = settings_.penalty;
-  const Box& bounds = settings_.safe_set.bounds;
+double SampledProblem::penalty(const models::StateBatch& states, models::StateBatch& slope) const {
+  const controller::Penalty& penalty = settings_.penalty;
+  const controller::Box& bounds = settings_.safe_set.bounds;
   double sum = 0.0;
   slope.setZero();
   Eigen::VectorXd state(states.rows());
@@ -204,7 +207,7 @@ double SampledProblem::penalty(const StateBatch& states, StateBatch& slope) cons
                             hinge(bounds.upper[axis] - state[axis], penalty.length, high));
       slope(axis, i) += penalty.box * (low - high);
     }
-    for (const Box& obstacle : settings_.safe_set.obstacles) {
+    for (const controller::Box& obstacle : settings_.safe_set.obstacles) {
       double steepness = 0.0;
       sum += penalty.obstacle *
              hinge(signed_distance(state, obstacle, normal), penalty.length, steepness);
@@ -215,20 +218,20 @@ double SampledProblem::penalty(const StateBatch& states, StateBatch& slope) cons
 }
 
 void SampledProblem::add_state_adjoint(Eigen::Index stage, const Eigen::MatrixXd& weight,
-                                       StateBatch& adjoint) {
-  const StateBatch offset = states_[stage].colwise() - settings_.cost.target;
+                                       models::StateBatch& adjoint) {
+  const models::StateBatch offset = states_[stage].colwise() - settings_.cost.target;
   adjoint += weight * offset + penalty_slopes_[stage];
 }
 
-void SampledProblem::backward(const Policy& policy, Eigen::MatrixXd& gradient) {
-  const QuadraticCost& cost = settings_.cost;
+void SampledProblem::backward(const controller::Policy& policy, Eigen::MatrixXd& gradient) {
+  const controller::QuadraticCost& cost = settings_.cost;
   const auto count = static_cast<double>(states_[0].cols());
-  StateBatch adjoint = StateBatch::Zero(states_[0].rows(), states_[0].cols());
-  StateBatch earlier = adjoint;
-  StateBatch input_adjoint(policy.inputs.rows(), adjoint.cols());
-  StateBatch nominal = StateBatch::Zero(adjoint.rows(), 1);
-  StateBatch nominal_earlier = nominal;
-  StateBatch nominal_input(policy.inputs.rows(), 1);
+  models::StateBatch adjoint = models::StateBatch::Zero(states_[0].rows(), states_[0].cols());
+  models::StateBatch earlier = adjoint;
+  models::StateBatch input_adjoint(policy.inputs.rows(), adjoint.cols());
+  models::StateBatch nominal = models::StateBatch::Zero(adjoint.rows(), 1);
+  models::StateBatch nominal_earlier = nominal;
+  models::StateBatch nominal_input(policy.inputs.rows(), 1);
   add_state_adjoint(policy.horizon(), 2.0 * cost.terminal, adjoint);
   for (Eigen::Index k = policy.horizon() - 1; k >= 0; --k) {
     const Eigen::MatrixXd& gain = policy.gains[k];
@@ -246,8 +249,8 @@ void SampledProblem::backward(const Policy& policy, Eigen::MatrixXd& gradient) {
     gain_gradients_[k] =
         input_adjoint * (states_[k].colwise() - policy.states.col(k)).transpose() / count;
     // The nominal path: x̄_{k+1} = f(x̄_k, v_k), and the inputs, which depend on v_k − K_k x̄_k.
-    const StateBatch nominal_state = policy.states.col(k);
-    const StateBatch nominal_value = policy.inputs.col(k);
+    const models::StateBatch nominal_state = policy.states.col(k);
+    const models::StateBatch nominal_value = policy.inputs.col(k);
     dynamics_.pullback(nominal_state, nominal_value, nominal, nominal_earlier, nominal_input);
     const Eigen::VectorXd sum = input_adjoint.rowwise().sum();
     nominal = nominal_earlier - gain.transpose() * sum;
@@ -261,9 +264,9 @@ void SampledProblem::add_gain_gradient(const Eigen::MatrixXd& inputs,
   Eigen::MatrixXd moved = inputs;
   for (Eigen::Index i = 0; i < inputs.size(); ++i) {
     moved.data()[i] = inputs.data()[i] + kStep;
-    const auto above = gains(nominal_states(dynamics_, start_, moved), moved);
+    const auto above = gains(controller::nominal_states(dynamics_, start_, moved), moved);
     moved.data()[i] = inputs.data()[i] - kStep;
-    const auto below = gains(nominal_states(dynamics_, start_, moved), moved);
+    const auto below = gains(controller::nominal_states(dynamics_, start_, moved), moved);
     moved.data()[i] = inputs.data()[i];
     for (std::size_t k = 0; k < above.size(); ++k) {
       gradient.data()[i] +=
@@ -299,8 +302,9 @@ Eigen::MatrixXd SampledProblem::descend(const Eigen::MatrixXd& start) {
   return descent.best;
 }
 
-std::vector<Eigen::MatrixXd> deepest_inputs(const Dynamics& dynamics,
-                                            const PlannerSettings& settings, const Gaussian& belief,
+std::vector<Eigen::MatrixXd> deepest_inputs(const models::Dynamics& dynamics,
+                                            const controller::PlannerSettings& settings,
+                                            const controller::Gaussian& belief,
                                             const SearchSettings& search,
                                             const std::vector<Eigen::MatrixXd>& also) {
   SampledProblem coarse(dynamics, settings, belief,

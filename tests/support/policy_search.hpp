@@ -28,11 +28,11 @@ class SampledProblem {
  public:
   /// `dynamics` must outlive the problem. Throws std::invalid_argument for the thesis's penalty,
   /// which is not written out here.
-  SampledProblem(const Dynamics& dynamics, const PlannerSettings& settings, const Gaussian& belief,
-                 Draws draws);
+  SampledProblem(const models::Dynamics& dynamics, const controller::PlannerSettings& settings,
+                 const controller::Gaussian& belief, Draws draws);
 
   /// The mean cost of the paths under `policy`, with whatever gains.
-  [[nodiscard]] double evaluate(const Policy& policy);
+  [[nodiscard]] double evaluate(const controller::Policy& policy);
   /// The mean cost of the paths under the policy with these nominal inputs (input_dim x horizon)
   /// and the gains that belong to them.
   [[nodiscard]] double evaluate(const Eigen::MatrixXd& inputs);
@@ -43,22 +43,23 @@ class SampledProblem {
   [[nodiscard]] Eigen::MatrixXd descend(const Eigen::MatrixXd& start);
 
  private:
-  [[nodiscard]] Policy policy_of(const Eigen::MatrixXd& inputs) const;
+  [[nodiscard]] controller::Policy policy_of(const Eigen::MatrixXd& inputs) const;
   [[nodiscard]] std::vector<Eigen::MatrixXd> gains(const Eigen::MatrixXd& states,
                                                    const Eigen::MatrixXd& inputs) const;
-  void forward(const Policy& policy);
-  void backward(const Policy& policy, Eigen::MatrixXd& gradient);
+  void forward(const controller::Policy& policy);
+  void backward(const controller::Policy& policy, Eigen::MatrixXd& gradient);
   void add_gain_gradient(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& gradient) const;
-  void add_state_adjoint(Eigen::Index stage, const Eigen::MatrixXd& weight, StateBatch& adjoint);
-  double penalty(const StateBatch& states, StateBatch& slope) const;
+  void add_state_adjoint(Eigen::Index stage, const Eigen::MatrixXd& weight,
+                         models::StateBatch& adjoint);
+  double penalty(const models::StateBatch& states, models::StateBatch& slope) const;
 
-  const Dynamics& dynamics_;
-  PlannerSettings settings_;
+  const models::Dynamics& dynamics_;
+  controller::PlannerSettings settings_;
   Eigen::VectorXd start_;
-  std::vector<StateBatch> states_;  // horizon + 1; stage 0 is the belief's draws
-  std::vector<StateBatch> inputs_;  // horizon
-  std::vector<StateBatch> noise_;   // horizon
-  std::vector<StateBatch> penalty_slopes_;
+  std::vector<models::StateBatch> states_;  // horizon + 1; stage 0 is the belief's draws
+  std::vector<models::StateBatch> inputs_;  // horizon
+  std::vector<models::StateBatch> noise_;   // horizon
+  std::vector<models::StateBatch> penalty_slopes_;
   std::vector<Eigen::MatrixXd> gain_gradients_;
   double value_ = 0.0;
 };
@@ -75,10 +76,9 @@ struct SearchSettings {
 /// horizon and from random ones, find the valleys; those on all paths, whose ends are returned,
 /// start from `also` and from the best of the former. Which of them is best other draws must say:
 /// the price of two valleys may differ by less than the paths can tell.
-[[nodiscard]] std::vector<Eigen::MatrixXd> deepest_inputs(const Dynamics& dynamics,
-                                                          const PlannerSettings& settings,
-                                                          const Gaussian& belief,
-                                                          const SearchSettings& search,
-                                                          const std::vector<Eigen::MatrixXd>& also);
+[[nodiscard]] std::vector<Eigen::MatrixXd> deepest_inputs(
+    const models::Dynamics& dynamics, const controller::PlannerSettings& settings,
+    const controller::Gaussian& belief, const SearchSettings& search,
+    const std::vector<Eigen::MatrixXd>& also);
 
 }  // namespace qsmpc::testing

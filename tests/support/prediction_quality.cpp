@@ -20,61 +20,64 @@ constexpr double kTimeStep = 0.1;          // s
 constexpr double kInitialVariance = 0.01;  // m², m², rad²
 constexpr int kDim = 3;
 
-std::unique_ptr<const Dynamics> make_car() {
-  return make_dynamics("dubins", {{"speed", kSpeed}}, kTimeStep);
+std::unique_ptr<const models::Dynamics> make_car() {
+  return models::make_dynamics("dubins", {{"speed", kSpeed}}, kTimeStep);
 }
 
-Points normal_points(int count, std::mt19937_64& generator) {
+controller::Points normal_points(int count, std::mt19937_64& generator) {
   std::normal_distribution<double> normal;
-  return Points::NullaryExpr(kDim, count, [&] { return normal(generator); });
+  return controller::Points::NullaryExpr(kDim, count, [&] { return normal(generator); });
 }
 
-DiscreteMeasure uniform_measure(const Points& points) {
+controller::DiscreteMeasure uniform_measure(const controller::Points& points) {
   return {.locations = points,
           .weights =
               Eigen::VectorXd::Constant(points.cols(), 1.0 / static_cast<double>(points.cols()))};
 }
 
-double squared_distance(const DiscreteMeasure& first, const DiscreteMeasure& second) {
-  const double distance = wasserstein2(first, second);
+double squared_distance(const controller::DiscreteMeasure& first,
+                        const controller::DiscreteMeasure& second) {
+  const double distance = controller::wasserstein2(first, second);
   return distance * distance;
 }
 
 }  // namespace
 
-std::vector<DiscreteMeasure> quality_prediction(const QualityProblem& problem,
-                                                const std::string& propagator, int points) {
-  const std::unique_ptr<const Dynamics> car = make_car();
+std::vector<controller::DiscreteMeasure> quality_prediction(const QualityProblem& problem,
+                                                            const std::string& propagator,
+                                                            int points) {
+  const std::unique_ptr<const models::Dynamics> car = make_car();
   const Eigen::VectorXd zero = Eigen::VectorXd::Zero(kDim);
-  const GaussianQuantisation belief = quantise(
+  const controller::GaussianQuantisation belief = controller::quantise(
       {.mean = zero, .covariance = kInitialVariance * Eigen::MatrixXd::Identity(kDim, kDim)},
-      points, QuantiserKind::kLloyd);
+      points, controller::QuantiserKind::kLloyd);
   const Eigen::MatrixXd inputs = Eigen::MatrixXd::Constant(1, problem.steps, kYawRate);
-  const Policy policy{
+  const controller::Policy policy{
       .inputs = inputs,
-      .states = nominal_states(*car, zero, inputs),
+      .states = controller::nominal_states(*car, zero, inputs),
       .gains = std::vector<Eigen::MatrixXd>(problem.steps, Eigen::MatrixXd::Zero(1, kDim)),
       .bounds = {.lower = Eigen::VectorXd::Constant(1, -kYawRate),
                  .upper = Eigen::VectorXd::Constant(1, kYawRate)}};
-  return predict(*car,
-                 *make_propagator(propagator,
-                                  {.noise = {.mean = zero, .covariance = problem.noise_covariance},
-                                   .noise_points = points,
-                                   .compressed_points = points}),
-                 belief.measure, policy)
+  return controller::predict(
+             *car,
+             *controller::make_propagator(
+                 propagator, {.noise = {.mean = zero, .covariance = problem.noise_covariance},
+                              .noise_points = points,
+                              .compressed_points = points}),
+             belief.measure, policy)
       .stages;
 }
 
-std::vector<DiscreteMeasure> simulated_states(const QualityProblem& problem, int count,
-                                              unsigned seed, unsigned stream) {
+std::vector<controller::DiscreteMeasure> simulated_states(const QualityProblem& problem, int count,
+                                                          unsigned seed, unsigned stream) {
   std::seed_seq sequence{seed, stream};
   std::mt19937_64 generator(sequence);
-  const std::unique_ptr<const Dynamics> car = make_car();
+  const std::unique_ptr<const models::Dynamics> car = make_car();
   const Eigen::MatrixXd root = problem.noise_covariance.llt().matrixL();
-  const StateBatch inputs = StateBatch::Constant(1, count, kYawRate);
-  StateBatch states = std::sqrt(kInitialVariance) * normal_points(count, generator);
-  StateBatch next(kDim, count);
-  std::vector<DiscreteMeasure> result = {uniform_measure(states)};
+  const models::StateBatch inputs = models::StateBatch::Constant(1, count, kYawRate);
+  models::StateBatch states = std::sqrt(kInitialVariance) * normal_points(count, generator);
+  models::StateBatch next(kDim, count);
+  std::vector<controller::DiscreteMeasure> result = {uniform_measure(states)};
   for (int step = 0; step < problem.steps; ++step) {
     car->step(states, inputs, next);
     states = next + root * normal_points(count, generator);
@@ -84,7 +87,8 @@ std::vector<DiscreteMeasure> simulated_states(const QualityProblem& problem, int
 }
 
 std::vector<SquaredDistances> squared_distances(
-    const QualityProblem& problem, const std::vector<std::vector<DiscreteMeasure>>& predictions,
+    const QualityProblem& problem,
+    const std::vector<std::vector<controller::DiscreteMeasure>>& predictions,
     const QualitySettings& settings) {
   constexpr unsigned kReferenceStream = 0;
   constexpr unsigned kSampleStream = 1;

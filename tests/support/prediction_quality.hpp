@@ -20,15 +20,13 @@ struct QualityProblem {
 
 /// The particles of steps 0 … `steps`: the Lloyd quantiser of the belief, at most `points` points
 /// at every step, propagated by the propagator of this name with as many noise points.
-[[nodiscard]] std::vector<DiscreteMeasure> quality_prediction(const QualityProblem& problem,
-                                                              const std::string& propagator,
-                                                              int points = 100);
+[[nodiscard]] std::vector<controller::DiscreteMeasure> quality_prediction(
+    const QualityProblem& problem, const std::string& propagator, int points = 100);
 
 /// States of `count` simulated cars at steps 0 … `steps`, all of the same weight. Different
 /// `stream`s of one seed are independent.
-[[nodiscard]] std::vector<DiscreteMeasure> simulated_states(const QualityProblem& problem,
-                                                            int count, unsigned seed,
-                                                            unsigned stream);
+[[nodiscard]] std::vector<controller::DiscreteMeasure> simulated_states(
+    const QualityProblem& problem, int count, unsigned seed, unsigned stream);
 
 /// W2² at one step, one entry a seed.
 struct SquaredDistances {
@@ -45,7 +43,8 @@ struct QualitySettings {
   int reference = 2000;
 };
 [[nodiscard]] std::vector<SquaredDistances> squared_distances(
-    const QualityProblem& problem, const std::vector<std::vector<DiscreteMeasure>>& predictions,
+    const QualityProblem& problem,
+    const std::vector<std::vector<controller::DiscreteMeasure>>& predictions,
     const QualitySettings& settings);
 
 }  // namespace qsmpc::testing

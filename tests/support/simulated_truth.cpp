@@ -10,17 +10,17 @@ namespace qsmpc::testing {
 namespace {
 
 /// Written out once more, so that the truth does not rest on what is tested.
-bool inside(const Box& box, const Points& states, Eigen::Index i) {
+bool inside(const controller::Box& box, const controller::Points& states, Eigen::Index i) {
   for (Eigen::Index axis = 0; axis < states.rows(); ++axis) {
     if (states(axis, i) < box.lower[axis] || states(axis, i) > box.upper[axis]) return false;
   }
   return true;
 }
 
-bool unsafe(const SafeSet& safe_set, const Points& states, Eigen::Index i) {
+bool unsafe(const controller::SafeSet& safe_set, const controller::Points& states, Eigen::Index i) {
   return !inside(safe_set.bounds, states, i) ||
          std::any_of(safe_set.obstacles.begin(), safe_set.obstacles.end(),
-                     [&](const Box& obstacle) { return inside(obstacle, states, i); });
+                     [&](const controller::Box& obstacle) { return inside(obstacle, states, i); });
 }
 
 /// Draws of N(0, covariance), one a column; the covariance may be singular.
@@ -30,8 +30,9 @@ class NormalDraws {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
     root_ = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
   }
-  [[nodiscard]] Points operator()(Eigen::Index count, Generator& generator) {
-    return root_ * Points::NullaryExpr(root_.rows(), count, [&] { return normal_(generator); });
+  [[nodiscard]] controller::Points operator()(Eigen::Index count, Generator& generator) {
+    return root_ *
+           controller::Points::NullaryExpr(root_.rows(), count, [&] { return normal_(generator); });
   }
 
  private:
@@ -41,21 +42,22 @@ class NormalDraws {
 
 }  // namespace
 
-UnsafeCounts simulate(const PredictedMotion& motion, const SafeSet& safe_set, int paths,
-                      Generator& generator, std::vector<Points>* states, const PlantError& error) {
+UnsafeCounts simulate(const controller::PredictedMotion& motion,
+                      const controller::SafeSet& safe_set, int paths, Generator& generator,
+                      std::vector<controller::Points>* states, const PlantError& error) {
   NormalDraws belief(motion.belief.covariance);
   NormalDraws noise(motion.noise_covariance);
-  Points current = belief(paths, generator).colwise() + motion.belief.mean;
-  Points drawn = Points::Zero(current.rows(), paths);
+  controller::Points current = belief(paths, generator).colwise() + motion.belief.mean;
+  controller::Points drawn = controller::Points::Zero(current.rows(), paths);
   if (error && motion.belief_error != nullptr) {
     current += error({.stage = -1, .stepped = current, .last_noise = drawn});
   }
-  Points inputs(motion.policy.inputs.rows(), paths);
-  Points next(current.rows(), paths);
+  controller::Points inputs(motion.policy.inputs.rows(), paths);
+  controller::Points next(current.rows(), paths);
   UnsafeCounts counts;
   std::vector<bool> ever(paths, false);
   for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
-    policy_inputs(motion.policy, k, current, inputs);
+    controller::policy_inputs(motion.policy, k, current, inputs);
     motion.dynamics.step(current, inputs, next);
     if (error) next += error({.stage = k, .stepped = next, .last_noise = drawn});
     drawn = noise(paths, generator);

@@ -21,20 +21,23 @@ struct UnsafeCounts {
 
 /// What a plant's error may depend on when it comes in at a stage; dim x paths each.
 struct PlantMoment {
-  Eigen::Index stage = 0;    ///< −1: into the belief, for motions with a belief error
-  const Points& stepped;     ///< where the model would be without noise; at −1 the belief's draws
-  const Points& last_noise;  ///< that came into the state now; zero before there was any
+  Eigen::Index stage = 0;  ///< −1: into the belief, for motions with a belief error
+  const controller::Points&
+      stepped;  ///< where the model would be without noise; at −1 the belief's draws
+  const controller::Points&
+      last_noise;  ///< that came into the state now; zero before there was any
 };
 
 /// What a plant adds to the model at a moment, dim x paths; may keep a memory of earlier ones.
-using PlantError = std::function<Points(const PlantMoment&)>;
+using PlantError = std::function<controller::Points(const PlantMoment&)>;
 
 /// Simulates `paths` paths of x⁺ = f(x, u(x)) + w from the motion's belief under its policy.
 /// states: where given, receives the states of every stage 1 … horizon (state_dim x paths each).
 /// error: where given, the plant is x⁺ = f(x, u(x)) + e + w.
-[[nodiscard]] UnsafeCounts simulate(const PredictedMotion& motion, const SafeSet& safe_set,
-                                    int paths, Generator& generator,
-                                    std::vector<Points>* states = nullptr,
+[[nodiscard]] UnsafeCounts simulate(const controller::PredictedMotion& motion,
+                                    const controller::SafeSet& safe_set, int paths,
+                                    Generator& generator,
+                                    std::vector<controller::Points>* states = nullptr,
                                     const PlantError& error = {});
 
 }  // namespace qsmpc::testing

@@ -9,7 +9,7 @@
 
 #include "controller/storage.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// An array of doubles from the beginning of a cache line on, with its own place in a chain.
 struct Block {
@@ -70,4 +70,4 @@ class BlockPool {
   std::array<Block*, kClasses> free_{};
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

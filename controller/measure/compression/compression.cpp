@@ -8,7 +8,7 @@
 
 #include "controller/measure/compression/nearest_centre.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // The cost falls in every round, so that rounds come to an end; this guards against rounding.
@@ -142,4 +142,4 @@ Compression compress(const DiscreteMeasure& measure, int count, int refinements)
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

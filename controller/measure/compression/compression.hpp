@@ -8,7 +8,7 @@
 
 #include "controller/measure/measures.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// A partition of a measure's points into clusters and the measure of the clusters' means.
 struct Compression {
@@ -40,4 +40,4 @@ inline constexpr int kToConvergence = std::numeric_limits<int>::max();
 /// most. Throws std::invalid_argument if count < 1, refinements < 0, or as check_measure.
 [[nodiscard]] Compression compress(const DiscreteMeasure& measure, int count, int refinements = 1);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

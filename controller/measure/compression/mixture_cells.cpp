@@ -3,7 +3,7 @@
 #include <bit>
 #include <memory>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Spreads below this fraction of the whole mixture's are rounding.
@@ -190,4 +190,4 @@ void CellCutter::give_own_table(const MixtureFrame& frame, MixtureBox& box, std:
   release(old);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -12,7 +12,7 @@
 #include "controller/measure/compression/block_pool.hpp"
 #include "controller/measure/compression/mixture_kernels.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Sources that cells are made of: names, weights and positions (d x stride); entries from `size`
 /// to `stride` are zero. It is in a block itself; so are the arrays of it and of its cells' edges,
@@ -94,4 +94,4 @@ class CellCutter {
   std::vector<MixtureBox*> pending_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -8,8 +8,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 // Stands for 1/0: a source without noise is then on one side or the other.
 constexpr double kLargestInverse = 1e300;
@@ -215,11 +217,11 @@ MixtureParts list_any(const MixtureCell& cell, std::size_t size, double* mass, d
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::controller {
 
 HWY_EXPORT(cut_any);
 HWY_EXPORT(list_any);
@@ -236,5 +238,5 @@ MixtureParts list_mixture_parts(const MixtureCell& cell, std::size_t size, doubl
 
 void copy_mixture_parts(const MixtureCopy& copy) { HWY_DYNAMIC_DISPATCH(copy_parts)(copy); }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 #endif

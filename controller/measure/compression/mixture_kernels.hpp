@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// The most dimensions that the loops are made for.
 inline constexpr int kMixtureDimLimit = 8;
@@ -100,4 +100,4 @@ struct MixtureParts {
 MixtureParts list_mixture_parts(const MixtureCell& cell, std::size_t size, double* mass,
                                 double* source);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -12,7 +12,7 @@
 #include "controller/storage.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // What rounding may take away from the cost, relative to the whole mixture's second moment.
@@ -80,7 +80,7 @@ struct MixtureSplitter::Work {
 
 MixtureSplitter::Work::Work(const Eigen::MatrixXd& covariance, int cells, int parts)
     : limit(cells) {
-  const SymmetricEigen eigen = symmetric_eigen(covariance);
+  const models::SymmetricEigen eigen = models::symmetric_eigen(covariance);
   axes = eigen.vectors;
   frame.dim = static_cast<int>(covariance.rows());
   frame.deviations = eigen.values.cwiseMax(0.0).cwiseSqrt();
@@ -370,4 +370,4 @@ void MixtureSplitter::split(const Points& sources, const Eigen::VectorXd& weight
   work.rotate(work.mixture_covariance, out.whole_covariance);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -22,7 +22,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/parallel.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Which share of which source is in which cell. Storage is reused from call to call.
 struct MixtureCells {
@@ -60,4 +60,4 @@ class MixtureSplitter {
   std::unique_ptr<Work> work_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// |points_i − centres_n|²; Dim is their dimension or Eigen::Dynamic.
@@ -128,4 +128,4 @@ int NearestCentre::assign(const Eigen::MatrixXd& centres, std::vector<int>& assi
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Remembers, from one assignment to the next, how far away every point's second-nearest centre is
 /// at least, so that most points are not looked at again (Hamerly's bounds). Centres that are
@@ -42,4 +42,4 @@ class NearestCentre {
   std::vector<std::vector<Neighbour>> neighbours_;  // of every centre, nearest first
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

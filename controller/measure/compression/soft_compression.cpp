@@ -6,7 +6,7 @@
 
 #include "controller/measure/compression/compression.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 void check_settings(const SoftCompressionSettings& settings) {
@@ -85,4 +85,4 @@ SoftCompression compress_soft(const DiscreteMeasure& measure,
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -6,7 +6,7 @@
 
 #include "controller/measure/measures.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Clusters to which points belong in parts, and the measure of the clusters' means.
 struct SoftCompression {
@@ -38,4 +38,4 @@ struct SoftCompressionSettings {
 [[nodiscard]] SoftCompression compress_soft(const DiscreteMeasure& measure,
                                             const SoftCompressionSettings& settings);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -9,7 +9,7 @@
 
 #include "controller/measure/normal/normal_distribution.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Correlations closer to ±1 than this count as ±1, which is all that rounding lets tell.
@@ -89,4 +89,4 @@ double rectangle_error(const Eigen::Matrix2d& covariance) {
   return kRectangleError + kCorrelationRounding / std::sqrt((1.0 - r) * (1.0 + r));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

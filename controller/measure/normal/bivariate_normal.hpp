@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// P(lower ≤ x ≤ upper) for x ~ N(mean, covariance) in the plane, to an absolute error of at most
 /// `rectangle_error`; by Owen's T function. lower ≤ upper, infinite where not restricted; the
@@ -20,4 +20,4 @@ namespace qsmpc {
 /// The same where the coordinates are far from dependent.
 inline constexpr double kRectangleError = 1e-14;
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

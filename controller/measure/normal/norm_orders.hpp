@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 inline constexpr std::array<int, 2> kHigherOrders = {4, 8};
 
@@ -22,4 +22,4 @@ using HigherNorms = std::array<Eigen::VectorXd, kHigherOrders.size()>;
   return norms;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -11,8 +11,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 /// e^x for −50 ≤ x ≤ 0, to about one unit in the last place.
 HWY_INLINE Vector exponential_of_negative(Vector x) {
@@ -72,7 +74,7 @@ HWY_INLINE NormalValues normal_values(Vector z) {
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #endif

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// φ(x) = exp(−x²/2)/√(2π); 0 at ±infinity.
 [[nodiscard]] inline double normal_density(double x) {
@@ -29,4 +29,4 @@ namespace qsmpc {
   return std::isinf(x) ? 0.0 : x * normal_density(x);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 #include <boost/math/special_functions/binomial.hpp>
 #include <boost/math/special_functions/factorials.hpp>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 /// E Z^power for an even power.
@@ -34,4 +34,4 @@ double normal_square_norm(int order) { return norm_of_difference(2, 0, 1.0, orde
 
 double normal_cube_norm(int order) { return norm_of_difference(3, 1, 3.0, order); }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

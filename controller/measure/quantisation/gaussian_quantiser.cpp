@@ -10,7 +10,7 @@
 #include "controller/measure/quantisation/normal_quantiser.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // W2² of spread points over that of a grid with as many levels, not always whole, on every axis:
@@ -251,7 +251,7 @@ QuantiserKind quantiser_kind(std::string_view name) {
 
 GaussianQuantisation quantise(const Gaussian& gaussian, int budget, QuantiserKind kind) {
   check_gaussian(gaussian);
-  const SymmetricEigen eigen = symmetric_eigen(gaussian.covariance);
+  const models::SymmetricEigen eigen = models::symmetric_eigen(gaussian.covariance);
   const Eigen::VectorXd variances = eigen.values.cwiseMax(0.0);
   const std::vector<int> levels = allot_levels(variances, budget);
   Standardised best = product(axis_factors(levels, 0), variances);
@@ -271,4 +271,4 @@ GaussianQuantisation quantise(const Gaussian& gaussian, int budget, QuantiserKin
           .levels = std::move(best.levels)};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

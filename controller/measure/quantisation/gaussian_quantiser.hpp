@@ -17,7 +17,7 @@
 
 #include "controller/measure/measures.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 enum class QuantiserKind {
   kProduct,  ///< a grid: microseconds
@@ -70,4 +70,4 @@ struct GaussianQuantisation {
 [[nodiscard]] GaussianQuantisation quantise(const Gaussian& gaussian, int budget,
                                             QuantiserKind kind = QuantiserKind::kProduct);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

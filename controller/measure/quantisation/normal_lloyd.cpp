@@ -15,7 +15,7 @@
 #include "controller/measure/quantisation/normal_quantiser.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Cells of the grids for each point that is sought. Most rounds are spent on the coarse grid; the
@@ -133,7 +133,7 @@ void descend(const Grid& grid, double least_gain, Clusters& clusters) {
 Eigen::MatrixXd oblique_basis(Eigen::Index dim) {
   const Eigen::VectorXd steps = Eigen::VectorXd::LinSpaced(dim, 1.0, static_cast<double>(dim));
   const Eigen::MatrixXd waves = (steps * steps.transpose()).array().sin();
-  return orthogonal_factor(waves);
+  return models::orthogonal_factor(waves);
 }
 
 /// The split tree in an oblique basis. Along the axes its cuts would follow those of the grid, and
@@ -189,4 +189,4 @@ const NormalLloyd& normal_lloyd(int dim, int count) {
   return remembered.emplace(std::pair(dim, count), make_lloyd(dim, count)).first->second;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 
 #include "controller/measure/measures.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// A quantiser of N(0, I) and the covariance that it loses under a known coupling.
 struct NormalLloyd {
@@ -28,4 +28,4 @@ inline constexpr int kLloydDimensions = 6;
 /// Above this the grid would need too many cells (and Lloyd's method too much time).
 inline constexpr int kLloydPoints = 2048;
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -12,7 +12,7 @@
 #include "controller/measure/normal/normal_distribution.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 constexpr int kNewtonLimit = 100;
 constexpr int kHalvingLimit = 60;
@@ -146,4 +146,4 @@ double approximate_distortion(int count) {
   return table.back() * ratio * ratio;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// The n points that minimise W2 to N(0, 1), their cells' probabilities, and the error that is
 /// left.
@@ -25,4 +25,4 @@ struct NormalQuantiser {
 /// Up to how many points `approximate_distortion` is exact.
 inline constexpr int kExactDistortions = 128;
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

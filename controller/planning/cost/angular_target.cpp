@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
@@ -23,4 +23,4 @@ Eigen::VectorXd target_offset(const Eigen::VectorXd& target, const std::vector<i
   return state - nearest;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

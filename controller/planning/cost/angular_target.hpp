@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Writes to `out` (n) what means the same as `target` (n) and is nearest to `state` (n): each
 /// coordinate in `angles` is shifted by the multiple of 2π that leaves it within π of that of
@@ -18,4 +18,4 @@ void nearest_target(const Eigen::VectorXd& target, const std::vector<int>& angle
                                             const std::vector<int>& angles,
                                             const Eigen::Ref<const Eigen::VectorXd>& state);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -8,8 +8,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 /// E h(r + s z) for a ratio r = distance/ℓ, its derivative by r, and that by s, divided by s.
 struct SmoothedHinge {
@@ -116,11 +118,11 @@ void correct_loop(const FaceCorrection& correction, const double* x, const doubl
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::controller {
 
 HWY_EXPORT(moments_loop);
 HWY_EXPORT(face_cost_loop);
@@ -143,5 +145,5 @@ void correct_gradient(const FaceCorrection& correction, const double* x, const d
   HWY_DYNAMIC_DISPATCH(correct_loop)(correction, x, weights, size, gradient);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 #endif

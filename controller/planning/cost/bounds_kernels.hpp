@@ -7,7 +7,7 @@
 #include "controller/planning/cost/penalty.hpp"
 #include "controller/planning/cost/stage_kernels.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Standard deviations from a hinge beyond which nothing is left of it in these loops.
 inline constexpr double kFarDeviations = 8.3;
@@ -54,4 +54,4 @@ FaceCost evaluate_faces(const PenaltyTable::Face& bounds, const SmoothedCoordina
 void correct_gradient(const FaceCorrection& correction, const double* x, const double* weights,
                       std::size_t size, double* gradient);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Stands for a deviation of 0, where the closed forms have their limits.
@@ -119,4 +119,4 @@ double ExpectedBounds::add(const Law& law, const Points& points, const Eigen::Ve
   return value;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

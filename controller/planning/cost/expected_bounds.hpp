@@ -23,7 +23,7 @@
 #include "controller/planning/cost/penalty.hpp"
 #include "controller/planning/safe_set.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// 1 − θ² for `count` particles in `dim` dimensions that have been through a compression:
 /// min(1, b²) with b = 1.5 count^(−1/(dim + 4)). The rate is that of kernel density estimation
@@ -68,4 +68,4 @@ class ExpectedBounds {
   std::vector<FaceCost> face_costs_;        // chunks x bounds
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

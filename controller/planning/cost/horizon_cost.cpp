@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
-using StateView = Eigen::Map<const StateBatch>;
-using StateSpan = Eigen::Map<StateBatch>;
+using StateView = Eigen::Map<const models::StateBatch>;
+using StateSpan = Eigen::Map<models::StateBatch>;
 
 auto columns(const Points& points, ParticleRange range) {
   return points.middleCols(range.begin, range.end - range.begin);
@@ -349,4 +349,4 @@ void HorizonCost::lone_particle_gradient(Eigen::Index k, Eigen::Index particle, 
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

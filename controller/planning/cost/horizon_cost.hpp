@@ -24,7 +24,7 @@
 #include "controller/prediction/prediction.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// Weights of Eq. 4-18 and 4-19 about a target state r.
 struct QuadraticCost {
@@ -49,7 +49,7 @@ struct CostParts {
 
 /// What the cost depends on besides the prediction; refers to objects that must outlive it.
 struct HorizonCostTerms {
-  const Dynamics& dynamics;
+  const models::Dynamics& dynamics;
   const SafeSet& safe_set;
   const QuadraticCost& cost;
   const Penalty& penalty;
@@ -172,4 +172,4 @@ class HorizonCost {
   Eigen::VectorXd lone_next_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 NoiseFreeCost::NoiseFreeCost(int horizon, const HorizonCostTerms& terms) : cost_(terms) {
   const Eigen::Index dim = terms.cost.state.rows();
@@ -26,7 +26,7 @@ void NoiseFreeCost::place(const Gaussian& belief) {
   const Eigen::Index dim = belief.mean.size();
   if (covariance_.size() == 0 || covariance_ != belief.covariance) {
     covariance_ = belief.covariance;
-    const SymmetricEigen eigen = symmetric_eigen(covariance_);
+    const models::SymmetricEigen eigen = models::symmetric_eigen(covariance_);
     const Eigen::VectorXd reach =
         (static_cast<double>(dim) * eigen.values.cwiseMax(0.0)).cwiseSqrt();
     offsets_.resize(dim, 2 * dim);
@@ -51,4 +51,4 @@ double NoiseFreeCost::evaluate(const Eigen::MatrixXd& inputs, const Eigen::Matri
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

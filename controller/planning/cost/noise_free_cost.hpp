@@ -9,7 +9,7 @@
 #include "controller/planning/policy_maker.hpp"
 #include "controller/prediction/prediction.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class NoiseFreeCost {
  public:
@@ -44,4 +44,4 @@ class NoiseFreeCost {
   Eigen::VectorXd z_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 ParticleConstraints::ParticleConstraints(HorizonCost& cost, const SafeSet& safe_set) : cost_(cost) {
   const Box& bounds = safe_set.bounds;
@@ -58,4 +58,4 @@ void ParticleConstraints::some(const Eigen::VectorXd& z, const std::vector<int>&
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -9,7 +9,7 @@
 #include "controller/planning/safe_set.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// constraint c + margin ≤ 0 for each particle of the stages 1 … horizon against each finite face
 /// of the bounds; c is how far the particle is beyond the face, in the unit of the state. Refers to
@@ -51,4 +51,4 @@ class ParticleConstraints {
   Eigen::VectorXd gradient_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

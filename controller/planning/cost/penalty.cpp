@@ -2,7 +2,7 @@
 
 #include "controller/planning/cost/stage_kernels.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 PenaltyValue add_penalty(const Points& locations, const Eigen::VectorXd& weights,
                          const SafeSet& safe_set, const Penalty& penalty, Points& adjoint) {
@@ -13,4 +13,4 @@ PenaltyValue add_penalty(const Points& locations, const Eigen::VectorXd& weights
   return value;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

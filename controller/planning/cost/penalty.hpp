@@ -16,7 +16,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/planning/safe_set.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 enum class PenaltyShape { kSmooth, kThesis };
 
@@ -39,4 +39,4 @@ struct PenaltyValue {
                                        const SafeSet& safe_set, const Penalty& penalty,
                                        Points& adjoint);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -11,8 +11,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 const double* row_of(const Points& points, Eigen::Index row, ParticleRange range) {
   return points.data() + row * points.cols() + range.begin;
@@ -337,11 +339,11 @@ PenaltyValue penalty_loops(const PenaltyTable& table, const Points& locations,
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace qsmpc {
+namespace qsmpc::controller {
 
 HWY_EXPORT(policy_forward);
 HWY_EXPORT(policy_backward);
@@ -396,5 +398,5 @@ PenaltyValue penalise(const PenaltyTable& table, const Points& locations,
   return HWY_DYNAMIC_DISPATCH(penalty_loops)(table, locations, weights, range, adjoint);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 #endif

@@ -12,7 +12,7 @@
 #include "controller/planning/cost/penalty.hpp"
 #include "controller/planning/safe_set.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 /// One stage of a policy as the loops want it: u = clamp(constant + K x).
 struct StagePolicy {
@@ -72,4 +72,4 @@ class PenaltyTable {
 PenaltyValue penalise(const PenaltyTable& table, const Points& locations,
                       const Eigen::VectorXd& weights, ParticleRange range, Points& adjoint);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -4,7 +4,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Projected Newton steps in one programme. Each settles part of the active set; a step that is not
@@ -107,4 +107,4 @@ bool BoxQp::solve(const Eigen::MatrixXd& hessian, const Eigen::VectorXd& gradien
   return true;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

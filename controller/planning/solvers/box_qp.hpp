@@ -11,7 +11,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class BoxQp {
  public:
@@ -46,4 +46,4 @@ class BoxQp {
   bool clipped_ = false;  // the last step met a bound, or was shortened
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // A start nearer to a bound than this fraction of the range is moved inwards: on the flat ends of
@@ -110,4 +110,4 @@ double BoundedInputs::excess(const Eigen::VectorXd& z, double weight,
   return sum;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 enum class InputBounding {
   kSigmoid,  ///< z = lower + (upper − lower) / (1 + e^−θ): Eq. 5-3, for any bounds
@@ -40,4 +40,4 @@ class BoundedInputs {
   Eigen::VectorXd upper_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 
 #include "controller/planning/solvers/nlopt_run.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // An excess of a tenth of the range costs as much as the start does, of a hundredth 1 % of it.
@@ -76,4 +76,4 @@ const SolverResult& LbfgsSolver::minimise(const OcpProblem& problem, const Eigen
   return result_;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

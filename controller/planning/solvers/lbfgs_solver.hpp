@@ -8,7 +8,7 @@
 #include "controller/planning/solvers/metered_cost.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class LbfgsSolver final : public OcpSolver {
  public:
@@ -32,4 +32,4 @@ class LbfgsSolver final : public OcpSolver {
   SolverResult result_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

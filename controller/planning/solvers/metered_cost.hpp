@@ -9,7 +9,7 @@
 
 #include "controller/planning/solvers/ocp_solver.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class MeteredCost {
  public:
@@ -47,4 +47,4 @@ class MeteredCost {
   std::optional<SolverStatus> stopped_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

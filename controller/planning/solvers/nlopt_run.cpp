@@ -9,7 +9,7 @@
 
 #include <nlopt.h>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Pairs of steps and gradient changes that L-BFGS remembers.
@@ -115,4 +115,4 @@ NloptEnd run_nlopt(const NloptRun& run, const Eigen::VectorXd& start) {
   return result > 0 ? NloptEnd::kConverged : NloptEnd::kStalled;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 enum class NloptMethod { kLbfgs, kSlsqp };
 
@@ -34,4 +34,4 @@ struct NloptRun {
 /// point where it has asked before, once more after a stop, and for as long as the cost answers.
 NloptEnd run_nlopt(const NloptRun& run, const Eigen::VectorXd& start);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -6,7 +6,7 @@
 #include "controller/planning/solvers/projected_bfgs_solver.hpp"
 #include "controller/planning/solvers/slsqp_solver.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 void require(bool holds, const char* message) {
@@ -89,4 +89,4 @@ void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
           "each constraint must be in a group, or none");
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

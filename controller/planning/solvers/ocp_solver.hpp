@@ -18,7 +18,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 enum class SolverStatus {
   kConverged,         ///< a tolerance was met
@@ -122,4 +122,4 @@ enum class ConstraintsTaken { kNone, kInequalities };
 void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
                    const SolverOptions& options, ConstraintsTaken taken);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

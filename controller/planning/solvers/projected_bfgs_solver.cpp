@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Without curvature, the largest entry of the first step is this fraction of its bounds' range.
@@ -226,4 +226,4 @@ const SolverResult& ProjectedBfgsSolver::minimise(const OcpProblem& problem,
   return result_;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

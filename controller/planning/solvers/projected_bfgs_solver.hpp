@@ -9,7 +9,7 @@
 #include "controller/planning/solvers/metered_cost.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class ProjectedBfgsSolver final : public OcpSolver {
  public:
@@ -54,4 +54,4 @@ class ProjectedBfgsSolver final : public OcpSolver {
   Eigen::VectorXd curved_;  // Bs
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 #include <limits>
 #include <unordered_set>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Constraints that enter the working set at once, and that it holds before some are dropped, both
@@ -228,4 +228,4 @@ const SolverResult& SlsqpSolver::minimise(const OcpProblem& problem, const Eigen
   return result_;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -10,7 +10,7 @@
 #include "controller/planning/solvers/nlopt_run.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class SlsqpSolver final : public OcpSolver {
  public:
@@ -56,4 +56,4 @@ class SlsqpSolver final : public OcpSolver {
   Eigen::VectorXd all_;  // values of all constraints where they were looked at last
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

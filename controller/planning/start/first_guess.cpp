@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 
 // Constant inputs that are tried, as shares of the way from the middle of the bounds to their ends.
@@ -52,4 +52,4 @@ bool FirstGuess::compare(const Eigen::MatrixXd* previous, const Eigen::MatrixXd&
   return std::isfinite(value);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

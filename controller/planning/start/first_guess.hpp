@@ -14,7 +14,7 @@
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class FirstGuess {
  public:
@@ -46,4 +46,4 @@ class FirstGuess {
 /// The inputs of a plan, one stage later; the last is held.
 void shift_inputs(const Eigen::MatrixXd& inputs, Eigen::MatrixXd& out);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

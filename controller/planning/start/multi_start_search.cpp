@@ -5,7 +5,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace {
 // Shares of the way from the middle of an input's bounds to their ends, for each half.
 constexpr double kStartShares[] = {0.0, -0.9, -0.45, 0.45, 0.9};
@@ -109,4 +109,4 @@ void MultiStartSearch::descend(PolicyMaker& policies, Start& start) {
   start.cost = cost_.evaluate(start.inputs, no_gain_change_, policies);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -18,7 +18,7 @@
 #include "controller/planning/policy_maker.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 class MultiStartSearch {
  public:
@@ -52,4 +52,4 @@ class MultiStartSearch {
   Eigen::VectorXd z_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

@@ -15,7 +15,7 @@
 #include "harness/campaign/plan/variant_scenario.hpp"
 #include "harness/scenario/scenario_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Every variant holds its settings as text; a short file could ask for gigabytes of them.
@@ -207,4 +207,4 @@ Campaign expand_campaign(const CampaignDraft& draft, Problems& problems) {
   return Expansion(draft, problems).expand();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

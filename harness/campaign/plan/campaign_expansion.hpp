@@ -6,7 +6,7 @@
 #include "harness/campaign/plan/campaign_reader.hpp"
 #include "harness/scenario/yaml_section.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr std::int64_t kMostCampaignVariants = 10'000;
 
@@ -17,4 +17,4 @@ inline constexpr std::int64_t kMostCampaignVariants = 10'000;
 /// without being made.
 [[nodiscard]] Campaign expand_campaign(const CampaignDraft& draft, Problems& problems);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

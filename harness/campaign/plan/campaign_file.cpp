@@ -10,7 +10,7 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -66,4 +66,4 @@ bool is_campaign_file(const std::string& path_or_name) {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/campaign/campaign.hpp"
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The path of the campaign `path_or_name`: a path, or the name of a shipped one. Throws InputError
 /// when it is neither.
@@ -32,4 +32,4 @@ namespace qsmpc {
 /// campaign. False for what cannot be read.
 [[nodiscard]] bool is_campaign_file(const std::string& path_or_name);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

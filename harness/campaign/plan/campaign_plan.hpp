@@ -5,7 +5,7 @@
 
 #include "harness/campaign/campaign.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// "campaign NAME: 4 variants x 200 seeds = 800 episodes".
 [[nodiscard]] std::string campaign_size_text(const Campaign& campaign);
@@ -17,4 +17,4 @@ namespace qsmpc {
 /// The same as one object with stable keys, ending in a new line; docs/campaign.md describes them.
 [[nodiscard]] std::string campaign_plan_json(const Campaign& campaign);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kLongestDescription = 500;  // bytes; one line
@@ -324,4 +324,4 @@ CampaignDraft read_campaign(const YamlNode& tree, const std::string& file, Probl
   return CampaignReader(tree, file, problems).read();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A place in the campaign file, for errors.
 struct CampaignPlace {
@@ -72,4 +72,4 @@ struct CampaignDraft {
 [[nodiscard]] CampaignDraft read_campaign(const YamlNode& tree, const std::string& file,
                                           Problems& problems);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kMany = 100;  // as many as Problems keeps
@@ -27,4 +27,4 @@ void CampaignRefusals::add(InputError::Where where) {
 
 bool CampaignRefusals::many() const { return seen_.size() >= kMany; }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/yaml_section.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 class CampaignRefusals {
  public:
@@ -31,4 +31,4 @@ class CampaignRefusals {
   std::unordered_set<std::string> seen_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

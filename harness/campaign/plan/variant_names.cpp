@@ -5,7 +5,7 @@
 #include <map>
 #include <unordered_set>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kUnique = "names that differ";
@@ -73,4 +73,4 @@ void name_variants(const CampaignDraft& draft, const std::vector<std::string>& s
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/campaign/plan/campaign_reader.hpp"
 #include "harness/campaign/plan/campaign_refusals.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Names `variants`, in the order in which they were made from `draft`: by scenario, settings and
 /// plant, those of which the campaign has more than one; else by settings or scenario. A scenario
@@ -17,4 +17,4 @@ namespace qsmpc {
 void name_variants(const CampaignDraft& draft, const std::vector<std::string>& scenario_paths,
                    std::vector<CampaignVariant>& variants, CampaignRefusals& refusals);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

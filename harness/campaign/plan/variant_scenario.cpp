@@ -18,7 +18,7 @@
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/yaml_text.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -203,4 +203,4 @@ std::optional<Scenario> PlantChecks::choose(const Scenario& resolved, const Camp
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/campaign/plan/campaign_refusals.hpp"
 #include "harness/scenario/scenario.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The path of a scenario that the campaign in `file` names: a path relative to that file's folder,
 /// or a shipped one's name. Nothing, and a refusal, if there is none.
@@ -46,4 +46,4 @@ class PlantChecks {
   std::unordered_set<std::string> broken_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 
 #include "harness/campaign/statistics/paired_difference.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// Lower ends of the bins after the first, and the upper end of the last: powers of √10.
@@ -144,4 +144,4 @@ double PooledCalibration::p_value() const {
   return exceedance_p_value(tallies);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

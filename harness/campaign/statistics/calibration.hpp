@@ -8,7 +8,7 @@
 #include "harness/statistics/binomial_interval.hpp"
 #include "harness/statistics/exceedance.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Bins of certified probabilities: [0, 1e-12), then half decades up to 1.
 inline constexpr int kCalibrationBins = 25;
@@ -94,4 +94,4 @@ class PooledCalibration {
   std::vector<CalibrationTally> variants_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

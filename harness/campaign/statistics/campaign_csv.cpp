@@ -9,7 +9,7 @@
 
 #include "harness/text/csv.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string field(const std::string& text) { return csv_field(text); }
@@ -139,4 +139,4 @@ std::string episodes_csv_line(const StoredVariant& variant, const EpisodeRow& ro
                  row.timing.deadline_misses);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A line a variant, difference and quantity, or bin; wall-clock values in the last columns. Of the
 /// bins, those that have periods; of all variants together, `variant` is empty.
@@ -25,4 +25,4 @@ namespace qsmpc {
 /// not grow with their number. Throws IoError, and what the store throws.
 void write_episodes_csv(const StoreReader& store, const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

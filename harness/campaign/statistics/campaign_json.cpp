@@ -8,7 +8,7 @@
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -124,4 +124,4 @@ std::string campaign_json(const CampaignStatistics& statistics) {
   return json_text(json);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kNameWidth = 28;   // of variants
@@ -202,4 +202,4 @@ std::string campaign_table(const CampaignStatistics& statistics) {
          "most 1 of 100.\n";
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

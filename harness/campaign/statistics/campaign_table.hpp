@@ -5,9 +5,9 @@
 
 #include "harness/campaign/statistics/statistics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Lines of at most 110 characters; names that are longer than their column are cut and marked.
 [[nodiscard]] std::string campaign_table(const CampaignStatistics& statistics);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

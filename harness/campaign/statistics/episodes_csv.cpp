@@ -1,7 +1,7 @@
 #include "harness/campaign/statistics/campaign_csv.hpp"
 #include "harness/files/atomic_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kPieceSize = 1 << 16;  // of a file that is written; a line adds to it
@@ -23,4 +23,4 @@ void write_episodes_csv(const StoreReader& store, const std::string& path) {
   file.commit();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/random/random_numbers.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr std::uint64_t kBootstrapSeed = 0;  // any, once and for all: its stream is its own
@@ -145,4 +145,4 @@ std::vector<MeanDifference> PairedDifference::result() const {
   return differences;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -19,7 +19,7 @@
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/statistics/binomial_interval.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Replicates of the bootstrap: the limits of 99 % are its 10th values from either end.
 inline constexpr int kBootstrapReplicates = 2000;
@@ -94,4 +94,4 @@ class PairedDifference {
   Eigen::ArrayXd weights_;  ///< of the pair that is added
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 Distribution planning_times(const StoreReader& store, std::int64_t variant, std::int64_t periods) {
@@ -75,4 +75,4 @@ CampaignStatistics campaign_statistics(const StoreReader& store) {
   return statistics;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

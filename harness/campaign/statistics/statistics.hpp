@@ -15,7 +15,7 @@
 #include "harness/campaign/statistics/variant_statistics.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Means over the seeds that both have done of (variant − baseline).
 struct VariantDifference {
@@ -38,4 +38,4 @@ struct CampaignStatistics {
 /// Throws what the store throws.
 [[nodiscard]] CampaignStatistics campaign_statistics(const StoreReader& store);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

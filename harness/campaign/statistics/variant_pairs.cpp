@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// The first variant with the scenario of `variant` and the same `member`.
@@ -41,4 +41,4 @@ std::vector<VariantPair> variant_pairs(const std::vector<StoredVariant>& variant
   return pairs;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "harness/campaign/store/store_reader.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What a variant differs by from its baseline.
 enum class DiffersBy { kSettings, kPlant };
@@ -27,4 +27,4 @@ struct VariantPair {
 /// scenario and settings; not where that is the variant itself.
 [[nodiscard]] std::vector<VariantPair> variant_pairs(const std::vector<StoredVariant>& variants);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 #include "harness/campaign/statistics/paired_difference.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 double share_of(double sum, std::int64_t count) {
@@ -81,4 +81,4 @@ VariantStatistics VariantTally::result() const {
           .published = published_.result()};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

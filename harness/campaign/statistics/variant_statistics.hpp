@@ -13,7 +13,7 @@
 #include "harness/statistics/quantiles.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// How many of the episodes, with 99 % Clopper–Pearson limits. Not a number of none.
 struct EpisodeRate {
@@ -132,4 +132,4 @@ Spread SpreadTally::result(const EachSorted& each_sorted) const {
           .quantiles = quantiles.values()};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

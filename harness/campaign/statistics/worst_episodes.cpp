@@ -7,7 +7,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 double or_else(double value, double worst) { return std::isnan(value) ? worst : value; }
@@ -42,4 +42,4 @@ std::vector<EpisodeRow> worst_episodes(const StoreReader& store, std::size_t cou
   return worst;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

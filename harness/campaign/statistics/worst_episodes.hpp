@@ -7,7 +7,7 @@
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Whether `one` is worse than `other`: first those whose true state was unsafe or whose simulator
 /// gave up, then by least clearance, then by highest cost; numbers that are none count as worst. Of
@@ -18,4 +18,4 @@ namespace qsmpc {
 /// there are fewer. Memory grows with `count` only. Throws what the store throws.
 [[nodiscard]] std::vector<EpisodeRow> worst_episodes(const StoreReader& store, std::size_t count);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/summary.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::vector<PeriodRow> period_rows(const Trace& trace) {
@@ -17,11 +17,12 @@ std::vector<PeriodRow> period_rows(const Trace& trace) {
   const Eigen::Index periods = completed_periods(trace);
   for (Eigen::Index k = 0; k < periods; ++k) {
     const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
-    const StageCertificate& next = step.certificates.front();
-    rows.push_back({.certified = next.value,
-                    .published = next.thesis,
-                    .unsafe = clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0,
-                    .ocp_ms = step.timing.total});
+    const controller::StageCertificate& next = step.certificates.front();
+    rows.push_back(
+        {.certified = next.value,
+         .published = next.thesis,
+         .unsafe = controller::clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0,
+         .ocp_ms = step.timing.total});
   }
   return rows;
 }
@@ -58,4 +59,4 @@ bool is_failure(const EpisodeRow& row) {
   return row.outcome != outcome_name(Outcome::kReached) || row.unsafe;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 
 #include "harness/trace/trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A period that the plant came through.
 struct PeriodRow {
@@ -63,4 +63,4 @@ struct EpisodeRow {
 /// Whether the trace of such an episode is kept among the failures.
 [[nodiscard]] bool is_failure(const EpisodeRow& row);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,7 +17,7 @@
 #include "harness/errors.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr mode_t kFileMode = 0666;  // what the user's umask leaves of it
@@ -117,4 +117,4 @@ std::optional<LockHolder> lock_holder(const std::string& folder) {
   return holder;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

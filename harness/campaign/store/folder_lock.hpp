@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Who holds a folder.
 struct LockHolder {
@@ -36,4 +36,4 @@ class FolderLock {
 /// and cannot be read.
 [[nodiscard]] std::optional<LockHolder> lock_holder(const std::string& folder);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -19,7 +19,7 @@
 #include "harness/files/atomic_file.hpp"
 #include "harness/trace/trace_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 namespace fs = std::filesystem;
@@ -230,4 +230,4 @@ MergeResult merge_shards(const std::vector<std::string>& folders, const std::str
   return result;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct MergeResult {
   std::int64_t episodes = 0;
@@ -22,4 +22,4 @@ struct MergeResult {
 /// written, or another process works in `out`.
 MergeResult merge_shards(const std::vector<std::string>& folders, const std::string& out);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/version.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// The first thing that differs, as found in the store and as expected by the campaign.
@@ -303,4 +303,4 @@ void Store::fold() {
   });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

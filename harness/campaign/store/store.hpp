@@ -14,7 +14,7 @@
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// What a campaign with `shard` of it is to the store. `digests`: one a variant, as
 /// StoredVariant::plant_digest.
@@ -70,4 +70,4 @@ class Store {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 std::string existing_store(const std::string& folder) {
@@ -161,4 +161,4 @@ void StoreReader::for_each_sorted_ocp_ms(std::int64_t variant,
                         [&](SQLite::Statement& row) { visit(row.getColumn(0).getDouble()); });
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -19,7 +19,7 @@
 #include "harness/campaign/campaign.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A variant as the store knows it.
 struct StoredVariant {
@@ -87,4 +87,4 @@ class StoreReader {
   std::unique_ptr<Implementation> implementation_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // Nothing in SQLite is not a number.
@@ -197,4 +197,4 @@ void insert_variant(SQLite::Database& database, const StoredVariant& variant,
   run(statement);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,7 +17,7 @@ class Database;
 class Statement;
 }  // namespace SQLite
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// How long one waits for the other who uses the store, ms.
 inline constexpr int kStorePatience = 20'000;
@@ -57,4 +57,4 @@ void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign)
 void insert_variant(SQLite::Database& database, const StoredVariant& variant,
                     std::int64_t position);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/errors.hpp"
 #include "harness/text/printable.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // "qsmc" in the file's header says whose tables these are.
@@ -139,4 +139,4 @@ void with_store_errors(const std::string& path, const std::function<void()>& wor
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

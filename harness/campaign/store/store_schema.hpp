@@ -12,7 +12,7 @@ namespace SQLite {
 class Database;
 }
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The file of the store within a campaign's folder.
 inline constexpr const char* kStoreFile = "campaign.sqlite";
@@ -37,4 +37,4 @@ void refuse_newer(int schema, const std::string& path);
 /// Runs `work` and turns what SQLite throws into an IoError that names the store at `path`.
 void with_store_errors(const std::string& path, const std::function<void()>& work);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/plant/mujoco/control_binding.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 /// Adds a force at a point, both in the world's axes, to what is applied to a body.
@@ -55,7 +55,7 @@ double brush(double slip) {
 }  // namespace
 
 AxleForceBinding::AxleForceBinding(const NamedModel& named, const AxleForces& forces,
-                                   const SystemDescription& system)
+                                   const models::SystemDescription& system)
     : model_(named.model),
       body_(element_index(named, mjOBJ_BODY, forces.body)),
       acceleration_(input_index(system, forces.acceleration)),
@@ -162,4 +162,4 @@ void TyreForceBinding::apply(mjData& data) const {
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

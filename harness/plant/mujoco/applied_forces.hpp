@@ -11,7 +11,7 @@
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The forces of Eq. 5-4 on a body in the plane. With v, v_y the speeds along and across it at its
 /// origin, ω its yaw rate, and l the distance of an axle's site before the origin,
@@ -24,7 +24,7 @@ namespace qsmpc {
 class AxleForceBinding {
  public:
   AxleForceBinding(const NamedModel& named, const AxleForces& forces,
-                   const SystemDescription& system);
+                   const models::SystemDescription& system);
 
   /// Adds the forces to data.xfrc_applied. data: after mj_step1. input: input_dim.
   void apply(mjData& data, const Eigen::VectorXd& input) const;
@@ -88,4 +88,4 @@ class TyreForceBinding {
   Eigen::VectorXd loads_;  // N
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

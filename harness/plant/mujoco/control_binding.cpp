@@ -8,10 +8,10 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
-double positive_speed(const PlantConstant& constant, const ParameterMap& parameters) {
+double positive_speed(const PlantConstant& constant, const models::ParameterMap& parameters) {
   const double speed = constant_value(constant, parameters);
   if (speed > 0.0 && std::isfinite(speed)) return speed;
   throw InputError(
@@ -22,7 +22,7 @@ double positive_speed(const PlantConstant& constant, const ParameterMap& paramet
 
 }  // namespace
 
-double constant_value(const PlantConstant& constant, const ParameterMap& parameters) {
+double constant_value(const PlantConstant& constant, const models::ParameterMap& parameters) {
   if (constant.parameter.empty()) return constant.gain;
   const auto found = parameters.find(constant.parameter);
   if (found != parameters.end()) return constant.gain * found->second;
@@ -33,15 +33,15 @@ double constant_value(const PlantConstant& constant, const ParameterMap& paramet
                     .expected = known.empty() ? "none" : "one of " + known});
 }
 
-Eigen::Index input_index(const SystemDescription& system, const std::string& name) {
-  const auto found =
-      std::ranges::find_if(system.inputs, [&](const Coordinate& one) { return one.name == name; });
+Eigen::Index input_index(const models::SystemDescription& system, const std::string& name) {
+  const auto found = std::ranges::find_if(
+      system.inputs, [&](const models::Coordinate& one) { return one.name == name; });
   return found - system.inputs.begin();
 }
 
 ControlBinding::ControlBinding(const NamedModel& named, const mjData& data,
-                               const PlantMapping& mapping, const SystemDescription& system,
-                               const ParameterMap& parameters)
+                               const PlantMapping& mapping, const models::SystemDescription& system,
+                               const models::ParameterMap& parameters)
     : model_(named.model),
       most_change_(
           Eigen::VectorXd::Constant(named.model.nu, std::numeric_limits<double>::infinity())) {
@@ -70,7 +70,8 @@ ControlBinding::ControlBinding(const NamedModel& named, const mjData& data,
 }
 
 void ControlBinding::add(const NamedModel& named, const mjData& data, const AckermannLoop& loop,
-                         const SystemDescription& system, const ParameterMap& parameters) {
+                         const models::SystemDescription& system,
+                         const models::ParameterMap& parameters) {
   const int root =
       model_.body_rootid[model_.jnt_bodyid[scalar_joint(named, loop.wheels.front().joint)]];
   Eigen::Vector3d axle = Eigen::Vector3d::Zero();
@@ -100,7 +101,7 @@ void ControlBinding::add(const NamedModel& named, const mjData& data, const Acke
 }
 
 void ControlBinding::add(const NamedModel& named, const SpeedHoldLoop& loop,
-                         const ParameterMap& parameters) {
+                         const models::ParameterMap& parameters) {
   const int joint = scalar_joint(named, loop.wheel);
   const double speed = positive_speed(loop.speed, parameters);
   speed_holds_.push_back({.speed = speed,
@@ -137,4 +138,4 @@ void ControlBinding::follow(mjData& data, const Eigen::VectorXd& targets) const 
   }
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

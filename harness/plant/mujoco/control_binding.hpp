@@ -11,10 +11,11 @@
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A PlantConstant as a number. Throws InputError on a name that is no parameter.
-[[nodiscard]] double constant_value(const PlantConstant& constant, const ParameterMap& parameters);
+[[nodiscard]] double constant_value(const PlantConstant& constant,
+                                    const models::ParameterMap& parameters);
 
 class ControlBinding {
  public:
@@ -22,7 +23,7 @@ class ControlBinding {
   /// model does not have, a steered wheel that is not before the fixed axle, and a speed that is
   /// not above 0.
   ControlBinding(const NamedModel& named, const mjData& data, const PlantMapping& mapping,
-                 const SystemDescription& system, const ParameterMap& parameters);
+                 const models::SystemDescription& system, const models::ParameterMap& parameters);
 
   /// The controls (nu) that `input` (input_dim) asks for.
   [[nodiscard]] Eigen::VectorXd targets(const Eigen::VectorXd& input) const;
@@ -66,8 +67,9 @@ class ControlBinding {
   };
 
   void add(const NamedModel& named, const mjData& data, const AckermannLoop& loop,
-           const SystemDescription& system, const ParameterMap& parameters);
-  void add(const NamedModel& named, const SpeedHoldLoop& loop, const ParameterMap& parameters);
+           const models::SystemDescription& system, const models::ParameterMap& parameters);
+  void add(const NamedModel& named, const SpeedHoldLoop& loop,
+           const models::ParameterMap& parameters);
 
   const mjModel& model_;
   std::vector<Term> terms_;
@@ -78,6 +80,7 @@ class ControlBinding {
 };
 
 /// Index of the input called `name`, which the system has.
-[[nodiscard]] Eigen::Index input_index(const SystemDescription& system, const std::string& name);
+[[nodiscard]] Eigen::Index input_index(const models::SystemDescription& system,
+                                       const std::string& name);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

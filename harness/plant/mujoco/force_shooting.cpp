@@ -9,7 +9,7 @@
 #include "harness/plant/mujoco/mujoco_errors.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 // What counts as zero beside the deviation of a state, and of a rate that is no state: the latter
@@ -24,7 +24,7 @@ constexpr double kGivesWay = 0.25;  // of a deviation
 
 }  // namespace
 
-ForceShooting::ForceShooting(Simulation& simulation, const SystemDescription& system,
+ForceShooting::ForceShooting(Simulation& simulation, const models::SystemDescription& system,
                              const Eigen::MatrixXd& covariance) {
   const StateBinding& binding = simulation.binding();
   for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
@@ -126,7 +126,8 @@ PeriodPull ForceShooting::solve(Simulation& simulation, const Eigen::VectorXd& d
   double miss = miss_of(reached);
   double step = 1.0;
   for (int run = 0; run < kMostRuns && miss > 1.0 && step > kShortestStep; ++run) {
-    const Eigen::VectorXd change = step * solve_fully_pivoted(sensitivities, goal - reached);
+    const Eigen::VectorXd change =
+        step * models::solve_fully_pivoted(sensitivities, goal - reached);
     if (!change.allFinite() || change.isZero(0.0)) break;
     const Eigen::VectorXd tried = after(simulation, start, best + change);
     // Broyden's update: the sensitivities agree with what was just seen.
@@ -148,4 +149,4 @@ PeriodPull ForceShooting::solve(Simulation& simulation, const Eigen::VectorXd& d
   return pull(best);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

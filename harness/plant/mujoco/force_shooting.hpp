@@ -6,7 +6,7 @@
 
 #include "harness/plant/mujoco/simulation.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A force that is held over the period cannot bring the covariance that the model plans with: it
 /// moves a free body by half of what it changes the velocity by, and one that is held or rolls by
@@ -18,7 +18,7 @@ class ForceShooting {
  public:
   /// covariance: of the disturbances, state_dim x state_dim. Throws InputError where a state with a
   /// variance above 0 cannot be written.
-  ForceShooting(Simulation& simulation, const SystemDescription& system,
+  ForceShooting(Simulation& simulation, const models::SystemDescription& system,
                 const Eigen::MatrixXd& covariance);
 
   /// What pulls the vehicle through the period that `simulation` is about to take (after
@@ -42,4 +42,4 @@ class ForceShooting {
   Eigen::MatrixXd sensitivities_;  // of positions and rates to the unknowns
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include "harness/plant/mujoco/vehicle_variation.hpp"
 #include "harness/scenario/plant_mapping_reader.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kMappingText = "qsmpc";  // name of the text in a MuJoCo file
@@ -55,4 +55,4 @@ LoadedVehicle load_vehicle(const MujocoPlantSetup& setup) {
   return loaded;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

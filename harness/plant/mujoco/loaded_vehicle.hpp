@@ -4,7 +4,7 @@
 #include "harness/plant/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A model with its time step and variation, and the mapping that goes with it.
 struct LoadedVehicle {
@@ -17,4 +17,4 @@ struct LoadedVehicle {
 /// time step is not one that the mapping allows.
 [[nodiscard]] LoadedVehicle load_vehicle(const MujocoPlantSetup& setup);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

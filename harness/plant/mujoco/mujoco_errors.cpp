@@ -4,7 +4,7 @@
 
 #include <mujoco/mujoco.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 thread_local MujocoTrap* innermost = nullptr;
@@ -31,4 +31,4 @@ MujocoTrap::MujocoTrap() : outer_(innermost) {
 
 MujocoTrap::~MujocoTrap() { innermost = outer_; }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// An error of MuJoCo, in its own words. The mjData that was at work must be reset before it is
 /// used again: its stack is not unwound.
@@ -41,4 +41,4 @@ class MujocoTrap {
   MujocoTrap* outer_;
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

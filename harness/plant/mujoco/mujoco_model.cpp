@@ -14,7 +14,7 @@
 #include "harness/errors.hpp"
 #include "harness/plant/mujoco/mujoco_errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kExpectedModel = "a MuJoCo model (MJCF) that loads without a warning";
@@ -69,4 +69,4 @@ std::string mujoco_model_digest(const std::string& path) {
   return fmt::format("{:016x}", crc.checksum());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

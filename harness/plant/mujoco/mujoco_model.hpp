@@ -6,7 +6,7 @@
 
 struct mjModel_;
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct MujocoModelDeleter {
   void operator()(mjModel_* model) const;
@@ -24,4 +24,4 @@ using MujocoModelPtr = std::unique_ptr<mjModel_, MujocoModelDeleter>;
 /// load_mujoco_model.
 [[nodiscard]] std::string mujoco_model_digest(const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

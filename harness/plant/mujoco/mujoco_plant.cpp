@@ -11,7 +11,7 @@
 #include "harness/plant/mujoco/mujoco_errors.hpp"
 #include "harness/plant/mujoco/simulation.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kSamplePeriod = 0.02;  // s; pictures between samples are interpolated
@@ -115,4 +115,4 @@ std::unique_ptr<Plant> make_mujoco_plant(const MujocoPlantSetup& setup) {
   return std::make_unique<MujocoPlant>(setup);
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -1,11 +1,11 @@
 // A MuJoCo vehicle as plant, with the low-level loops that make it follow its system's inputs.
 //
-//   auto plant = qsmpc::make_mujoco_plant({.mjcf = "models/mjcf/dubins_car.xml",
+//   auto plant = qsmpc::harness::make_mujoco_plant({.mjcf = "models/mjcf/dubins_car.xml",
 //                                          .control_period = 0.1,
 //                                          .system = dynamics.description(),
 //                                          .parameters = {{"speed", 1.5}}});
 //   plant->reset(state);
-//   const qsmpc::PlantStep step = plant->advance(input, disturbance);
+//   const qsmpc::harness::PlantStep step = plant->advance(input, disturbance);
 #pragma once
 
 #include <memory>
@@ -19,13 +19,13 @@
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct MujocoPlantSetup {
   std::string mjcf;                       ///< path of the XML
   double control_period = 0.1;            ///< s, a multiple of the model's time step
-  SystemDescription system;               ///< whose states and inputs are mapped
-  ParameterMap parameters;                ///< constants of the system, all of them
+  models::SystemDescription system;       ///< whose states and inputs are mapped
+  models::ParameterMap parameters;        ///< constants of the system, all of them
   std::optional<PlantMapping> mapping{};  ///< else what the XML says of itself
   std::optional<double> time_step{};      ///< s; else the XML's
   PlantVariation variation{};
@@ -60,4 +60,4 @@ struct MujocoPlantSetup {
 /// settle at its speed.
 [[nodiscard]] std::unique_ptr<Plant> make_mujoco_plant(const MujocoPlantSetup& setup);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

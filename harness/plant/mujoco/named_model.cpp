@@ -5,7 +5,7 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 struct ElementNames {
@@ -97,4 +97,4 @@ Eigen::Vector3d anchor_in_body(const mjData& data, int joint, int body) {
   return body_rotation(data, body).transpose() * (anchor - body_origin(data, body));
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

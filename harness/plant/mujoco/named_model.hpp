@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A model and what errors about it name.
 struct NamedModel {
@@ -34,4 +34,4 @@ struct NamedModel {
 /// Anchor of a joint in the axes of `body`, m.
 [[nodiscard]] Eigen::Vector3d anchor_in_body(const mjData& data, int joint, int body);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

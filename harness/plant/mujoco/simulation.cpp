@@ -14,7 +14,7 @@
 #include "harness/plant/mujoco/mujoco_errors.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kSettledSpeedError = 0.01;  // relative
@@ -129,7 +129,7 @@ void Simulation::set_forward_speed(int body, double speed) {
   const Eigen::Vector3d missing =
       (speed - forward_speed(body)) * body_rotation(*data_, body).col(0);
   Eigen::Map<Eigen::VectorXd> velocities(data_->qvel, model_->nv);
-  velocities += smallest_solution(jacobian, missing);
+  velocities += models::smallest_solution(jacobian, missing);
   for (const RollingWheel& wheel : rolling_) data_->qvel[wheel.dof] = speed / wheel.radius;
 }
 
@@ -377,4 +377,4 @@ Eigen::VectorXd Simulation::apparent_masses() {
   return (rows * solved.transpose()).diagonal().cwiseInverse();
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -17,7 +17,7 @@
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 #include "harness/plant/mujoco/state_binding.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 struct MujocoDataDeleter {
   void operator()(mjData* data) const { mj_deleteData(data); }
@@ -105,7 +105,7 @@ class Simulation {
   [[nodiscard]] Eigen::MatrixXd frame(double heading) const;
 
   std::string file_;
-  SystemDescription system_;
+  models::SystemDescription system_;
   MujocoModelPtr model_;
   std::unique_ptr<mjData, MujocoDataDeleter> data_;
   StateBinding states_;
@@ -133,4 +133,4 @@ class Simulation {
   Eigen::MatrixXd pull_axes_;  // of the vehicle then
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/plant/mujoco/mujoco_errors.hpp"
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;  // rad
@@ -48,7 +48,7 @@ double yaw_of(const Eigen::Matrix3d& rotation) {
 }  // namespace
 
 StateBinding::StateBinding(const NamedModel& named, mjData& data, const PlantMapping& mapping,
-                           const SystemDescription& system)
+                           const models::SystemDescription& system)
     : model_(named.model) {
   for (std::size_t i = 0; i < system.states.size(); ++i) {
     const PlantQuantity& quantity = mapping.states.at(system.states[i].name);
@@ -114,12 +114,12 @@ StateBinding::State StateBinding::resolve(const NamedModel& named,
 }
 
 void StateBinding::check_rank(const NamedModel& named, mjData& data,
-                              const SystemDescription& system) const {
+                              const models::SystemDescription& system) const {
   for (const auto* group : {&positions_, &velocities_}) {
     if (group->empty()) continue;
     const Eigen::MatrixXd rows =
         group == &positions_ ? position_jacobian(data) : velocity_jacobian(data);
-    const ColumnRank found = column_rank(rows.transpose(), kRankThreshold);
+    const models::ColumnRank found = models::column_rank(rows.transpose(), kRankThreshold);
     if (found.dependent < 0) continue;
     throw InputError({.file = named.file,
                       .key = "state " + system.states[(*group)[found.dependent]].name,
@@ -260,7 +260,7 @@ void StateBinding::move(mjData& data, const Eigen::VectorXd& change) const {
   const Eigen::VectorXd goal = start + change;
   Eigen::VectorXd left = wanted;
   for (int k = 0; k < kMostMoves && left.cwiseAbs().maxCoeff() > kPlaced; ++k) {
-    const Eigen::VectorXd step = smallest_solution(position_jacobian(data), left);
+    const Eigen::VectorXd step = models::smallest_solution(position_jacobian(data), left);
     if (!step.allFinite()) break;
     mj_integratePos(&model_, data.qpos, step.data(), 1.0);
     mj_kinematics(&model_, &data);
@@ -283,10 +283,10 @@ void StateBinding::accelerate(mjData& data, const Eigen::VectorXd& change, doubl
         Eigen::AngleAxisd(turn, Eigen::Vector3d::UnitZ()).toRotationMatrix() * velocity;
     const Eigen::MatrixXd along = body_jacobian(model_, data, carrier_).position.topRows(2);
     const Eigen::VectorXd missing = turned.head<2>() - along * generalised;
-    generalised += smallest_solution(along, missing);
+    generalised += models::smallest_solution(along, missing);
   }
   if (velocities_.empty() || change(velocities_).isZero(0.0)) return;
-  generalised += smallest_solution(velocity_jacobian(data), change(velocities_));
+  generalised += models::smallest_solution(velocity_jacobian(data), change(velocities_));
 }
 
 void StateBinding::add(mjData& data, const Eigen::VectorXd& change) const {
@@ -309,4 +309,4 @@ bool StateBinding::is_writable(Eigen::Index state) const {
 
 bool StateBinding::has_velocity() const { return !velocities_.empty(); }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Writing goes through Jacobians: positions are moved along, and velocities changed by, the
 /// smallest change of the generalised coordinates that does it. For a free joint, or for joints in
@@ -21,7 +21,7 @@ class StateBinding {
   /// model does not have, a joint that is not slide or hinge, a sensor without that many numbers,
   /// and states of which one determines another.
   StateBinding(const NamedModel& named, mjData& data, const PlantMapping& mapping,
-               const SystemDescription& system);
+               const models::SystemDescription& system);
 
   [[nodiscard]] Eigen::Index size() const { return static_cast<Eigen::Index>(states_.size()); }
 
@@ -83,7 +83,8 @@ class StateBinding {
   void move(mjData& data, const Eigen::VectorXd& change) const;
   void accelerate(mjData& data, const Eigen::VectorXd& change, double turn,
                   const Eigen::Vector3d& velocity) const;
-  void check_rank(const NamedModel& named, mjData& data, const SystemDescription& system) const;
+  void check_rank(const NamedModel& named, mjData& data,
+                  const models::SystemDescription& system) const;
 
   const mjModel& model_;
   std::vector<State> states_;
@@ -93,4 +94,4 @@ class StateBinding {
   Eigen::Index heading_ = -1;  // the state that is the carrier's heading
 };
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace {
 
 void refuse(const NamedModel& named, const char* what, double factor, const char* expected) {
@@ -97,4 +97,4 @@ void vary_vehicle(const NamedModel& named, mjModel& model, const PlantMapping& m
   mj_setConst(&model, data.get());
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include "harness/plant/plant_variation.hpp"
 #include "harness/scenario/plant_mapping.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// Changes the friction of all geoms, the mass and inertia of all bodies, and the distance between
 /// the axles that `mapping` names (steered wheels before the fixed axle; sites of axle forces about
@@ -17,4 +17,4 @@ namespace qsmpc {
 void vary_vehicle(const NamedModel& named, mjModel& model, const PlantMapping& mapping,
                   const PlantVariation& variation);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

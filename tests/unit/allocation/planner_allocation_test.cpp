@@ -10,8 +10,10 @@
 #include "controller/planning/planner.hpp"
 #include "tests/unit/allocation/allocations.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_allocation_test {
+
+using namespace testing;
 
 TEST(AllocationCount, sees_every_kind_of_allocation) {
   std::vector<double> numbers;
@@ -44,7 +46,7 @@ std::string name_of(const Case& options) {
          (options.obstacles ? "_obstacles_" : "_free_") + std::to_string(options.points);
 }
 
-PlannerSettings settings_of(const Case& options, const Dynamics& dynamics) {
+PlannerSettings settings_of(const Case& options, const models::Dynamics& dynamics) {
   const Eigen::Index dim = dynamics.state_dim();
   const bool car = options.system == "dubins";
   PlannerSettings settings;
@@ -80,7 +82,7 @@ PlannerSettings settings_of(const Case& options, const Dynamics& dynamics) {
   return settings;
 }
 
-Gaussian belief_of(const Dynamics& dynamics) {
+Gaussian belief_of(const models::Dynamics& dynamics) {
   const Eigen::Index dim = dynamics.state_dim();
   Gaussian belief{.mean = Eigen::VectorXd::Zero(dim),
                   .covariance = 0.005 * Eigen::MatrixXd::Identity(dim, dim)};
@@ -94,7 +96,7 @@ class PlannerAllocations : public ::testing::TestWithParam<Case> {};
 TEST_P(PlannerAllocations, none_after_a_rehearsal_along_the_path) {
   constexpr int kRehearsal = 12;
   constexpr int kPlans = 12;
-  const auto dynamics = make_dynamics(GetParam().system, {}, 0.1);
+  const auto dynamics = models::make_dynamics(GetParam().system, {}, 0.1);
   Planner planner(*dynamics, settings_of(GetParam(), *dynamics));
   Gaussian belief = belief_of(*dynamics);
   for (int n = 0; n < kRehearsal + kPlans; ++n) {
@@ -114,7 +116,7 @@ TEST_P(PlannerAllocations, none_after_a_rehearsal_along_the_path) {
 
 TEST_P(PlannerAllocations, none_for_the_same_beliefs_again) {
   constexpr int kPlans = 6;
-  const auto dynamics = make_dynamics(GetParam().system, {}, 0.1);
+  const auto dynamics = models::make_dynamics(GetParam().system, {}, 0.1);
   Planner planner(*dynamics, settings_of(GetParam(), *dynamics));
   for (int rehearsal = 0; rehearsal < 4; ++rehearsal) {
     planner.reset();
@@ -151,4 +153,4 @@ INSTANTIATE_TEST_SUITE_P(cases, PlannerAllocations, ::testing::ValuesIn(cases())
                          [](const auto& information) { return name_of(information.param); });
 
 }  // namespace planner_allocation_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -5,7 +5,7 @@
 #include "harness/scenario/shipped_files.hpp"
 #include "tests/unit/campaign/campaign_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace broken_campaign_test {
 
 using ::testing::HasSubstr;
@@ -274,4 +274,4 @@ TEST(HostileCampaign, many_wrong_variants_give_a_bounded_number_of_problems) {
 }
 
 }  // namespace broken_campaign_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

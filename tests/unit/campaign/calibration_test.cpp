@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace calibration_test {
 
 const CalibrationBin& bin_of(const std::vector<CalibrationBin>& bins, double probability) {
@@ -161,4 +161,4 @@ TEST(Calibration, finds_certificates_that_promise_half_of_what_is_true) {
 }
 
 }  // namespace calibration_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

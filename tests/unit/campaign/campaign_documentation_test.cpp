@@ -6,7 +6,7 @@
 
 #include "tests/unit/campaign/campaign_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace campaign_documentation_test {
 
 using ::testing::HasSubstr;
@@ -77,4 +77,4 @@ TEST(HostileCampaign, a_damaged_file_is_loaded_or_refused_and_nothing_else) {
 }
 
 }  // namespace campaign_documentation_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

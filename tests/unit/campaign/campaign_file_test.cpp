@@ -10,7 +10,7 @@
 #include "models/constants.hpp"
 #include "tests/unit/campaign/campaign_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace campaign_campaign_file_test {
 
 using ::testing::ElementsAre;
@@ -218,4 +218,4 @@ TEST(ShippedCampaigns, drive_what_they_say) {
 }
 
 }  // namespace campaign_campaign_file_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,8 +15,8 @@
 namespace qsmpc::testing {
 
 /// Drives of at most three short periods, with few points.
-inline Scenario quick_scenario(int horizon = 3) {
-  return parse_scenario(
+inline harness::Scenario quick_scenario(int horizon = 3) {
+  return harness::parse_scenario(
       fmt::format("name: quick\n"
                   "model: {{system: dubins, speed: 1.5}}\n"
                   "plant: {{kind: analytic}}\n"
@@ -36,7 +36,7 @@ inline Scenario quick_scenario(int horizon = 3) {
                   horizon));
 }
 
-inline CampaignVariant quick_variant(const std::string& name, int horizon = 3) {
+inline harness::CampaignVariant quick_variant(const std::string& name, int horizon = 3) {
   return {.name = name,
           .scenario = "quick.yaml",
           .settings = name,
@@ -45,14 +45,14 @@ inline CampaignVariant quick_variant(const std::string& name, int horizon = 3) {
           .resolved = quick_scenario(horizon)};
 }
 
-inline Campaign quick_campaign(std::int64_t seeds = 4) {
+inline harness::Campaign quick_campaign(std::int64_t seeds = 4) {
   return {.name = "quick",
           .variants = {quick_variant("three", 3), quick_variant("two", 2)},
           .seeds = {.first = 5, .count = seeds}};
 }
 
-inline EpisodeRow example_row(std::int64_t variant, std::uint64_t seed,
-                              const std::string& outcome = "reached") {
+inline harness::EpisodeRow example_row(std::int64_t variant, std::uint64_t seed,
+                                       const std::string& outcome = "reached") {
   const double x = 0.1 * static_cast<double>(seed % 100) + static_cast<double>(variant);
   return {.variant = variant,
           .seed = seed,

@@ -10,7 +10,7 @@
 #include "harness/errors.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// A folder with the scenarios a.yaml ("test", line 5 the last), b.yaml ("other") and whatever a
 /// test adds.
@@ -60,4 +60,4 @@ inline std::vector<std::string> names_of(const Campaign& campaign) {
   return names;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace campaign_plan_test {
 
 using ::testing::HasSubstr;
@@ -67,4 +67,4 @@ TEST(CampaignPlan, is_the_same_as_json) {
 }
 
 }  // namespace campaign_plan_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 
 #include "tests/support/example_trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace episode_row_test {
 
 TEST(EpisodeRow, has_a_period_for_every_step_that_the_plant_came_through) {
@@ -48,4 +48,4 @@ TEST(EpisodeRow, is_a_failure_unless_the_target_was_reached_and_no_state_was_uns
 }
 
 }  // namespace episode_row_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/errors.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace folder_lock_test {
 
 using ::testing::HasSubstr;
@@ -73,4 +73,4 @@ TEST(FolderLock, times_are_told_in_utc) {
 TEST(FolderLock, says_where_it_cannot_be) { EXPECT_THROW(FolderLock{"/no/such/folder"}, IoError); }
 
 }  // namespace folder_lock_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -14,7 +14,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace merge_test {
 
 namespace fs = std::filesystem;
@@ -37,7 +37,7 @@ class Merge : public ::testing::Test {
       for (std::int64_t i = 0; i < campaign.seeds.size(); ++i) {
         const std::uint64_t seed = campaign.seeds.at(i);
         if (!part.has(i) || std::ranges::find(without, seed) != without.end()) continue;
-        store.add(example_row(store.variant_ids()[v], seed), false);
+        store.add(testing::example_row(store.variant_ids()[v], seed), false);
       }
     }
     return folder;
@@ -59,7 +59,7 @@ class Merge : public ::testing::Test {
 };
 
 TEST_F(Merge, joins_what_shards_drove_into_what_one_run_drives) {
-  Campaign campaign = quick_campaign(5);
+  Campaign campaign = testing::quick_campaign(5);
   campaign.traces = TraceKeeping::kAll;
   const TemporaryFolder whole;
   (void)run_campaign(campaign, whole.path(), {});
@@ -102,7 +102,7 @@ TEST_F(Merge, joins_what_shards_drove_into_what_one_run_drives) {
 }
 
 TEST_F(Merge, variants_may_be_numbered_differently) {
-  const Campaign campaign = quick_campaign(2);
+  const Campaign campaign = testing::quick_campaign(2);
   Campaign before = campaign;
   before.variants = {testing::quick_variant("old", 5), campaign.variants[1]};
   const std::string first = shard(before, {.index = 1, .count = 2});
@@ -110,7 +110,7 @@ TEST_F(Merge, variants_may_be_numbered_differently) {
     Store store(first, stored_campaign(campaign, {.index = 1, .count = 2}),
                 stored_variants(campaign, {"", ""}), campaign.seeds, /*update=*/true);
     ASSERT_EQ(store.variant_ids(), (std::vector<std::int64_t>{2, 1}));
-    store.add(example_row(2, 5), false);
+    store.add(testing::example_row(2, 5), false);
   }
   merge_shards({shard(campaign, {.index = 2, .count = 2}), first}, out());
   const StoreReader merged(out());
@@ -118,18 +118,19 @@ TEST_F(Merge, variants_may_be_numbered_differently) {
   std::vector<double> costs;
   merged.for_each_episode(merged.variants()[0].id,
                           [&](const EpisodeRow& row) { costs.push_back(row.cost); });
-  EXPECT_EQ(costs, (std::vector<double>{example_row(2, 5).cost, example_row(0, 6).cost}));
+  EXPECT_EQ(costs, (std::vector<double>{testing::example_row(2, 5).cost,
+                                        testing::example_row(0, 6).cost}));
 }
 
 TEST_F(Merge, says_which_shard_is_missing) {
-  const Campaign campaign = quick_campaign();
+  const Campaign campaign = testing::quick_campaign();
   const std::string first = shard(campaign, {.index = 1, .count = 3});
   const std::string third = shard(campaign, {.index = 3, .count = 3});
   EXPECT_THAT(refusal({first, third}), HasSubstr("without shard 2/3"));
 }
 
 TEST_F(Merge, says_which_shard_is_double) {
-  const Campaign campaign = quick_campaign();
+  const Campaign campaign = testing::quick_campaign();
   const std::string first = shard(campaign, {.index = 1, .count = 2});
   const std::string same = shard(campaign, {.index = 1, .count = 2});
   const std::string second = shard(campaign, {.index = 2, .count = 2});
@@ -138,37 +139,37 @@ TEST_F(Merge, says_which_shard_is_double) {
 }
 
 TEST_F(Merge, says_which_episode_is_missing) {
-  const Campaign campaign = quick_campaign();
+  const Campaign campaign = testing::quick_campaign();
   const std::string first = shard(campaign, {.index = 1, .count = 2}, {7});
   EXPECT_THAT(refusal({first, shard(campaign, {.index = 2, .count = 2})}),
               HasSubstr("variant three: found no episode with seed 7"));
 }
 
 TEST_F(Merge, says_which_episode_is_double) {
-  const Campaign campaign = quick_campaign();
+  const Campaign campaign = testing::quick_campaign();
   const std::string second = shard(campaign, {.index = 2, .count = 2});
   {
     Store store(second, stored_campaign(campaign, {.index = 2, .count = 2}),
                 stored_variants(campaign, {"", ""}), campaign.seeds, false);
-    store.add(example_row(1, 5), false);
+    store.add(testing::example_row(1, 5), false);
   }
   EXPECT_THAT(refusal({shard(campaign, {.index = 1, .count = 2}), second}),
               HasSubstr("found variant two, seed 5, which another shard has, too"));
 }
 
 TEST_F(Merge, says_which_episode_is_foreign) {
-  const Campaign campaign = quick_campaign();
+  const Campaign campaign = testing::quick_campaign();
   const std::string only = shard(campaign, {});
   {
     Store store(only, stored_campaign(campaign, {}), stored_variants(campaign, {"", ""}),
                 campaign.seeds, false);
-    store.add(example_row(1, 99), false);
+    store.add(testing::example_row(1, 99), false);
   }
   EXPECT_THAT(refusal({only}), HasSubstr("variant two: found an episode with the foreign seed 99"));
 }
 
 TEST_F(Merge, takes_listed_seeds_in_any_order) {
-  Campaign campaign = quick_campaign();
+  Campaign campaign = testing::quick_campaign();
   campaign.seeds = {.listed = {9, 2, 30, 4}};
   const MergeResult merged = merge_shards(
       {shard(campaign, {.index = 1, .count = 2}), shard(campaign, {.index = 2, .count = 2})},
@@ -177,23 +178,23 @@ TEST_F(Merge, takes_listed_seeds_in_any_order) {
 }
 
 TEST_F(Merge, refuses_shards_of_other_campaigns) {
-  Campaign other = quick_campaign();
+  Campaign other = testing::quick_campaign();
   other.name = "other";
-  const std::string first = shard(quick_campaign(), {.index = 1, .count = 2});
+  const std::string first = shard(testing::quick_campaign(), {.index = 1, .count = 2});
   EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
               HasSubstr("name: found other, expected quick"));
-  other = quick_campaign();
+  other = testing::quick_campaign();
   other.variants[0] = testing::quick_variant("three", 4);
   EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
               HasSubstr("variant three: found another scenario"));
 }
 
 TEST_F(Merge, never_writes_over_a_campaign) {
-  const std::string only = shard(quick_campaign(), {});
+  const std::string only = shard(testing::quick_campaign(), {});
   merge_shards({only}, out());
   EXPECT_THROW(merge_shards({only}, out()), InputError);
   EXPECT_EQ(StoreReader(out()).campaign().episodes, 8);
 }
 
 }  // namespace merge_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/random/random_numbers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace paired_difference_test {
 
 EpisodeRow row(std::uint64_t seed, const std::string& outcome, double cost,
@@ -183,4 +183,4 @@ TEST(BootstrapMean, has_an_interval_that_covers_the_true_mean) {
 }
 
 }  // namespace paired_difference_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

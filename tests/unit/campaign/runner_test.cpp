@@ -15,7 +15,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace runner_test {
 
 namespace fs = std::filesystem;
@@ -51,7 +51,7 @@ std::vector<std::uint64_t> seeds_in(const std::string& folder) {
 
 TEST(CampaignRunner, drives_every_variant_with_every_seed) {
   const TemporaryFolder folder;
-  const CampaignProgress end = run_campaign(quick_campaign(), folder.path(), {});
+  const CampaignProgress end = run_campaign(testing::quick_campaign(), folder.path(), {});
   EXPECT_EQ(end.total, 8);
   EXPECT_EQ(end.done, 8);
   EXPECT_EQ(end.fresh, 8);
@@ -67,14 +67,14 @@ TEST(CampaignRunner, drives_every_variant_with_every_seed) {
 TEST(CampaignRunner, rows_do_not_depend_on_the_number_of_jobs) {
   const TemporaryFolder one;
   const TemporaryFolder three;
-  (void)run_campaign(quick_campaign(6), one.path(), {.jobs = 1});
-  (void)run_campaign(quick_campaign(6), three.path(), {.jobs = 3});
+  (void)run_campaign(testing::quick_campaign(6), one.path(), {.jobs = 1});
+  (void)run_campaign(testing::quick_campaign(6), three.path(), {.jobs = 3});
   EXPECT_EQ(rows_in(one.path()), rows_in(three.path()));
 }
 
 TEST(CampaignRunner, gives_the_variants_of_a_seed_the_same_random_numbers) {
   const TemporaryFolder folder;
-  Campaign campaign = quick_campaign(3);
+  Campaign campaign = testing::quick_campaign(3);
   campaign.variants[1].resolved = campaign.variants[0].resolved;
   (void)run_campaign(campaign, folder.path(), {});
   int pairs = 0;
@@ -94,11 +94,11 @@ TEST(CampaignRunner, goes_on_where_it_was_stopped) {
     episodes = static_cast<int>(progress.fresh);
   };
   options.should_stop = [&] { return episodes >= 3; };
-  EXPECT_EQ(run_campaign(quick_campaign(), stopped.path(), options).done, 3);
-  const CampaignProgress end = run_campaign(quick_campaign(), stopped.path(), {});
+  EXPECT_EQ(run_campaign(testing::quick_campaign(), stopped.path(), options).done, 3);
+  const CampaignProgress end = run_campaign(testing::quick_campaign(), stopped.path(), {});
   EXPECT_EQ(end.done, 8);
   EXPECT_EQ(end.fresh, 5);
-  (void)run_campaign(quick_campaign(), whole.path(), {});
+  (void)run_campaign(testing::quick_campaign(), whole.path(), {});
   EXPECT_EQ(rows_in(stopped.path()), rows_in(whole.path()));
 }
 
@@ -108,13 +108,13 @@ TEST(CampaignRunner, an_episode_that_is_given_up_is_not_stored) {
   options.should_hurry = [] { return true; };
   std::atomic<int> asked = 0;
   options.should_stop = [&] { return asked++ > 0; };
-  EXPECT_EQ(run_campaign(quick_campaign(), folder.path(), options).done, 0);
+  EXPECT_EQ(run_campaign(testing::quick_campaign(), folder.path(), options).done, 0);
 }
 
 TEST(CampaignRunner, two_shards_have_each_seed_once) {
   const TemporaryFolder first;
   const TemporaryFolder second;
-  const Campaign campaign = quick_campaign(5);
+  const Campaign campaign = testing::quick_campaign(5);
   (void)run_campaign(campaign, first.path(), {.shard = {.index = 1, .count = 2}});
   const CampaignProgress end =
       run_campaign(campaign, second.path(), {.shard = {.index = 2, .count = 2}});
@@ -125,7 +125,7 @@ TEST(CampaignRunner, two_shards_have_each_seed_once) {
 
 TEST(CampaignRunner, keeps_all_traces_when_asked_each_with_its_episode) {
   const TemporaryFolder folder;
-  Campaign campaign = quick_campaign(2);
+  Campaign campaign = testing::quick_campaign(2);
   campaign.traces = TraceKeeping::kAll;
   (void)run_campaign(campaign, folder.path(), {.jobs = 2});
   for (const EpisodeRow& row : rows_in(folder.path())) {
@@ -139,7 +139,7 @@ TEST(CampaignRunner, keeps_all_traces_when_asked_each_with_its_episode) {
 
 TEST(CampaignRunner, keeps_the_traces_of_failures_and_of_a_sample) {
   const TemporaryFolder folder;
-  Campaign campaign = quick_campaign(4);
+  Campaign campaign = testing::quick_campaign(4);
   campaign.variants.pop_back();
   campaign.traces = TraceKeeping::kFailures;
   campaign.trace_sample = 1;
@@ -155,13 +155,13 @@ TEST(CampaignRunner, keeps_the_traces_of_failures_and_of_a_sample) {
 
 TEST(CampaignRunner, keeps_no_trace_unless_asked) {
   const TemporaryFolder folder;
-  (void)run_campaign(quick_campaign(1), folder.path(), {});
+  (void)run_campaign(testing::quick_campaign(1), folder.path(), {});
   EXPECT_FALSE(fs::exists(folder / "episodes"));
 }
 
 /// One whose car is thrown out of the simulator's range by its disturbance.
 Campaign faulty_campaign() {
-  Campaign campaign = quick_campaign(2);
+  Campaign campaign = testing::quick_campaign(2);
   campaign.variants.pop_back();
   Scenario& scenario = campaign.variants[0].resolved;
   scenario = with_plant(scenario, "mujoco_car");
@@ -202,7 +202,7 @@ TEST(CampaignRunner, refuses_a_vehicle_that_changed_since_the_campaign_began) {
                                               "</mujoco>",
                                               mass));
   };
-  Campaign campaign = quick_campaign(1);
+  Campaign campaign = testing::quick_campaign(1);
   campaign.variants.pop_back();
   campaign.variants[0].resolved.plant = {.kind = "mujoco", .mjcf = vehicle("1")};
   CampaignOptions none;
@@ -216,13 +216,13 @@ TEST(CampaignRunner, refuses_a_vehicle_that_changed_since_the_campaign_began) {
 TEST(CampaignRunner, a_folder_has_one_runner_at_a_time) {
   const TemporaryFolder folder;
   const FolderLock other(folder.path());
-  EXPECT_THROW((void)run_campaign(quick_campaign(), folder.path(), {}), IoError);
+  EXPECT_THROW((void)run_campaign(testing::quick_campaign(), folder.path(), {}), IoError);
   EXPECT_FALSE(fs::exists(folder / "campaign.sqlite"));
 }
 
 TEST(CampaignRunner, an_update_removes_the_traces_of_what_it_drops) {
   const TemporaryFolder folder;
-  Campaign campaign = quick_campaign(2);
+  Campaign campaign = testing::quick_campaign(2);
   campaign.traces = TraceKeeping::kAll;
   (void)run_campaign(campaign, folder.path(), {});
   campaign.seeds.count = 1;
@@ -238,4 +238,4 @@ TEST(CampaignRunner, an_update_removes_the_traces_of_what_it_drops) {
 }
 
 }  // namespace runner_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -16,7 +16,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace statistics_test {
 
 using Json = nlohmann::json;
@@ -215,4 +215,4 @@ TEST(CampaignCsv, has_every_episode_with_numbers_that_read_back_as_they_were) {
 }
 
 }  // namespace statistics_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace status_test {
 
 using testing::example_row;
@@ -26,7 +26,7 @@ class Status : public ::testing::Test {
                                     stored_variants(campaign, {"", ""}), campaign.seeds, false);
   }
   void add_now(std::uint64_t seed, const std::string& outcome) {
-    EpisodeRow row = example_row(0, seed, outcome);
+    EpisodeRow row = testing::example_row(0, seed, outcome);
     row.timing.finished_at = static_cast<double>(std::time(nullptr));
     store->add(row, false);
   }
@@ -49,7 +49,7 @@ TEST_F(Status, counts_what_is_done_while_the_store_is_written) {
 
 TEST_F(Status, tells_who_works_on_it_and_how_fast) {
   const FolderLock lock(folder.path());
-  EpisodeRow old = example_row(0, 7);
+  EpisodeRow old = testing::example_row(0, 7);
   old.timing.finished_at = 1e6;
   store->add(old, false);
   add_now(5, "reached");
@@ -88,4 +88,4 @@ TEST(Durations, are_told_in_their_two_largest_units) {
 }
 
 }  // namespace status_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

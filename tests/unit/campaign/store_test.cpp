@@ -15,7 +15,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace store_test {
 
 using ::testing::ElementsAre;
@@ -58,20 +58,20 @@ class StoreTest : public ::testing::Test {
 
 TEST_F(StoreTest, gives_back_the_episodes_that_were_added_by_seed) {
   {
-    Store store = open(quick_campaign());
-    store.add(example_row(0, 7), false);
-    store.add(example_row(0, 5, "fault"), false);
-    store.add(example_row(1, 5, "timeout"), false);
+    Store store = open(testing::quick_campaign());
+    store.add(testing::example_row(0, 7), false);
+    store.add(testing::example_row(0, 5, "fault"), false);
+    store.add(testing::example_row(1, 5, "timeout"), false);
   }
-  EpisodeRow fifth = example_row(0, 5, "fault");
-  EpisodeRow seventh = example_row(0, 7);
+  EpisodeRow fifth = testing::example_row(0, 5, "fault");
+  EpisodeRow seventh = testing::example_row(0, 7);
   fifth.periods.clear();
   seventh.periods.clear();
   EXPECT_THAT(rows_of(0), ElementsAre(fifth, seventh));
 }
 
 TEST_F(StoreTest, gives_back_the_periods_in_their_order) {
-  open(quick_campaign()).add(example_row(1, 6), false);
+  open(testing::quick_campaign()).add(testing::example_row(1, 6), false);
   std::vector<PeriodRow> periods;
   StoreReader(folder.path())
       .for_each_period(1, [&](std::uint64_t seed, std::int64_t period, const PeriodRow& row) {
@@ -79,44 +79,44 @@ TEST_F(StoreTest, gives_back_the_periods_in_their_order) {
         EXPECT_EQ(period, std::ssize(periods));
         periods.push_back(row);
       });
-  EXPECT_EQ(periods, example_row(1, 6).periods);
+  EXPECT_EQ(periods, testing::example_row(1, 6).periods);
 }
 
 TEST_F(StoreTest, keeps_infinities_and_what_is_not_a_number) {
-  EpisodeRow row = example_row(0, 5);
+  EpisodeRow row = testing::example_row(0, 5);
   row.min_clearance = std::numeric_limits<double>::infinity();
   row.cost = std::numeric_limits<double>::quiet_NaN();
-  open(quick_campaign()).add(row, false);
+  open(testing::quick_campaign()).add(row, false);
   const EpisodeRow again = rows_of(0).front();
   EXPECT_EQ(again.min_clearance, row.min_clearance);
   EXPECT_TRUE(std::isnan(again.cost));
 }
 
 TEST_F(StoreTest, pairs_the_episodes_of_two_variants_by_seed) {
-  Store store = open(quick_campaign());
-  for (const std::uint64_t seed : {8U, 5U, 6U}) store.add(example_row(0, seed), false);
-  for (const std::uint64_t seed : {7U, 6U, 8U}) store.add(example_row(1, seed), false);
+  Store store = open(testing::quick_campaign());
+  for (const std::uint64_t seed : {8U, 5U, 6U}) store.add(testing::example_row(0, seed), false);
+  for (const std::uint64_t seed : {7U, 6U, 8U}) store.add(testing::example_row(1, seed), false);
   std::vector<std::uint64_t> seeds;
   StoreReader(folder.path()).for_each_pair(1, 0, [&](const EpisodeRow& a, const EpisodeRow& b) {
     EXPECT_EQ(a.seed, b.seed);
     EXPECT_EQ(a.variant, 1);
     EXPECT_EQ(b.variant, 0);
-    EXPECT_EQ(b.cost, example_row(0, b.seed).cost);
+    EXPECT_EQ(b.cost, testing::example_row(0, b.seed).cost);
     seeds.push_back(a.seed);
   });
   EXPECT_THAT(seeds, ElementsAre(6U, 8U));
 }
 
 TEST_F(StoreTest, sorts_numbers_of_the_episodes_that_have_them) {
-  Store store = open(quick_campaign());
-  store.add(example_row(0, 7), false);
-  store.add(example_row(0, 5), false);
-  store.add(example_row(0, 6, "fault"), false);
-  store.add(example_row(0, 8, "timeout"), false);
+  Store store = open(testing::quick_campaign());
+  store.add(testing::example_row(0, 7), false);
+  store.add(testing::example_row(0, 5), false);
+  store.add(testing::example_row(0, 6, "fault"), false);
+  store.add(testing::example_row(0, 8, "timeout"), false);
   const StoreReader reader(folder.path());
   std::vector<double> times;
   reader.for_each_sorted(0, EpisodeNumber::kTimeToTarget, [&](double t) { times.push_back(t); });
-  EXPECT_THAT(times, ElementsAre(0.5, *example_row(0, 7).time_to_target));
+  EXPECT_THAT(times, ElementsAre(0.5, *testing::example_row(0, 7).time_to_target));
   std::vector<double> clearances;
   reader.for_each_sorted(0, EpisodeNumber::kMinClearance,
                          [&](double c) { clearances.push_back(c); });
@@ -129,16 +129,16 @@ TEST_F(StoreTest, sorts_numbers_of_the_episodes_that_have_them) {
 }
 
 TEST_F(StoreTest, never_holds_an_episode_twice) {
-  Store store = open(quick_campaign());
-  store.add(example_row(0, 5), false);
-  EXPECT_THROW(store.add(example_row(0, 5), false), IoError);
+  Store store = open(testing::quick_campaign());
+  store.add(testing::example_row(0, 5), false);
+  EXPECT_THROW(store.add(testing::example_row(0, 5), false), IoError);
   EXPECT_EQ(rows_of(0).size(), 1U);
 }
 
 TEST_F(StoreTest, replaces_an_episode_with_its_periods_when_told) {
-  Store store = open(quick_campaign());
-  store.add(example_row(0, 5, "fault"), false);
-  EpisodeRow shorter = example_row(0, 5);
+  Store store = open(testing::quick_campaign());
+  store.add(testing::example_row(0, 5, "fault"), false);
+  EpisodeRow shorter = testing::example_row(0, 5);
   shorter.periods.pop_back();
   store.add(shorter, true);
   EXPECT_THAT(store.outcomes(), ElementsAre(Pair("reached", 1)));
@@ -148,52 +148,53 @@ TEST_F(StoreTest, replaces_an_episode_with_its_periods_when_told) {
 }
 
 TEST_F(StoreTest, a_reader_sees_one_state_while_episodes_are_added) {
-  Store store = open(quick_campaign());
-  store.add(example_row(0, 5), false);
+  Store store = open(testing::quick_campaign());
+  store.add(testing::example_row(0, 5), false);
   const StoreReader reader(folder.path());
-  store.add(example_row(0, 6), false);
+  store.add(testing::example_row(0, 6), false);
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
   EXPECT_THAT(StoreReader(folder.path()).outcomes(), ElementsAre(Pair("reached", 2)));
 }
 
 TEST_F(StoreTest, counts_what_was_finished_lately) {
-  Store store = open(quick_campaign());
-  for (const std::uint64_t seed : {5U, 6U, 7U}) store.add(example_row(0, seed), false);
+  Store store = open(testing::quick_campaign());
+  for (const std::uint64_t seed : {5U, 6U, 7U}) store.add(testing::example_row(0, seed), false);
   const StoreReader reader(folder.path());
   EXPECT_EQ(reader.finished_since(0.0), 3);
-  EXPECT_EQ(reader.finished_since(example_row(0, 6).timing.finished_at), 2);
+  EXPECT_EQ(reader.finished_since(testing::example_row(0, 6).timing.finished_at), 2);
 }
 
 TEST_F(StoreTest, goes_on_with_the_same_campaign) {
-  open(quick_campaign()).add(example_row(0, 5), false);
-  const Store again = open(quick_campaign());
+  open(testing::quick_campaign()).add(testing::example_row(0, 5), false);
+  const Store again = open(testing::quick_campaign());
   EXPECT_FALSE(again.update().changed);
   EXPECT_EQ(again.outcome(0, 5), "reached");
   EXPECT_EQ(again.outcome(0, 6), std::nullopt);
 }
 
 TEST_F(StoreTest, refuses_a_changed_campaign_and_says_what_changed) {
-  open(quick_campaign());
-  Campaign other = quick_campaign();
+  open(testing::quick_campaign());
+  Campaign other = testing::quick_campaign();
   other.name = "slow";
   EXPECT_THAT(refusal(other), HasSubstr("name: found quick, expected slow"));
-  EXPECT_THAT(refusal(quick_campaign(9)), HasSubstr("seeds: found 5 to 8, expected 5 to 13"));
-  EXPECT_THAT(refusal(quick_campaign(), {.index = 1, .count = 2}),
+  EXPECT_THAT(refusal(testing::quick_campaign(9)),
+              HasSubstr("seeds: found 5 to 8, expected 5 to 13"));
+  EXPECT_THAT(refusal(testing::quick_campaign(), {.index = 1, .count = 2}),
               HasSubstr("--shard: found 1/1, expected 1/2"));
-  other = quick_campaign();
+  other = testing::quick_campaign();
   other.traces = TraceKeeping::kAll;
   EXPECT_THAT(refusal(other), HasSubstr("traces: found none, expected all"));
-  other = quick_campaign();
+  other = testing::quick_campaign();
   other.variants.pop_back();
   EXPECT_THAT(refusal(other), HasSubstr("variants: found 2 of them, expected 1"));
-  other = quick_campaign();
+  other = testing::quick_campaign();
   other.variants[1] = testing::quick_variant("two", 4);
   EXPECT_THAT(refusal(other), HasSubstr("variant two: found   horizon: 2, expected   horizon: 4"));
   EXPECT_THAT(refusal(other), HasSubstr("--update"));
 }
 
 TEST_F(StoreTest, refuses_a_vehicle_that_changed) {
-  const Campaign campaign = quick_campaign();
+  const Campaign campaign = testing::quick_campaign();
   const auto open_with = [&](const std::string& digest) {
     (void)Store(folder.path(), stored_campaign(campaign, {}),
                 stored_variants(campaign, {digest, digest}), campaign.seeds, false);
@@ -205,15 +206,15 @@ TEST_F(StoreTest, refuses_a_vehicle_that_changed) {
 
 TEST_F(StoreTest, an_update_keeps_what_both_campaigns_ask_for_and_drops_the_rest) {
   {
-    Store store = open(quick_campaign());
+    Store store = open(testing::quick_campaign());
     for (const std::uint64_t seed : {5U, 6U, 8U}) {
-      EpisodeRow row = example_row(0, seed);
+      EpisodeRow row = testing::example_row(0, seed);
       row.trace = fmt::format("episodes/0/{}", seed);
       store.add(row, false);
-      store.add(example_row(1, seed), false);
+      store.add(testing::example_row(1, seed), false);
     }
   }
-  Campaign other = quick_campaign();
+  Campaign other = testing::quick_campaign();
   other.seeds = {.first = 6, .count = 2};
   other.variants[1] = testing::quick_variant("two", 4);  // other settings of the same name
   other.variants.insert(other.variants.begin(), testing::quick_variant("new", 5));
@@ -234,11 +235,12 @@ TEST_F(StoreTest, an_update_keeps_what_both_campaigns_ask_for_and_drops_the_rest
 }
 
 TEST_F(StoreTest, an_update_keeps_the_listed_seeds_of_a_shard) {
-  Campaign listed = quick_campaign();
+  Campaign listed = testing::quick_campaign();
   listed.seeds = {.listed = {9, 5, 7, 6}};
   {
     Store store = open(listed);
-    for (const std::uint64_t seed : listed.seeds.listed) store.add(example_row(0, seed), false);
+    for (const std::uint64_t seed : listed.seeds.listed)
+      store.add(testing::example_row(0, seed), false);
   }
   const Store store = open(listed, /*update=*/true, {.index = 2, .count = 2});
   EXPECT_EQ(store.update().kept, 2);
@@ -248,10 +250,10 @@ TEST_F(StoreTest, an_update_keeps_the_listed_seeds_of_a_shard) {
 }
 
 TEST_F(StoreTest, refuses_a_newer_schema_and_leaves_the_file_as_it_is) {
-  open(quick_campaign()).fold();
+  open(testing::quick_campaign()).fold();
   database().exec("PRAGMA user_version = 99");
   const auto size = std::filesystem::file_size(path());
-  EXPECT_THAT(refusal(quick_campaign()), HasSubstr("schema 99, made by a newer qsmpc"));
+  EXPECT_THAT(refusal(testing::quick_campaign()), HasSubstr("schema 99, made by a newer qsmpc"));
   EXPECT_THROW(StoreReader(folder.path()), InputError);
   EXPECT_EQ(std::filesystem::file_size(path()), size);
   EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), 99);
@@ -262,13 +264,13 @@ TEST_F(StoreTest, refuses_the_file_of_another_program) {
     SQLite::Database(path(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
         .exec("CREATE TABLE t (x)");
   }
-  EXPECT_THAT(refusal(quick_campaign()), HasSubstr("an SQLite file of another program"));
+  EXPECT_THAT(refusal(testing::quick_campaign()), HasSubstr("an SQLite file of another program"));
   EXPECT_THROW(StoreReader(folder.path()), InputError);
 }
 
 TEST_F(StoreTest, refuses_a_file_that_is_no_database) {
   std::ofstream(path()) << std::string(5000, 'x');
-  EXPECT_THROW(open(quick_campaign()), IoError);
+  EXPECT_THROW(open(testing::quick_campaign()), IoError);
   EXPECT_THROW(StoreReader(folder.path()), IoError);
 }
 
@@ -279,8 +281,8 @@ TEST_F(StoreTest, a_reader_refuses_a_folder_without_a_store) {
 
 TEST_F(StoreTest, is_one_file_once_it_is_folded) {
   {
-    Store store = open(quick_campaign());
-    store.add(example_row(0, 5), false);
+    Store store = open(testing::quick_campaign());
+    store.add(testing::example_row(0, 5), false);
     EXPECT_TRUE(std::filesystem::exists(path() + "-wal"));
     store.fold();
     EXPECT_FALSE(std::filesystem::exists(path() + "-wal"));
@@ -289,8 +291,8 @@ TEST_F(StoreTest, is_one_file_once_it_is_folded) {
 }
 
 TEST_F(StoreTest, is_not_folded_while_others_read_it) {
-  Store store = open(quick_campaign());
-  store.add(example_row(0, 5), false);
+  Store store = open(testing::quick_campaign());
+  store.add(testing::example_row(0, 5), false);
   const StoreReader reader(folder.path());
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
   EXPECT_NO_THROW(store.fold());
@@ -301,7 +303,7 @@ TEST_F(StoreTest, is_not_folded_while_others_read_it) {
 void make_first_store(const std::string& path) {
   SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   migrate(database, 0, {store_migrations().front()});
-  const Campaign campaign = quick_campaign();
+  const Campaign campaign = testing::quick_campaign();
   StoredCampaign stored = stored_campaign(campaign, {});
   insert_campaign(database, stored);
   for (const StoredVariant& variant : stored_variants(campaign, {"", ""})) {
@@ -317,7 +319,7 @@ void make_first_store(const std::string& path) {
 TEST_F(StoreTest, of_an_older_schema_is_brought_up_to_date_with_its_episodes) {
   make_first_store(path());
   EXPECT_THROW(StoreReader(folder.path()), InputError);
-  EXPECT_EQ(open(quick_campaign()).outcome(1, 6), "reached");
+  EXPECT_EQ(open(testing::quick_campaign()).outcome(1, 6), "reached");
   EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), store_schema());
   const std::vector<EpisodeRow> rows = rows_of(1);
   ASSERT_EQ(rows.size(), 1U);
@@ -367,4 +369,4 @@ TEST(Shards, divide_the_seeds_without_rest) {
 }
 
 }  // namespace store_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/campaign/statistics/variant_pairs.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace variant_statistics_test {
 
 EpisodeRow row(const std::string& outcome, double cost, double clearance) {
@@ -114,4 +114,4 @@ TEST(VariantPairs, compare_with_the_first_of_other_settings_and_of_another_plant
 }
 
 }  // namespace variant_statistics_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

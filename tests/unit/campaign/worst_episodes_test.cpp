@@ -9,7 +9,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace campaign_worst_episodes_test {
 
 EpisodeRow row(const std::string& outcome, bool unsafe, double clearance, double cost,
@@ -65,4 +65,4 @@ TEST(WorstEpisodes, are_taken_from_all_variants_of_a_store_and_as_many_as_asked_
 }
 
 }  // namespace campaign_worst_episodes_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

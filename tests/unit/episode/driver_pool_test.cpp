@@ -11,7 +11,7 @@
 #include "harness/episode/episode.hpp"
 #include "harness/scenario/scenario_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace driver_pool_test {
 
 Scenario short_scenario(const std::string& choice, const std::string& name = "dubins_obstacles") {
@@ -32,8 +32,8 @@ std::vector<double> numbers_of(const Trace& trace) {
     add(step.disturbance);
     numbers.push_back(step.cost.total());
     numbers.push_back(step.iterations);
-    for (const DiscreteMeasure& stage : step.particles) add(stage.locations);
-    for (const StageCertificate& certificate : step.certificates) {
+    for (const controller::DiscreteMeasure& stage : step.particles) add(stage.locations);
+    for (const controller::StageCertificate& certificate : step.certificates) {
       numbers.push_back(certificate.value);
     }
   }
@@ -45,8 +45,9 @@ TEST(EpisodeDriver, an_episode_does_not_depend_on_those_driven_before) {
   std::vector<std::string> choices = {"controller.optimise_gain=true",
                                       "disturbance.sensor=[0.01, 0.01, 0.001]",
                                       "controller.propagator=soft"};
-  for (const SolverEntry& entry : solvers()) choices.push_back("controller.solver=" + entry.name);
-  for (const SolverEntry& entry : input_boundings()) {
+  for (const controller::SolverEntry& entry : controller::solvers())
+    choices.push_back("controller.solver=" + entry.name);
+  for (const controller::SolverEntry& entry : controller::input_boundings()) {
     choices.push_back("controller.input_bounding=" + entry.name);
   }
   for (const std::string& choice : choices) {
@@ -101,4 +102,4 @@ TEST(DriverPool, gives_every_thread_and_scenario_its_own_episodes) {
 }
 
 }  // namespace driver_pool_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/summary.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace episode_test {
 
 /// The shipped default, made small enough to run many times.
@@ -89,7 +89,7 @@ TEST(Episode, every_plan_takes_the_model_error_of_its_own_periods) {
   const auto radius = [&](std::size_t period) { return period < 2 ? radii[period] : 0.01; };
   ASSERT_GE(trace.steps.size(), 5U);
   for (std::size_t k = 0; k < 5; ++k) {
-    const std::vector<StageBudget>& budgets = trace.steps[k].budgets;
+    const std::vector<controller::StageBudget>& budgets = trace.steps[k].budgets;
     EXPECT_NEAR(budgets[0].model, k == 0 ? 0.0 : radius(k - 1), 1e-15) << k;
     for (std::size_t s = 0; s + 1 < budgets.size(); ++s) {
       EXPECT_NEAR(budgets[s + 1].model, budgets[s].lipschitz * budgets[s].model + radius(k + s),
@@ -131,9 +131,9 @@ TEST(Episode, the_analytic_plant_moves_as_the_model_says) {
   const auto model = model_of(scenario);
   for (std::size_t k = 0; k + 1 < trace.steps.size(); ++k) {
     const StepRecord& step = trace.steps[k];
-    const StateBatch state = step.state;
-    const StateBatch input = step.input;
-    StateBatch next(3, 1);
+    const models::StateBatch state = step.state;
+    const models::StateBatch input = step.input;
+    models::StateBatch next(3, 1);
     model->step(state, input, next);
     EXPECT_EQ(trace.steps[k + 1].belief_mean, next.col(0));
     // One addition apart: exact to rounding of numbers of order 1.
@@ -180,7 +180,7 @@ TEST(Episode, ends_when_the_true_state_is_unsafe_unless_told_to_go_on) {
       "controller.penalty={box: 0, obstacle: 0}", "limit.steps=20"};
   const Trace stopped = run_episode(small_scenario(blind), {.seed = 2});
   EXPECT_EQ(stopped.outcome, Outcome::kLeftSafeSet);
-  EXPECT_LE(clearance(stopped.final_state, stopped.scenario.safe_set), 0.0);
+  EXPECT_LE(controller::clearance(stopped.final_state, stopped.scenario.safe_set), 0.0);
 
   std::vector<std::string> on = blind;
   on.emplace_back("limit.stop_when_unsafe=false");
@@ -241,7 +241,7 @@ TEST(Episode, a_chosen_propagator_and_quantiser_are_what_it_is_predicted_with) {
     return trace.steps.front();
   };
   const auto last_variance = [](const StepRecord& step) {
-    return covariance_of(step.particles.back()).trace();
+    return controller::covariance_of(step.particles.back()).trace();
   };
   const StepRecord usual = plan_of("compressed", "product");
   const StepRecord chosen = plan_of("moment_matched", "lloyd");
@@ -253,13 +253,13 @@ TEST(Episode, a_chosen_propagator_and_quantiser_are_what_it_is_predicted_with) {
 }
 
 TEST(Episode, what_the_scenario_says_of_the_controller_reaches_the_planner) {
-  const PlannerSettings usual = planner_settings(small_scenario());
+  const controller::PlannerSettings usual = planner_settings(small_scenario());
   EXPECT_FALSE(usual.optimise_gain);
   EXPECT_EQ(usual.solver, "lbfgs");
   EXPECT_EQ(usual.input_bounding, "bounded");
   EXPECT_EQ(usual.propagator, "mixture");
   EXPECT_EQ(usual.deadline, std::numeric_limits<double>::infinity());
-  const PlannerSettings chosen = planner_settings(
+  const controller::PlannerSettings chosen = planner_settings(
       small_scenario({"controller.optimise_gain=true", "controller.input_bounding=tanh",
                       "controller.propagator=soft", "controller.deadline=0.02"}));
   EXPECT_TRUE(chosen.optimise_gain);
@@ -276,8 +276,9 @@ TEST(Episode, what_the_scenario_says_of_the_controller_reaches_the_planner) {
 
 TEST(Episode, every_solver_and_bounding_drives_within_the_bounds) {
   std::vector<std::string> choices = {"controller.optimise_gain=true"};
-  for (const SolverEntry& entry : solvers()) choices.push_back("controller.solver=" + entry.name);
-  for (const SolverEntry& entry : input_boundings()) {
+  for (const controller::SolverEntry& entry : controller::solvers())
+    choices.push_back("controller.solver=" + entry.name);
+  for (const controller::SolverEntry& entry : controller::input_boundings()) {
     choices.push_back("controller.input_bounding=" + entry.name);
   }
   for (const std::string& choice : choices) {
@@ -301,8 +302,8 @@ TEST(Episode, the_first_plan_is_that_of_a_planner_that_has_not_planned_before) {
   const Scenario scenario = small_scenario();
   const Trace trace = run_episode(scenario, {.seed = 3});
   const auto model = model_of(scenario);
-  Planner planner(*model, planner_settings(scenario));
-  const Plan& plan = planner.plan(
+  controller::Planner planner(*model, planner_settings(scenario));
+  const controller::Plan& plan = planner.plan(
       {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance});
   EXPECT_FALSE(plan.warm);
   EXPECT_EQ(trace.steps[0].plan_inputs, plan.policy.inputs);
@@ -357,7 +358,7 @@ TEST(Episode, records_every_stage) {
       EXPECT_NEAR(stage.weights.sum(), 1.0, 1e-12);  // rounding of at most 400 terms
       EXPECT_GE(stage.weights.minCoeff(), 0.0);
     }
-    for (const StageCertificate& certificate : step.certificates) {
+    for (const controller::StageCertificate& certificate : step.certificates) {
       EXPECT_EQ(certificate.value, std::min({certificate.particles, certificate.mixture,
                                              certificate.surrogate, certificate.smoothed}));
       EXPECT_GE(certificate.value, 0.0);
@@ -388,4 +389,4 @@ TEST(Episode, an_xml_file_that_mujoco_refuses_is_a_fault_in_its_own_words) {
 }
 
 }  // namespace episode_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

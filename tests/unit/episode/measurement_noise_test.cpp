@@ -11,7 +11,7 @@
 #include "harness/episode/episode.hpp"
 #include "harness/scenario/scenario_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace measurement_noise_test {
 
 /// A car in the plane that turns about a target for as long as the episode is, planned coarsely.
@@ -88,8 +88,9 @@ TEST(MeasurementNoise, of_no_covariance_shows_the_state_itself) {
     const StepRecord& step = trace.steps[k];
     EXPECT_EQ(step.observation, step.state);
     if (k == 0) continue;
-    StateBatch next(3, 1);
-    model->step(StateBatch(trace.steps[k - 1].state), StateBatch(trace.steps[k - 1].input), next);
+    models::StateBatch next(3, 1);
+    model->step(models::StateBatch(trace.steps[k - 1].state),
+                models::StateBatch(trace.steps[k - 1].input), next);
     EXPECT_EQ(step.belief_mean, next.col(0));
     EXPECT_EQ(step.belief_covariance, scenario.disturbance.covariance);
   }
@@ -112,8 +113,8 @@ TEST(MeasurementNoise, is_carried_through_the_step_into_the_next_belief) {
   for (std::size_t k = 0; k + 1 < trace.steps.size(); ++k) {
     const StepRecord& step = trace.steps[k];
     const StepRecord& next = trace.steps[k + 1];
-    StateBatch predicted(3, 1);
-    model->step(StateBatch(step.observation), StateBatch(step.input), predicted);
+    models::StateBatch predicted(3, 1);
+    model->step(models::StateBatch(step.observation), models::StateBatch(step.input), predicted);
     EXPECT_EQ(next.belief_mean, predicted.col(0));
     const double heading = step.observation[2];
     Eigen::Matrix3d slope = Eigen::Matrix3d::Identity();
@@ -133,8 +134,8 @@ TEST(MeasurementNoise, does_not_move_the_plant) {
   const Trace trace = run_episode(scenario, {.seed = 4});
   for (std::size_t k = 0; k + 1 < trace.steps.size(); ++k) {
     const StepRecord& step = trace.steps[k];
-    StateBatch next(3, 1);
-    model->step(StateBatch(step.state), StateBatch(step.input), next);
+    models::StateBatch next(3, 1);
+    model->step(models::StateBatch(step.state), models::StateBatch(step.input), next);
     // One addition apart: exact to rounding of numbers of order 1.
     EXPECT_TRUE(trace.steps[k + 1].state.isApprox(next.col(0) + step.disturbance, 1e-14));
   }
@@ -153,10 +154,10 @@ TEST(MeasurementNoise, does_not_decide_the_outcome) {
     const Trace trace = run_episode(scenario, {.seed = seed});
     for (const StepRecord& step : trace.steps) {
       EXPECT_GT(distance(step.state), 0.5);
-      EXPECT_GT(clearance(step.state, scenario.safe_set), 0.0);
+      EXPECT_GT(controller::clearance(step.state, scenario.safe_set), 0.0);
       seen_at_the_target = seen_at_the_target || distance(step.observation) < 0.5;
       seen_beyond_the_wall =
-          seen_beyond_the_wall || clearance(step.observation, scenario.safe_set) < 0.0;
+          seen_beyond_the_wall || controller::clearance(step.observation, scenario.safe_set) < 0.0;
     }
     EXPECT_EQ(trace.outcome == Outcome::kReached, distance(trace.final_state) <= 0.5);
   }
@@ -165,4 +166,4 @@ TEST(MeasurementNoise, does_not_decide_the_outcome) {
 }
 
 }  // namespace measurement_noise_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/figures/svg_chart.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace chart_marks_test {
 
 using testing::contains;
@@ -31,18 +31,18 @@ TEST(ChartMarks, differ_between_all_colours) {
 
 TEST(ChartMarks, lie_along_the_lines_where_there_are_several) {
   Chart chart{.title = "t", .x_label = "x", .y_label = "y", .series = {line(kOrange)}};
-  EXPECT_EQ(occurrences(chart_drawing(chart), "class=\"line c1\""), 1) << "the line alone";
+  EXPECT_EQ(testing::occurrences(chart_drawing(chart), "class=\"line c1\""), 1) << "the line alone";
   chart.series.push_back(line(kGreen));
   chart.series.push_back(line(kSky, true));
   const std::string svg = chart_drawing(chart);
-  EXPECT_EQ(occurrences(svg, "class=\"line c1\""), 2);
-  EXPECT_EQ(occurrences(svg, "class=\"line c2\""), 2);
-  EXPECT_EQ(occurrences(svg, "class=\"line c5"), 1) << "dashes tell it apart";
-  EXPECT_TRUE(contains(svg, mark_data(kOrange, 78.0, 244.0))) << "at the first point";
+  EXPECT_EQ(testing::occurrences(svg, "class=\"line c1\""), 2);
+  EXPECT_EQ(testing::occurrences(svg, "class=\"line c2\""), 2);
+  EXPECT_EQ(testing::occurrences(svg, "class=\"line c5"), 1) << "dashes tell it apart";
+  EXPECT_TRUE(testing::contains(svg, mark_data(kOrange, 78.0, 244.0))) << "at the first point";
   // The legend shows them, too.
   const std::string sign = mark_data(kGreen, kSwatchWidth / 2.0, kSwatchHeight / 2.0);
-  EXPECT_TRUE(contains(chart_legend(chart)[1].drawing, sign));
-  EXPECT_FALSE(contains(chart_legend(chart)[2].drawing, "c5\" d"));
+  EXPECT_TRUE(testing::contains(chart_legend(chart)[1].drawing, sign));
+  EXPECT_FALSE(testing::contains(chart_legend(chart)[2].drawing, "c5\" d"));
 }
 
 TEST(ChartMarks, are_few_on_a_line_of_many_points) {
@@ -54,8 +54,9 @@ TEST(ChartMarks, are_few_on_a_line_of_many_points) {
   const Chart chart{.title = "t", .x_label = "x", .y_label = "y", .series = {many, line(kOrange)}};
   const std::string svg = chart_drawing(chart);
   const std::string marks = svg.substr(svg.rfind("class=\"line c5\""));
-  EXPECT_EQ(occurrences(marks.substr(0, marks.find("/>")), "M"), 2 * 8) << "two strokes each";
+  EXPECT_EQ(testing::occurrences(marks.substr(0, marks.find("/>")), "M"), 2 * 8)
+      << "two strokes each";
 }
 
 }  // namespace chart_marks_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace contour_lines_test {
 
 using Eigen::Index;
@@ -65,4 +65,4 @@ TEST(ContourLines, there_are_none_of_a_level_that_is_not_reached) {
 }
 
 }  // namespace contour_lines_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace density_test {
 
 using Eigen::Index;
@@ -252,4 +252,4 @@ TEST(Density, refuses_samples_that_are_none) {
 }
 
 }  // namespace density_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

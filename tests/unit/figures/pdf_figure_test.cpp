@@ -12,7 +12,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace pdf_figure_test {
 
 using testing::contains;
@@ -46,8 +46,8 @@ TEST(PdfFigure, has_one_page_of_the_figures_size_with_its_texts_and_fonts) {
   const TemporaryFolder folder;
   const std::string path = folder.file("figure.pdf", pdf);
   const std::string info = output_of("pdfinfo " + path);
-  EXPECT_TRUE(contains(info, "Pages:           1\n")) << info;
-  EXPECT_TRUE(contains(info, "Title:           Distance\n")) << info;
+  EXPECT_TRUE(testing::contains(info, "Pages:           1\n")) << info;
+  EXPECT_TRUE(testing::contains(info, "Title:           Distance\n")) << info;
   const double height = std::stod(svg.substr(svg.find("height=\"") + 8));
   const std::string size = info.substr(info.find("Page size:") + 16);
   EXPECT_DOUBLE_EQ(std::stod(size), 508 * 0.75) << info;
@@ -55,10 +55,10 @@ TEST(PdfFigure, has_one_page_of_the_figures_size_with_its_texts_and_fonts) {
   const std::string text = output_of("pdftotext " + path + " -");
   for (const char* words :
        {"Distance to the goal", "time (s)", "distance (m)", "A note with a µ.", "model"}) {
-    EXPECT_TRUE(contains(text, words)) << words << " is not in\n" << text;
+    EXPECT_TRUE(testing::contains(text, words)) << words << " is not in\n" << text;
   }
   const std::string fonts = output_of("pdffonts " + path);
-  EXPECT_TRUE(contains(fonts, "LiberationSans")) << fonts;
+  EXPECT_TRUE(testing::contains(fonts, "LiberationSans")) << fonts;
   EXPECT_EQ(testing::occurrences(fonts, "yes yes yes"), testing::occurrences(fonts, "\n") - 2)
       << "two lines of heads; all fonts embedded, with letters that can be copied\n"
       << fonts;
@@ -72,8 +72,8 @@ TEST(PdfFigure, of_the_same_input_is_the_same_bytes_and_has_no_present_date) {
   EXPECT_TRUE(pdf == pdf_figure(svg, "Distance"));
   const TemporaryFolder folder;
   const std::string info = output_of("pdfinfo -rawdates " + folder.file("figure.pdf", pdf));
-  EXPECT_TRUE(contains(info, "CreationDate:    20000101000000")) << info;
-  EXPECT_FALSE(contains(info, "ModDate")) << info;
+  EXPECT_TRUE(testing::contains(info, "CreationDate:    20000101000000")) << info;
+  EXPECT_FALSE(testing::contains(info, "ModDate")) << info;
 }
 
 TEST(PdfFigure, refuses_what_is_no_figure) {
@@ -84,4 +84,4 @@ TEST(PdfFigure, refuses_what_is_no_figure) {
 }
 
 }  // namespace pdf_figure_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -10,7 +10,7 @@
 #include "models/constants.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace plane_map_test {
 
 using Eigen::Index;
@@ -70,26 +70,26 @@ const std::string kEllipse = "d=\"M" + kNumber + " " + kNumber + "A" + kNumber +
 
 TEST(MapFigure, has_title_note_labels_legend_and_every_sign) {
   const std::string html = map_figure(full_map());
-  EXPECT_EQ(tag_problem(html), "");
+  EXPECT_EQ(testing::tag_problem(html), "");
   for (const char* text :
        {">Map<", "A note.", ">x (m)<", ">y (m)<", "driven", "samples", "belief", "density",
         "target", "obstacle", "obstacle for some of the other states", "outside of the bounds",
         "start", "1 s", "Ellipses hold 50 and 95 %.", "Lines of equal density hold 50 %."}) {
-    EXPECT_TRUE(contains(html, text)) << text;
+    EXPECT_TRUE(testing::contains(html, text)) << text;
   }
   for (const char* sign :
        {"class=\"unsafe\"", "class=\"free\"", "class=\"obstacle\"", "class=\"partial\"",
         "class=\"target\"", "class=\"outline c2\"", "class=\"dots c1\"", "class=\"way c6\"",
         "class=\"arrow c6\"", "class=\"outline c0\"", "class=\"mark c6\"",
         "class=\"mark square c6\"", "class=\"time\""}) {
-    EXPECT_TRUE(contains(html, sign)) << sign;
+    EXPECT_TRUE(testing::contains(html, sign)) << sign;
   }
 }
 
 TEST(MapFigure, axes_are_equal_and_points_are_where_they_belong) {
   PlaneMap map = square_map();
   map.paths = {{.points = {{1, 2}, {4, 6}}}};
-  EXPECT_TRUE(contains(map_drawing(map), "d=\"M48.0 384.0L192.0 192.0\""));
+  EXPECT_TRUE(testing::contains(map_drawing(map), "d=\"M48.0 384.0L192.0 192.0\""));
 }
 
 TEST(MapFigure, a_confidence_ellipse_has_its_axes) {
@@ -123,9 +123,9 @@ TEST(MapFigure, singular_covariances_are_lines_and_dots) {
   map.ellipses = {{.colour = kBlue, .mean = {5, 5}, .covariance = Eigen::Matrix2d::Ones()},
                   {.colour = kGreen, .mean = {2, 2}}};
   const std::string svg = map_drawing(map);
-  EXPECT_EQ(occurrences(svg, "class=\"outline c0\""), 2);
-  EXPECT_FALSE(contains(svg, "A"));
-  EXPECT_TRUE(contains(svg, "class=\"outline c2 spot\" d=\"M96.0 384.0h0\""));
+  EXPECT_EQ(testing::occurrences(svg, "class=\"outline c0\""), 2);
+  EXPECT_FALSE(testing::contains(svg, "A"));
+  EXPECT_TRUE(testing::contains(svg, "class=\"outline c2 spot\" d=\"M96.0 384.0h0\""));
 }
 
 TEST(MapFigure, the_area_of_a_dot_is_in_proportion_to_its_weight) {
@@ -161,12 +161,12 @@ TEST(MapFigure, a_large_cloud_is_thinned_by_weight_and_says_so) {
   map.clouds = {cloud, {.points = Vector2d(5, 5)}};
   const std::string html = map_figure(map);
   EXPECT_LT(html.size(), 200000U);
-  EXPECT_TRUE(contains(html, "Of 100001 dots, "));
-  const int left = occurrences(html, "M48.0 ");
-  const int right = occurrences(html, "M432.0 ");
+  EXPECT_TRUE(testing::contains(html, "Of 100001 dots, "));
+  const int left = testing::occurrences(html, "M48.0 ");
+  const int right = testing::occurrences(html, "M432.0 ");
   EXPECT_GT(left + right, 3000);
   EXPECT_NEAR(static_cast<double>(left) / (left + right), 0.75, 0.01);  // one pick in some hundred
-  EXPECT_EQ(occurrences(html, "M240.0 240.0h0"), 1);  // a small cloud keeps its dots
+  EXPECT_EQ(testing::occurrences(html, "M240.0 240.0h0"), 1);  // a small cloud keeps its dots
   EXPECT_EQ(map_figure(map), html);
 }
 
@@ -190,8 +190,8 @@ TEST(MapFigure, many_long_paths_stay_small) {
   map.paths.assign(40, path);
   const std::string html = map_figure(map);
   EXPECT_LT(html.size(), 200000U);
-  EXPECT_EQ(occurrences(html, "L480.0 240.0\""), 40);  // every one is drawn to its end
-  EXPECT_EQ(occurrences(html, "one of many"), 1);      // and stands once in the legend
+  EXPECT_EQ(testing::occurrences(html, "L480.0 240.0\""), 40);  // every one is drawn to its end
+  EXPECT_EQ(testing::occurrences(html, "one of many"), 1);      // and stands once in the legend
 }
 
 TEST(MapFigure, what_is_not_finite_is_left_out_and_said) {
@@ -210,30 +210,30 @@ TEST(MapFigure, what_is_not_finite_is_left_out_and_said) {
   map.labels.push_back({.text = "nowhere", .at = {.x = kNan, .y = 0}});
   map.area = MapRectangle{.x_lower = kNan, .x_upper = 1, .y_lower = 0, .y_upper = 1};
   const std::string html = map_figure(map);
-  EXPECT_EQ(tag_problem(html), "");
-  EXPECT_TRUE(contains(html, "7 values are not finite and not drawn."));
+  EXPECT_EQ(testing::tag_problem(html), "");
+  EXPECT_TRUE(testing::contains(html, "7 values are not finite and not drawn."));
   for (const char* text : {"nan", "inf", "nowhere", "broken"}) {
-    EXPECT_FALSE(contains(html, text)) << text;
+    EXPECT_FALSE(testing::contains(html, text)) << text;
   }
 }
 
 TEST(MapFigure, a_gap_interrupts_a_path) {
   PlaneMap map = square_map();
   map.paths = {{.points = {{1, 1}, {2, 1}, {kNan, 1}, {3, 1}, {kNan, 1}, {4, 1}, {5, 1}}}};
-  EXPECT_TRUE(contains(map_drawing(map),
-                       "d=\"M48.0 432.0L96.0 432.0M144.0 432.0h0M192.0 432.0L240.0 432.0\""));
+  EXPECT_TRUE(testing::contains(
+      map_drawing(map), "d=\"M48.0 432.0L96.0 432.0M144.0 432.0h0M192.0 432.0L240.0 432.0\""));
 }
 
 TEST(MapFigure, without_content_it_says_so) {
   PlaneMap map{.title = "Nothing"};
   EXPECT_FALSE(has_content(map));
-  EXPECT_TRUE(contains(map_figure(map), "No finite values to draw."));
+  EXPECT_TRUE(testing::contains(map_figure(map), "No finite values to draw."));
   map.paths = {{.name = "path", .points = {{kNan, 0}}}};
   map.clouds = {{.points = Matrix2Xd::Constant(2, 3, kNan)}, {}};
   map.contours = {{}};
   EXPECT_FALSE(has_content(map));
-  EXPECT_EQ(tag_problem(map_figure(map)), "");
-  EXPECT_EQ(tag_problem(map_drawing(map)), "");
+  EXPECT_EQ(testing::tag_problem(map_figure(map)), "");
+  EXPECT_EQ(testing::tag_problem(map_drawing(map)), "");
   map.paths[0].points.push_back({.x = 1, .y = 2});
   EXPECT_TRUE(has_content(map));
 }
@@ -245,18 +245,18 @@ TEST(MapFigure, texts_are_escaped) {
   map.paths[0].name = map.clouds[0].name = map.ellipses[0].name = map.contours[0].name = attack;
   map.ellipses[0].label = map.labels[0].text = attack;
   const std::string html = map_figure(map);
-  EXPECT_FALSE(contains(html, "<script"));
-  EXPECT_FALSE(contains(html, "\"&quot;>"));
-  EXPECT_EQ(tag_problem(html), "");
+  EXPECT_FALSE(testing::contains(html, "<script"));
+  EXPECT_FALSE(testing::contains(html, "\"&quot;>"));
+  EXPECT_EQ(testing::tag_problem(html), "");
 }
 
 TEST(MapFigure, levels_that_differ_stand_in_the_legend) {
   PlaneMap map = full_map();
   map.ellipses.push_back({.name = "other", .mean = {1, 1}, .levels = {0.95, 0.25, 0.95, 0.5}});
   const std::string html = map_figure(map);
-  EXPECT_TRUE(contains(html, "belief: 50 and 95 %"));
-  EXPECT_TRUE(contains(html, "other: 25, 50 and 95 %"));
-  EXPECT_FALSE(contains(html, "Ellipses hold"));
+  EXPECT_TRUE(testing::contains(html, "belief: 50 and 95 %"));
+  EXPECT_TRUE(testing::contains(html, "other: 25, 50 and 95 %"));
+  EXPECT_FALSE(testing::contains(html, "Ellipses hold"));
 }
 
 TEST(MapArea, holds_all_that_is_drawn) {
@@ -344,4 +344,4 @@ TEST(MapLabels, of_an_ellipse_stand_outside_of_it) {
 }
 
 }  // namespace plane_map_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

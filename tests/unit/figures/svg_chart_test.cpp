@@ -8,7 +8,7 @@
 #include "models/constants.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace svg_chart_test {
 
 using testing::contains;
@@ -69,7 +69,7 @@ Chart example_chart() {
 TEST(ChartFigure, has_title_labels_and_legend) {
   const std::string html = chart_figure(example_chart());
   for (const char* text : {"Clearance", "time (s)", "clearance (m)", "true state", "limit"}) {
-    EXPECT_TRUE(contains(html, text));
+    EXPECT_TRUE(testing::contains(html, text));
   }
 }
 
@@ -77,23 +77,23 @@ TEST(ChartFigure, a_gap_interrupts_the_line_and_is_said) {
   Chart chart = example_chart();
   chart.series[0].y[1] = kNan;
   const std::string html = chart_figure(chart);
-  EXPECT_FALSE(contains(html, "nan"));
-  EXPECT_TRUE(contains(html, "1 value is not finite and not drawn"));
+  EXPECT_FALSE(testing::contains(html, "nan"));
+  EXPECT_TRUE(testing::contains(html, "1 value is not finite and not drawn"));
   // The first point stands alone, as a dot; the last two are a line.
-  EXPECT_EQ(occurrences(html, "<path class=\"points c0\" d=\"M78.0 "), 1);
+  EXPECT_EQ(testing::occurrences(html, "<path class=\"points c0\" d=\"M78.0 "), 1);
   const std::size_t line = html.rfind("<path class=\"line c0\" d=\"M");
   const std::string data = html.substr(line, html.find('>', line) - line);
-  EXPECT_EQ(occurrences(data, "M"), 1);
-  EXPECT_EQ(occurrences(data, "L"), 1);
+  EXPECT_EQ(testing::occurrences(data, "M"), 1);
+  EXPECT_EQ(testing::occurrences(data, "L"), 1);
 }
 
 TEST(ChartFigure, without_any_finite_value_it_says_so) {
   Chart chart = example_chart();
   chart.series[0].y = {kNan, kInfinity, -kInfinity, kNan};
   const std::string html = chart_figure(chart);
-  EXPECT_TRUE(contains(html, "No finite values to draw"));
-  EXPECT_TRUE(contains(html, "4 values are not finite"));
-  EXPECT_FALSE(contains(html, "viewBox=\"0 0 480"));
+  EXPECT_TRUE(testing::contains(html, "No finite values to draw"));
+  EXPECT_TRUE(testing::contains(html, "4 values are not finite"));
+  EXPECT_FALSE(testing::contains(html, "viewBox=\"0 0 480"));
 }
 
 TEST(ChartFigure, texts_are_escaped) {
@@ -101,8 +101,8 @@ TEST(ChartFigure, texts_are_escaped) {
   chart.title = chart.x_label = chart.y_label = chart.note = "<b>";
   chart.series[0].name = chart.rules[0].name = "<i>";
   const std::string html = chart_figure(chart);
-  EXPECT_FALSE(contains(html, "<b>"));
-  EXPECT_FALSE(contains(html, "<i>"));
+  EXPECT_FALSE(testing::contains(html, "<b>"));
+  EXPECT_FALSE(testing::contains(html, "<i>"));
 }
 
 TEST(ChartFigure, a_long_line_is_thinned_but_keeps_its_extremes) {
@@ -116,8 +116,8 @@ TEST(ChartFigure, a_long_line_is_thinned_but_keeps_its_extremes) {
   }
   const std::string html = chart_figure(chart);
   EXPECT_LT(html.size(), 100000U);
-  EXPECT_TRUE(contains(html, " 10.0"));  // the peak reaches the top of the frame
+  EXPECT_TRUE(testing::contains(html, " 10.0"));  // the peak reaches the top of the frame
 }
 
 }  // namespace svg_chart_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/report/page_assets.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace svg_figure_test {
 
 using testing::contains;
@@ -55,52 +55,55 @@ PlaneMap map_of(const std::string& title) {
 TEST(SvgFigure, is_one_document_with_titles_notes_and_legends) {
   const std::string svg = svg_figure({chart_of("First"), chart_of("Second"), chart_of("Third")});
   EXPECT_TRUE(svg.starts_with("<?xml"));
-  EXPECT_EQ(occurrences(svg, "xmlns"), 1);
-  for (const char* text : {"First", "Second", "Third"}) EXPECT_TRUE(contains(svg, text)) << text;
-  EXPECT_EQ(occurrences(svg, "A note."), 3);
-  EXPECT_EQ(occurrences(svg, ">plant<"), 3);
-  EXPECT_EQ(occurrences(svg, ">limit<"), 3);
-  EXPECT_EQ(tag_problem(svg.substr(svg.find("<svg"))), "");
-  EXPECT_FALSE(contains(svg, "var(")) << "few programs know variables";
-  EXPECT_FALSE(contains(svg, "href"));
+  EXPECT_EQ(testing::occurrences(svg, "xmlns"), 1);
+  for (const char* text : {"First", "Second", "Third"})
+    EXPECT_TRUE(testing::contains(svg, text)) << text;
+  EXPECT_EQ(testing::occurrences(svg, "A note."), 3);
+  EXPECT_EQ(testing::occurrences(svg, ">plant<"), 3);
+  EXPECT_EQ(testing::occurrences(svg, ">limit<"), 3);
+  EXPECT_EQ(testing::tag_problem(svg.substr(svg.find("<svg"))), "");
+  EXPECT_FALSE(testing::contains(svg, "var(")) << "few programs know variables";
+  EXPECT_FALSE(testing::contains(svg, "href"));
 }
 
 TEST(SvgFigure, two_charts_stand_in_a_row_and_a_third_below) {
   const std::string two = svg_figure({chart_of("a"), chart_of("b")});
-  EXPECT_TRUE(contains(two, "width=\"1002\""));
+  EXPECT_TRUE(testing::contains(two, "width=\"1002\""));
   const std::string one = svg_figure({chart_of("a")});
-  EXPECT_TRUE(contains(one, "width=\"508\""));
+  EXPECT_TRUE(testing::contains(one, "width=\"508\""));
   const std::string three = svg_figure({chart_of("a"), chart_of("b"), chart_of("c")});
-  EXPECT_TRUE(contains(three, "width=\"1002\""));
-  EXPECT_FALSE(contains(three, two.substr(two.find("height="), 12)));
+  EXPECT_TRUE(testing::contains(three, "width=\"1002\""));
+  EXPECT_FALSE(testing::contains(three, two.substr(two.find("height="), 12)));
 }
 
 TEST(SvgFigure, a_chart_without_finite_values_says_so) {
   Chart empty = chart_of("Empty");
   empty.series[0].y = std::vector<double>(3, std::numeric_limits<double>::quiet_NaN());
   const std::string svg = svg_figure({empty});
-  EXPECT_TRUE(contains(svg, "No finite values to draw."));
-  EXPECT_FALSE(contains(svg, "nan"));
+  EXPECT_TRUE(testing::contains(svg, "No finite values to draw."));
+  EXPECT_FALSE(testing::contains(svg, "nan"));
 }
 
 TEST(SvgFigure, texts_are_escaped) {
   Chart chart = chart_of("<b>");
   chart.series[0].name = "a & b";
   const std::string svg = svg_figure({chart});
-  EXPECT_FALSE(contains(svg, "<b>"));
-  EXPECT_TRUE(contains(svg, "a &amp; b"));
+  EXPECT_FALSE(testing::contains(svg, "<b>"));
+  EXPECT_TRUE(testing::contains(svg, "a &amp; b"));
 }
 
 TEST(SvgFigure, a_chart_and_a_map_stand_side_by_side) {
   const std::string svg = svg_figure({chart_of("Chart"), map_of("Map")});
-  EXPECT_EQ(tag_problem(svg.substr(svg.find("<svg"))), "");
+  EXPECT_EQ(testing::tag_problem(svg.substr(svg.find("<svg"))), "");
   for (const char* text : {">Chart<", ">Map<", ">driven<", ">samples<", ">target<", ">1 s<"}) {
-    EXPECT_TRUE(contains(svg, text)) << text;
+    EXPECT_TRUE(testing::contains(svg, text)) << text;
   }
-  EXPECT_EQ(occurrences(svg, "A note."), 2);
+  EXPECT_EQ(testing::occurrences(svg, "A note."), 2);
   const MapSize size = map_size(map_of("Map"));
-  EXPECT_TRUE(contains(svg, " width=\"" + std::to_string(std::lround(size.width) + 522) + "\""));
-  EXPECT_TRUE(contains(svg, "<svg x=\"508.0\""));  // three margins of 14 and a chart of 480 in all
+  EXPECT_TRUE(
+      testing::contains(svg, " width=\"" + std::to_string(std::lround(size.width) + 522) + "\""));
+  EXPECT_TRUE(
+      testing::contains(svg, "<svg x=\"508.0\""));  // three margins of 14 and a chart of 480 in all
 }
 
 TEST(SvgFigure, maps_alone_need_no_panels) {
@@ -109,12 +112,13 @@ TEST(SvgFigure, maps_alone_need_no_panels) {
 }
 
 TEST(SvgFigure, an_empty_map_says_so) {
-  EXPECT_TRUE(contains(svg_figure({PlaneMap{.title = "Empty"}}), "No finite values to draw."));
+  EXPECT_TRUE(
+      testing::contains(svg_figure({PlaneMap{.title = "Empty"}}), "No finite values to draw."));
 }
 
 TEST(SvgFigure, of_nothing_is_a_document) {
   const std::string svg = svg_figure(std::vector<Panel>{});
-  EXPECT_EQ(tag_problem(svg.substr(svg.find("<svg"))), "");
+  EXPECT_EQ(testing::tag_problem(svg.substr(svg.find("<svg"))), "");
 }
 
 TEST(SvgFigure, every_class_has_a_style_in_the_file_and_on_a_page) {
@@ -151,18 +155,21 @@ TEST(SvgFigure, entries_of_a_legend_stand_side_by_side_while_they_fit) {
   const double low =
       std::stod(svg_figure({chart}).substr(svg_figure({chart}).find("height=\"") + 8));
   chart.series.push_back(chart.series[0]);  // a third one in the line
-  EXPECT_TRUE(contains(svg_figure({chart}), "height=\"" + std::to_string(std::lround(low))));
+  EXPECT_TRUE(
+      testing::contains(svg_figure({chart}), "height=\"" + std::to_string(std::lround(low))));
   chart.series.back().name = std::string(100, 'm');  // two lines, and the limit below
-  EXPECT_TRUE(contains(svg_figure({chart}), "height=\"" + std::to_string(std::lround(low) + 51)));
+  EXPECT_TRUE(
+      testing::contains(svg_figure({chart}), "height=\"" + std::to_string(std::lround(low) + 51)));
 }
 
 TEST(ChartDrawing, names_stand_in_place_of_numbers) {
   Chart chart = chart_of("Names");
   chart.x_names = {"x (m)", "y (m)", "heading (rad)"};
   const std::string svg = chart_drawing(chart);
-  for (const std::string& name : chart.x_names) EXPECT_TRUE(contains(svg, ">" + name + "<"));
-  EXPECT_FALSE(contains(svg, ">1.5<"));
+  for (const std::string& name : chart.x_names)
+    EXPECT_TRUE(testing::contains(svg, ">" + name + "<"));
+  EXPECT_FALSE(testing::contains(svg, ">1.5<"));
 }
 
 }  // namespace svg_figure_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

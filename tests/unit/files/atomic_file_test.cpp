@@ -7,7 +7,7 @@
 
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace atomic_file_test {
 
 using ::testing::AllOf;
@@ -127,4 +127,4 @@ TEST(MakeOutputFolder, says_what_is_in_the_way) {
 }
 
 }  // namespace atomic_file_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

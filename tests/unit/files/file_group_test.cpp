@@ -8,7 +8,7 @@
 #include "harness/errors.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace file_group_test {
 
 using ::testing::ElementsAre;
@@ -60,4 +60,4 @@ TEST(FileGroup, a_commit_without_a_seal_keeps_older_files_that_it_does_not_reach
 }
 
 }  // namespace file_group_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

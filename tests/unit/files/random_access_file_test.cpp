@@ -10,7 +10,7 @@
 #include "harness/errors.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace random_access_file_test {
 
 using ::testing::ElementsAre;
@@ -56,4 +56,4 @@ TEST(random_access_file, errors_name_the_path_and_the_systems_words) {
 }
 
 }  // namespace random_access_file_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

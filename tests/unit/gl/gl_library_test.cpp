@@ -18,7 +18,7 @@
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace gl_library_test {
 
 using testing::HasSubstr;
@@ -181,13 +181,13 @@ int child_main(const std::string& what, const std::string& first, const std::str
 }
 
 }  // namespace gl_library_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render
 
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   if (argc > 1) {
     const auto argument = [&](int i) -> std::string { return i < argc ? argv[i] : ""; };
-    return qsmpc::gl_library_test::child_main(argument(1), argument(2), argument(3));
+    return qsmpc::render::gl_library_test::child_main(argument(1), argument(2), argument(3));
   }
   return RUN_ALL_TESTS();
 }

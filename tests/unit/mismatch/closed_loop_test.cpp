@@ -11,7 +11,7 @@
 #include "tests/support/executors.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace closed_loop_test {
 
 EpisodeResult judged(const std::string& outcome, double cost, double clearance) {
@@ -75,7 +75,7 @@ TEST(EpisodeResult, says_of_each_period_what_was_certified_and_what_happened) {
 TEST(RunEpisodes, take_successive_seeds_and_do_not_depend_on_the_executor) {
   const Scenario scenario = testing::short_scenario();
   SharedWork work(6, {}, {});
-  const auto reference = run_episodes(scenario, 3, run_in_turn, work);
+  const auto reference = run_episodes(scenario, 3, controller::run_in_turn, work);
   const auto threaded = run_episodes(scenario, 3, testing::run_on_threads, work);
   for (std::size_t n = 0; n < 3; ++n) {
     EXPECT_EQ(reference[n].seed, scenario.seed + n);
@@ -88,4 +88,4 @@ TEST(RunEpisodes, take_successive_seeds_and_do_not_depend_on_the_executor) {
 }
 
 }  // namespace closed_loop_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

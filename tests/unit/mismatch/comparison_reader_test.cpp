@@ -11,7 +11,7 @@
 #include "harness/mismatch/comparison_file.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace comparison_reader_test {
 
 using ::testing::HasSubstr;
@@ -26,7 +26,8 @@ class ReadComparison : public ::testing::Test {
     options.plants = {"analytic", "mujoco_car"};
     options.episodes = 3;
     options.paths = 60;
-    written_ = *compare_plants(short_scenario({"model_error.rms=[0.02, 0.02, 0.01]"}), options);
+    written_ =
+        *compare_plants(testing::short_scenario({"model_error.rms=[0.02, 0.02, 0.01]"}), options);
     write_comparison(written_, {}, folder_);
   }
   ~ReadComparison() override { std::filesystem::remove_all(folder_); }
@@ -146,4 +147,4 @@ TEST_F(ReadComparison, an_older_file_has_no_speed_and_no_p_values_but_its_sums) 
 }
 
 }  // namespace comparison_reader_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "harness/mismatch/comparison_table.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace comparison_test {
 
 using ::testing::ElementsAre;
@@ -37,7 +37,7 @@ std::string numbers_of(Comparison comparison) {
 }
 
 TEST(ComparePlants, gives_the_same_bits_for_any_number_of_threads) {
-  const Scenario scenario = short_scenario();
+  const Scenario scenario = testing::short_scenario();
   ComparisonOptions options = small_options({"analytic", "mujoco"});
   options.error_plant = "mujoco";
   options.threads = 1;
@@ -55,17 +55,17 @@ TEST(ComparePlants, gives_the_same_bits_for_any_number_of_threads) {
 
 // It would make results depend on how busy the machine is.
 TEST(ComparePlants, a_deadline_of_the_planner_is_left_out) {
-  const auto without = compare_plants(short_scenario(), small_options({"analytic"}));
-  const auto with =
-      compare_plants(short_scenario({"controller.deadline=1e-6"}), small_options({"analytic"}));
+  const auto without = compare_plants(testing::short_scenario(), small_options({"analytic"}));
+  const auto with = compare_plants(testing::short_scenario({"controller.deadline=1e-6"}),
+                                   small_options({"analytic"}));
   ASSERT_TRUE(without && with);
   EXPECT_EQ(numbers_of(*without), numbers_of(*with));
 }
 
 TEST(ComparePlants, a_model_error_of_the_scenario_is_in_force) {
-  const auto plain = compare_plants(short_scenario(), small_options({"analytic"}));
-  const auto comparison = compare_plants(short_scenario({"model_error.rms=[0.02, 0.02, 0.01]"}),
-                                         small_options({"analytic"}));
+  const auto plain = compare_plants(testing::short_scenario(), small_options({"analytic"}));
+  const auto comparison = compare_plants(
+      testing::short_scenario({"model_error.rms=[0.02, 0.02, 0.01]"}), small_options({"analytic"}));
   ASSERT_TRUE(plain && comparison && comparison->with_error);
   EXPECT_FALSE(plain->with_error);
   EXPECT_EQ(&plain->in_force(), &plain->certificates);
@@ -81,7 +81,7 @@ TEST(ComparePlants, a_model_error_of_the_scenario_is_in_force) {
 
 TEST(ExceededStages, are_those_whose_certificate_is_below_the_lower_limit) {
   std::vector<HorizonStage> horizon(4);
-  std::vector<StageCertificate> certificates(4);
+  std::vector<controller::StageCertificate> certificates(4);
   for (std::size_t k = 0; k < 4; ++k) {
     horizon[k].stage = static_cast<int>(k) + 1;
     horizon[k].unsafe_limits = {.lower = 0.1, .upper = 0.2};
@@ -94,7 +94,7 @@ TEST(ExceededStages, are_those_whose_certificate_is_below_the_lower_limit) {
 }
 
 TEST(ComparePlants, the_analytic_plant_is_the_model_but_for_rounding) {
-  const auto comparison = compare_plants(short_scenario(), small_options({"analytic"}));
+  const auto comparison = compare_plants(testing::short_scenario(), small_options({"analytic"}));
   ASSERT_TRUE(comparison);
   const PlantComparison& plant = comparison->plants[0];
   EXPECT_TRUE((plant.one_step.rmse.array() <= plant.one_step.rounding.array()).all());
@@ -134,17 +134,17 @@ TEST(ComparePlants, in_the_corridor_the_planar_car_is_nearer_to_the_model_than_t
 TEST(ComparePlants, a_mujoco_vehicle_is_not_the_model) {
   ComparisonOptions options = small_options({"mujoco_car"});
   options.error_plant = "mujoco_car";
-  const auto comparison = compare_plants(short_scenario(), options);
+  const auto comparison = compare_plants(testing::short_scenario(), options);
   ASSERT_TRUE(comparison && comparison->measured_error);
   const PlantComparison& plant = comparison->plants[0];
   EXPECT_GT(plant.one_step.rmse[0], 1e-6);
   EXPECT_GT(plant.horizon.back().divergence_rmse[0], plant.one_step.rounding[0]);
   EXPECT_GT(plant.speed, 0.0);
   // Some period errs as much as all of them together, or more.
-  const ModelError& error = *comparison->measured_error;
+  const controller::ModelError& error = *comparison->measured_error;
   EXPECT_EQ(error.first.size(), 2U) << "all periods of the plan but the last";
   Eigen::VectorXd most = error.root_mean_square;
-  for (const ModelError& own : error.first) {
+  for (const controller::ModelError& own : error.first) {
     most = most.cwiseMax(own.offset.cwiseAbs() + own.root_mean_square);
   }
   EXPECT_TRUE((most.array() >= plant.one_step.rmse.array()).all());
@@ -155,10 +155,11 @@ TEST(ComparePlants, a_mujoco_vehicle_is_not_the_model) {
 }
 
 TEST(ComparePlants, without_names_takes_the_model_and_the_scenarios_own_plant) {
-  EXPECT_THAT(default_plants(short_scenario()), ElementsAre("analytic"));
-  EXPECT_THAT(default_plants(short_scenario({"plant.kind=mujoco"})),
+  EXPECT_THAT(default_plants(testing::short_scenario()), ElementsAre("analytic"));
+  EXPECT_THAT(default_plants(testing::short_scenario({"plant.kind=mujoco"})),
               ElementsAre("analytic", "mujoco"));
-  const auto comparison = compare_plants(short_scenario(), small_options({"analytic", "analytic"}));
+  const auto comparison =
+      compare_plants(testing::short_scenario(), small_options({"analytic", "analytic"}));
   EXPECT_EQ(comparison->plants.size(), 1U) << "a name given twice";
 }
 
@@ -167,7 +168,7 @@ TEST(ComparePlants, refuses_names_that_are_not_known_before_anything_is_made) {
   options.on_plants_ready = [] { ADD_FAILURE() << "too late"; };
   options.on_progress = [](auto...) { ADD_FAILURE() << "too late"; };
   try {
-    (void)compare_plants(short_scenario(), options);
+    (void)compare_plants(testing::short_scenario(), options);
     FAIL() << "not refused";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("mujoco_cra"));
@@ -175,13 +176,13 @@ TEST(ComparePlants, refuses_names_that_are_not_known_before_anything_is_made) {
   }
   options = small_options({"analytic"});
   options.error_plant = "mujoco_car";
-  EXPECT_THROW((void)compare_plants(short_scenario(), options), InputError);
+  EXPECT_THROW((void)compare_plants(testing::short_scenario(), options), InputError);
 }
 
 TEST(ComparePlants, is_given_up_when_asked_and_tells_how_far_it_is) {
   ComparisonOptions options = small_options({"analytic"});
   options.should_stop = [] { return true; };
-  EXPECT_FALSE(compare_plants(short_scenario(), options));
+  EXPECT_FALSE(compare_plants(testing::short_scenario(), options));
   std::int64_t last = 0;
   options = small_options({"analytic"});
   options.on_progress = [&](std::int64_t done, std::int64_t total, const std::string&) {
@@ -189,7 +190,7 @@ TEST(ComparePlants, is_given_up_when_asked_and_tells_how_far_it_is) {
     EXPECT_EQ(total, 3 + 3);  // episodes, and batches of paths
     last = done;
   };
-  EXPECT_TRUE(compare_plants(short_scenario(), options));
+  EXPECT_TRUE(compare_plants(testing::short_scenario(), options));
   EXPECT_EQ(last, 6);
 }
 
@@ -198,7 +199,8 @@ class WrittenComparison : public ::testing::Test {
   WrittenComparison() {
     std::string name = ::testing::TempDir() + "comparison_XXXXXX";
     folder_ = ::mkdtemp(name.data());
-    comparison_ = *compare_plants(short_scenario(), small_options({"analytic", "mujoco_car"}));
+    comparison_ =
+        *compare_plants(testing::short_scenario(), small_options({"analytic", "mujoco_car"}));
   }
   ~WrittenComparison() override { std::filesystem::remove_all(folder_); }
 
@@ -292,4 +294,4 @@ TEST_F(WrittenComparison, where_one_file_cannot_be_written_none_is_left) {
 }
 
 }  // namespace comparison_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 
 #include "harness/random/random_numbers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace measured_error_test {
 
 Eigen::MatrixXd normal_residuals(std::uint64_t seed, std::uint64_t unit, Eigen::Index periods,
@@ -18,7 +18,7 @@ Eigen::MatrixXd normal_residuals(std::uint64_t seed, std::uint64_t unit, Eigen::
 
 TEST(MeasuredModelError, of_residuals_that_are_all_alike_has_no_margin) {
   const std::vector<Eigen::MatrixXd> units(5, Eigen::Vector2d(0.2, -0.03).replicate(1, 4));
-  const ModelError error = measured_model_error({{.units = units}}, 1);
+  const controller::ModelError error = measured_model_error({{.units = units}}, 1);
   EXPECT_TRUE(error.mean.isApprox(Eigen::Vector2d(0.2, -0.03), 1e-12));
   const Eigen::Vector2d size(0.2, 0.03);
   EXPECT_TRUE(error.root_mean_square.isApprox(size, 1e-12));
@@ -61,7 +61,7 @@ TEST(MeasuredModelError, takes_the_worst_sample_and_the_worst_period) {
   Eigen::MatrixXd path(1, 3);
   path << 0.05, 0.4, 0.2;
   const ResidualSample planned{.units = std::vector<Eigen::MatrixXd>(6, path), .by_period = true};
-  const ModelError error = measured_model_error({{.units = small}, planned}, 1);
+  const controller::ModelError error = measured_model_error({{.units = small}, planned}, 1);
   EXPECT_NEAR(error.root_mean_square[0], 0.4, 1e-12);
   EXPECT_NEAR(error.higher[1][0], 0.4, 1e-12);
   EXPECT_NEAR(error.mean[0], 0.1, 1e-12) << "information on the first sample";
@@ -77,7 +77,7 @@ std::vector<Eigen::MatrixXd> setting_out() {
 }
 
 TEST(MeasuredModelError, of_first_periods_is_their_own_about_their_mean) {
-  const ModelError error = measured_model_error({{.units = setting_out()}}, 1, 2);
+  const controller::ModelError error = measured_model_error({{.units = setting_out()}}, 1, 2);
   EXPECT_NEAR(error.root_mean_square[0], 0.05, 1e-12) << "of the third period alone";
   EXPECT_EQ(error.offset.size(), 0);
   ASSERT_EQ(error.first.size(), 2U);
@@ -94,7 +94,7 @@ TEST(MeasuredModelError, of_a_first_period_covers_every_sample_about_one_offset)
       .units = std::vector<Eigen::MatrixXd>(7, Eigen::MatrixXd::Constant(1, 2, 0.3))};
   const ResidualSample planned{
       .units = std::vector<Eigen::MatrixXd>(9, Eigen::MatrixXd::Constant(1, 1, 0.1))};
-  const ModelError error = measured_model_error({loop, planned}, 1, 1);
+  const controller::ModelError error = measured_model_error({loop, planned}, 1, 1);
   ASSERT_EQ(error.first.size(), 1U);
   EXPECT_NEAR(error.first[0].offset[0], 0.2, 1e-12);
   EXPECT_NEAR(error.first[0].root_mean_square[0], 0.1 * std::sqrt(8.0 / 6.0), 1e-12);
@@ -106,21 +106,21 @@ TEST(MeasuredModelError, of_later_periods_is_that_of_the_worst_stretch) {
   unit << 0.9, 0.1, 0.1, 0.1, 0.7, 0.2;
   const ResidualSample sample{
       .units = std::vector<Eigen::MatrixXd>(5, unit), .by_period = true, .stretch = 2};
-  const ModelError error = measured_model_error({sample}, 1, 1);
+  const controller::ModelError error = measured_model_error({sample}, 1, 1);
   // After the first period: (0.1, 0.1), (0.1, 0.7), (0.2).
   EXPECT_NEAR(error.root_mean_square[0], 0.5, 1e-12);
   EXPECT_NEAR(error.first[0].offset[0], 0.9, 1e-12);
 }
 
 TEST(MeasuredModelError, of_later_periods_is_that_of_all_where_none_is_later) {
-  const ModelError error =
+  const controller::ModelError error =
       measured_model_error({{.units = setting_out(), .by_period = true}}, 1, 5);
   EXPECT_EQ(error.first.size(), 3U);
   EXPECT_GT(error.root_mean_square[0], 0.5);
 }
 
 TEST(MeasuredModelError, of_a_single_unit_has_no_offset) {
-  const ModelError error = measured_model_error({{.units = {setting_out()[0]}}}, 1, 1);
+  const controller::ModelError error = measured_model_error({{.units = {setting_out()[0]}}}, 1, 1);
   EXPECT_EQ(error.first[0].offset.size(), 0);
   EXPECT_NEAR(error.first[0].root_mean_square[0], 0.6, 1e-12);
 }
@@ -134,7 +134,7 @@ TEST(MeasuredModelError, about_an_offset_is_above_the_true_norms_about_as_often_
     for (std::uint64_t n = 0; n < 50; ++n) {
       sample.units.push_back(normal_residuals(run, n, 1, 0.3).array() + 2.0);
     }
-    const ModelError own = measured_model_error({sample}, run, 1).first[0];
+    const controller::ModelError own = measured_model_error({sample}, run, 1).first[0];
     const double truth = std::hypot(0.3, own.offset[0] - 2.0);
     too_small += own.root_mean_square[0] < truth ? 1 : 0;
   }
@@ -147,7 +147,8 @@ TEST(MeasuredModelError, periods_of_a_plant_that_broke_do_not_count) {
   broken << 0.1, std::numeric_limits<double>::quiet_NaN();
   const std::vector<Eigen::MatrixXd> units{broken, Eigen::MatrixXd::Constant(1, 2, 0.1)};
   for (const bool by_period : {false, true}) {
-    const ModelError error = measured_model_error({{.units = units, .by_period = by_period}}, 1);
+    const controller::ModelError error =
+        measured_model_error({{.units = units, .by_period = by_period}}, 1);
     EXPECT_NEAR(error.root_mean_square[0], 0.1, 1e-12);
   }
   broken(0, 0) = broken(0, 1);
@@ -157,7 +158,7 @@ TEST(MeasuredModelError, periods_of_a_plant_that_broke_do_not_count) {
 TEST(MeasuredModelError, norms_grow_with_their_order_and_depend_on_the_seed_alone) {
   ResidualSample sample;
   for (std::uint64_t n = 0; n < 30; ++n) sample.units.push_back(normal_residuals(9, n, 8, 1e-3));
-  const ModelError error = measured_model_error({sample}, 4);
+  const controller::ModelError error = measured_model_error({sample}, 4);
   EXPECT_GT(error.higher[0][0], error.root_mean_square[0]);
   EXPECT_GT(error.higher[1][0], error.higher[0][0]);
   EXPECT_EQ(measured_model_error({sample}, 4).higher[1], error.higher[1]);
@@ -165,4 +166,4 @@ TEST(MeasuredModelError, norms_grow_with_their_order_and_depend_on_the_seed_alon
 }
 
 }  // namespace measured_error_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -16,8 +16,8 @@
 namespace qsmpc::testing {
 
 /// A car that is at its target soon, of few particles.
-inline Scenario short_scenario(const std::vector<std::string>& overrides = {}) {
-  return parse_scenario(
+inline harness::Scenario short_scenario(const std::vector<std::string>& overrides = {}) {
+  return harness::parse_scenario(
       "name: short\n"
       "model: {system: dubins, speed: 1.5}\n"
       "plant: {kind: analytic, mjcf: dubins_car.xml}\n"
@@ -36,15 +36,18 @@ inline Scenario short_scenario(const std::vector<std::string>& overrides = {}) {
 }
 
 /// Moves as the plant in it and is then off by `bias`; breaks where x is beyond `breaks_at`.
-class AlteredPlant final : public Plant {
+class AlteredPlant final : public harness::Plant {
  public:
-  AlteredPlant(std::unique_ptr<Plant> plant, Eigen::VectorXd bias, double breaks_at)
+  AlteredPlant(std::unique_ptr<harness::Plant> plant, Eigen::VectorXd bias, double breaks_at)
       : plant_(std::move(plant)), bias_(std::move(bias)), breaks_at_(breaks_at) {}
 
-  MotionSample reset(const Eigen::VectorXd& state) override { return plant_->reset(state); }
+  harness::MotionSample reset(const Eigen::VectorXd& state) override {
+    return plant_->reset(state);
+  }
 
-  PlantStep advance(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance) override {
-    PlantStep step = plant_->advance(input, disturbance + bias_);
+  harness::PlantStep advance(const Eigen::VectorXd& input,
+                             const Eigen::VectorXd& disturbance) override {
+    harness::PlantStep step = plant_->advance(input, disturbance + bias_);
     if (step.state[0] > breaks_at_) step.fault = "beyond the edge";
     return step;
   }
@@ -52,39 +55,40 @@ class AlteredPlant final : public Plant {
   [[nodiscard]] Eigen::VectorXd state() const override { return plant_->state(); }
 
  private:
-  std::unique_ptr<Plant> plant_;
+  std::unique_ptr<harness::Plant> plant_;
   Eigen::VectorXd bias_;
   double breaks_at_;
 };
 
 /// The scenario's plant, altered.
-inline PlantPool altered_plants(const Scenario& scenario, const Eigen::VectorXd& bias,
-                                double breaks_at = 1e9) {
-  return PlantPool([scenario, bias, breaks_at](std::int64_t) -> std::unique_ptr<Plant> {
-    return std::make_unique<AlteredPlant>(make_plant(scenario), bias, breaks_at);
-  });
+inline harness::PlantPool altered_plants(const harness::Scenario& scenario,
+                                         const Eigen::VectorXd& bias, double breaks_at = 1e9) {
+  return harness::PlantPool(
+      [scenario, bias, breaks_at](std::int64_t) -> std::unique_ptr<harness::Plant> {
+        return std::make_unique<AlteredPlant>(harness::make_plant(scenario), bias, breaks_at);
+      });
 }
 
 /// A plan of a scenario, and paths under it.
 struct Planned {
-  explicit Planned(const Scenario& planned_scenario) : scenario(planned_scenario) {
-    model = model_of(scenario);
+  explicit Planned(const harness::Scenario& planned_scenario) : scenario(planned_scenario) {
+    model = harness::model_of(scenario);
     belief = {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance};
-    Planner planner(*model, planner_settings(scenario));
-    const Plan& plan = planner.plan(belief);
+    controller::Planner planner(*model, harness::planner_settings(scenario));
+    const controller::Plan& plan = planner.plan(belief);
     policy = plan.policy;
     particles = plan.prediction.stages;
   }
 
-  [[nodiscard]] PathSource source(std::uint64_t first = 0) const {
+  [[nodiscard]] harness::PathSource source(std::uint64_t first = 0) const {
     return {policy, belief, scenario.disturbance.covariance, {.seed = 5, .first = first}};
   }
 
-  Scenario scenario;
-  std::unique_ptr<const Dynamics> model;
-  Gaussian belief;
-  Policy policy;
-  std::vector<DiscreteMeasure> particles;
+  harness::Scenario scenario;
+  std::unique_ptr<const models::Dynamics> model;
+  controller::Gaussian belief;
+  controller::Policy policy;
+  std::vector<controller::DiscreteMeasure> particles;
 };
 
 }  // namespace qsmpc::testing

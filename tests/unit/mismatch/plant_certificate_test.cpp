@@ -10,7 +10,7 @@
 #include "harness/mismatch/measured_error.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace mismatch_plant_certificate_test {
 
 using testing::altered_plants;
@@ -19,25 +19,27 @@ using testing::Planned;
 
 constexpr std::int64_t kPaths = 400;
 
-std::vector<StageCertificate> certificates(const Planned& planned, const Plan& plan,
-                                           const Planner& planner, const ModelError* error) {
-  PredictedMotion motion = motion_of(planner, planned.belief, plan);
+std::vector<controller::StageCertificate> certificates(const Planned& planned,
+                                                       const controller::Plan& plan,
+                                                       const controller::Planner& planner,
+                                                       const controller::ModelError* error) {
+  controller::PredictedMotion motion = controller::motion_of(planner, planned.belief, plan);
   motion.model_error = error;
-  return certify(motion, planned.scenario.safe_set, error_budget(motion));
+  return controller::certify(motion, planned.scenario.safe_set, controller::error_budget(motion));
 }
 
 // A side wind of 0.15 m a period towards a wall that the model keeps away from.
 TEST(PlantCertificates, those_of_the_model_are_exceeded_and_those_with_the_measured_error_hold) {
   const Planned planned(testing::short_scenario());
-  PlantPool pool = altered_plants(planned.scenario, Eigen::Vector3d(0.0, -0.15, 0.0));
+  PlantPool pool = testing::altered_plants(planned.scenario, Eigen::Vector3d(0.0, -0.15, 0.0));
   SharedWork work(path_batches(kPaths), {}, {});
   const PlantPaths plant =
-      plant_paths(pool, *planned.model, planned.source(), kPaths, run_in_turn, work);
-  const std::vector<Points> model =
-      model_paths(*planned.model, planned.source(), kPaths, run_in_turn);
+      plant_paths(pool, *planned.model, planned.source(), kPaths, controller::run_in_turn, work);
+  const std::vector<controller::Points> model =
+      model_paths(*planned.model, planned.source(), kPaths, controller::run_in_turn);
   const auto horizon =
       compare_along_horizon(plant, model, planned.particles, planned.scenario.safe_set,
-                            {.w2_paths = kPaths}, run_in_turn);
+                            {.w2_paths = kPaths}, controller::run_in_turn);
 
   ResidualSample sample{.by_period = true};
   for (Eigen::Index i = 0; i < kPaths; ++i) {
@@ -47,11 +49,11 @@ TEST(PlantCertificates, those_of_the_model_are_exceeded_and_those_with_the_measu
     }
     sample.units.push_back(path);
   }
-  const ModelError error = measured_model_error({sample}, 1);
+  const controller::ModelError error = measured_model_error({sample}, 1);
   EXPECT_NEAR(error.root_mean_square[1], 0.15, 1e-9);
 
-  Planner planner(*planned.model, planner_settings(planned.scenario));
-  const Plan& plan = planner.plan(planned.belief);
+  controller::Planner planner(*planned.model, planner_settings(planned.scenario));
+  const controller::Plan& plan = planner.plan(planned.belief);
   EXPECT_THAT(exceeded_stages(horizon, certificates(planned, plan, planner, nullptr)),
               ::testing::Not(IsEmpty()));
   EXPECT_THAT(exceeded_stages(horizon, certificates(planned, plan, planner, &error)), IsEmpty());
@@ -76,10 +78,10 @@ TEST(PlantCertificates, with_the_measured_error_hold_for_the_car_on_wheels_on_ot
               ::testing::Not(IsEmpty()));
   // They say something: at the worst stage some 0.3 of the paths are unsafe.
   ASSERT_TRUE(judged->with_error.has_value());
-  for (const StageCertificate& certificate : *judged->with_error) {
+  for (const controller::StageCertificate& certificate : *judged->with_error) {
     EXPECT_LT(certificate.value, 0.7);
   }
 }
 
 }  // namespace mismatch_plant_certificate_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 
 #include "harness/random/random_numbers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace residual_statistics_test {
 
 Eigen::MatrixXd row(std::initializer_list<double> values) {
@@ -113,4 +113,4 @@ TEST(ResidualStatistics, of_nothing_and_of_what_never_changes_no_correlation_is_
 }
 
 }  // namespace residual_statistics_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

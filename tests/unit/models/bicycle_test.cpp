@@ -9,8 +9,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace bicycle_test {
+
+using namespace testing;
 
 constexpr double kMass = 1412.0;
 constexpr double kInertia = 1536.7;
@@ -170,4 +172,4 @@ TEST_F(BicycleTest, lipschitz_refuses_a_gain_of_another_shape) {
 }
 
 }  // namespace bicycle_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

@@ -9,8 +9,10 @@
 
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace cart_pole_test {
+
+using namespace testing;
 
 using State = Eigen::Vector4d;
 
@@ -92,4 +94,4 @@ TEST(CartPole, lipschitz_refuses_a_gain_of_another_shape) {
 }
 
 }  // namespace cart_pole_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

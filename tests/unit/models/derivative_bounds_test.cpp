@@ -7,8 +7,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace derivative_bounds_test {
+
+using namespace testing;
 // The Jacobians compared with are computed by other sums and products, with values of the order of
 // a hundred at most.
 constexpr double kRounding = 1e-12;
@@ -196,4 +198,4 @@ INSTANTIATE_TEST_SUITE_P(systems, DerivativeBoundsOfEverySystem,
                          ::testing::ValuesIn(system_names()));
 
 }  // namespace derivative_bounds_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

@@ -11,8 +11,10 @@
 #include "models/dynamics/runge_kutta.hpp"
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace double_integrator_test {
+
+using namespace testing;
 
 TEST(DoubleIntegrator, step_is_that_of_the_runge_kutta_method) {
   const DoubleIntegrator model{.time_step = 0.3};
@@ -59,4 +61,4 @@ TEST(DoubleIntegrator, lipschitz_refuses_a_gain_of_another_shape) {
 }
 
 }  // namespace double_integrator_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

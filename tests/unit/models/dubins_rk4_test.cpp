@@ -13,8 +13,10 @@
 #include "models/dynamics/dubins.hpp"
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace dubins_rk4_test {
+
+using namespace testing;
 
 using State = Eigen::Vector3d;
 
@@ -150,4 +152,4 @@ TEST(DubinsRk4, senseless_speeds_and_gains_are_refused) {
 }
 
 }  // namespace dubins_rk4_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

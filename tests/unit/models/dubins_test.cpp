@@ -7,8 +7,10 @@
 
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace dubins_test {
+
+using namespace testing;
 
 constexpr double kSpeed = 1.5;
 constexpr double kReach = kSpeed * kTimeStep;
@@ -99,4 +101,4 @@ TEST(Dubins, unicycle_structure_reproduces_the_step) {
 }
 
 }  // namespace dubins_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

@@ -14,28 +14,28 @@ namespace qsmpc::testing {
 
 inline constexpr double kTimeStep = 0.1;  // s
 
-inline StateBatch random_batch(std::mt19937_64& generator, Eigen::Index rows, Eigen::Index cols,
-                               double scale) {
+inline models::StateBatch random_batch(std::mt19937_64& generator, Eigen::Index rows,
+                                       Eigen::Index cols, double scale) {
   std::uniform_real_distribution<double> uniform(-scale, scale);
-  return StateBatch::NullaryExpr(rows, cols, [&] { return uniform(generator); });
+  return models::StateBatch::NullaryExpr(rows, cols, [&] { return uniform(generator); });
 }
 
 class EverySystem : public ::testing::TestWithParam<std::string> {
  protected:
-  EverySystem() : dynamics_(make_dynamics(GetParam(), {}, kTimeStep)) {}
+  EverySystem() : dynamics_(models::make_dynamics(GetParam(), {}, kTimeStep)) {}
 
-  [[nodiscard]] const Dynamics& dynamics() const { return *dynamics_; }
+  [[nodiscard]] const models::Dynamics& dynamics() const { return *dynamics_; }
   /// Within ±4 of zero in every coordinate, but for a car's speed, which is positive.
-  [[nodiscard]] StateBatch states(Eigen::Index count) {
-    StateBatch batch = random_batch(generator_, dynamics().state_dim(), count, 4.0);
+  [[nodiscard]] models::StateBatch states(Eigen::Index count) {
+    models::StateBatch batch = random_batch(generator_, dynamics().state_dim(), count, 4.0);
     const int speed = dynamics().description().state_index("longitudinal_speed");
     if (speed >= 0) batch.row(speed) = 2.0 * batch.row(speed).array() + 10.0;
     return batch;
   }
   /// Within the system's own bounds.
-  [[nodiscard]] StateBatch inputs(Eigen::Index count) {
-    const SystemDescription& system = dynamics().description();
-    StateBatch batch = random_batch(generator_, dynamics().input_dim(), count, 1.0);
+  [[nodiscard]] models::StateBatch inputs(Eigen::Index count) {
+    const models::SystemDescription& system = dynamics().description();
+    models::StateBatch batch = random_batch(generator_, dynamics().input_dim(), count, 1.0);
     for (Eigen::Index axis = 0; axis < batch.rows(); ++axis) {
       const double middle = 0.5 * (system.input_upper[axis] + system.input_lower[axis]);
       const double half = 0.5 * (system.input_upper[axis] - system.input_lower[axis]);
@@ -43,8 +43,10 @@ class EverySystem : public ::testing::TestWithParam<std::string> {
     }
     return batch;
   }
-  [[nodiscard]] StateBatch step(const StateBatch& state, const StateBatch& input) const {
-    StateBatch next = StateBatch::Constant(state.rows(), state.cols(), std::nan(""));
+  [[nodiscard]] models::StateBatch step(const models::StateBatch& state,
+                                        const models::StateBatch& input) const {
+    models::StateBatch next =
+        models::StateBatch::Constant(state.rows(), state.cols(), std::nan(""));
     dynamics().step(state, input, next);
     return next;
   }
@@ -52,12 +54,12 @@ class EverySystem : public ::testing::TestWithParam<std::string> {
   std::mt19937_64 generator_{20240607};
 
  private:
-  std::unique_ptr<const Dynamics> dynamics_;
+  std::unique_ptr<const models::Dynamics> dynamics_;
 };
 
 inline std::vector<std::string> system_names() {
   std::vector<std::string> names;
-  for (const SystemEntry& entry : systems()) names.push_back(entry.name);
+  for (const models::SystemEntry& entry : models::systems()) names.push_back(entry.name);
   return names;
 }
 

@@ -7,8 +7,10 @@
 
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace every_system_test {
+
+using namespace testing;
 
 // Central differences with step h have the error h² |f'''|/6 + ε |f|/h: about 1e-10 with values of
 // the order of ten, and a hundred times that is allowed.
@@ -137,4 +139,4 @@ TEST_P(EverySystem, lipschitz_constant_is_at_least_every_sampled_ratio) {
 INSTANTIATE_TEST_SUITE_P(systems, EverySystem, ::testing::ValuesIn(system_names()));
 
 }  // namespace every_system_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

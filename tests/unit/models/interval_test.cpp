@@ -12,7 +12,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace interval_test {
 constexpr double kPi = std::numbers::pi;
 // What ends may exceed the exact ones by: a few units in the last place of values up to a hundred.
@@ -172,4 +172,4 @@ TEST(Interval, overflow_keeps_the_finite_end_on_the_right_side) {
 }
 
 }  // namespace interval_test
-}  // namespace qsmpc
+}  // namespace qsmpc::models

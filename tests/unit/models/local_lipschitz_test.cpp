@@ -11,8 +11,10 @@
 
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace local_lipschitz_test {
+
+using namespace testing;
 
 /// x ↦ f(x, clamp(v + K x)) on a box of states.
 struct BoxedLoop {
@@ -125,4 +127,4 @@ TEST(LocalLipschitz, of_a_car_in_any_direction_is_close_to_its_global_constant) 
 }
 
 }  // namespace local_lipschitz_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

@@ -9,7 +9,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace make_dynamics_test {
 
 using ::testing::HasSubstr;
@@ -72,4 +72,4 @@ TEST(MakeDynamics, parameters_left_out_take_their_defaults) {
 }
 
 }  // namespace make_dynamics_test
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -7,7 +7,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 namespace second_order_jet_test {
 
 using Jet = SecondOrderJet<2>;
@@ -92,4 +92,4 @@ TEST(SecondOrderJet, pole_makes_only_the_derivatives_that_meet_it_unbounded) {
 }
 
 }  // namespace second_order_jet_test
-}  // namespace qsmpc
+}  // namespace qsmpc::models

@@ -15,7 +15,7 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::models {
 namespace HWY_NAMESPACE {
 
 void sine_cosine_of(const std::vector<double>& angles, std::vector<double>& sine,
@@ -28,7 +28,7 @@ void sine_cosine_of(const std::vector<double>& angles, std::vector<double>& sine
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -36,12 +36,13 @@ HWY_AFTER_NAMESPACE();
 
 #include "tests/support/vector_targets.hpp"
 
-namespace qsmpc {
+namespace qsmpc::models {
 
 HWY_EXPORT(sine_cosine_of);
 
-namespace testing {
 namespace sine_cosine_test {
+
+using namespace testing;
 
 // Rounded results of the standard library's, which is within one unit of the truth itself.
 constexpr double kUnits = 2.0;
@@ -89,8 +90,8 @@ std::vector<double> angles() {
 
 TEST(SineCosine, is_within_two_units_of_the_standard_library) {
   const std::vector<double> all = angles();
-  for (const std::int64_t target : vector_targets()) {
-    const OnTarget only(target);
+  for (const std::int64_t target : testing::vector_targets()) {
+    const testing::OnTarget only(target);
     const Values values = values_of(all);
     for (std::size_t i = 0; i < all.size(); ++i) {
       EXPECT_LE(units_apart(values.sine[i], std::sin(all[i])), kUnits) << "sine of " << all[i];
@@ -102,8 +103,8 @@ TEST(SineCosine, is_within_two_units_of_the_standard_library) {
 TEST(SineCosine, is_exact_at_zero_and_nan_where_the_angle_is_not_finite) {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::vector<double> all = {0.0, -0.0, infinity, -infinity, std::nan(""), 1.0};
-  for (const std::int64_t target : vector_targets()) {
-    const OnTarget only(target);
+  for (const std::int64_t target : testing::vector_targets()) {
+    const testing::OnTarget only(target);
     const Values values = values_of(all);
     EXPECT_EQ(values.sine[0], 0.0);
     EXPECT_EQ(values.sine[1], 0.0);
@@ -122,8 +123,8 @@ TEST(SineCosine, is_the_same_on_every_target_whatever_stands_beside_it) {
   std::vector<double> mixed = angles();
   std::shuffle(mixed.begin(), mixed.end(), std::mt19937_64(3));
   const Values best = values_of(mixed);
-  for (const std::int64_t target : vector_targets()) {
-    const OnTarget only(target);
+  for (const std::int64_t target : testing::vector_targets()) {
+    const testing::OnTarget only(target);
     const Values values = values_of(mixed);
     for (std::size_t i = 0; i < mixed.size(); ++i) {
       ASSERT_EQ(std::bit_cast<std::uint64_t>(values.sine[i]),
@@ -137,6 +138,5 @@ TEST(SineCosine, is_the_same_on_every_target_whatever_stands_beside_it) {
 }
 
 }  // namespace sine_cosine_test
-}  // namespace testing
-}  // namespace qsmpc
+}  // namespace qsmpc::models
 #endif

@@ -9,8 +9,10 @@
 
 #include "tests/unit/models/dynamics_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::models {
 namespace models_vector_targets_test {
+
+using namespace testing;
 
 struct Answers {
   StateBatch next;
@@ -83,4 +85,4 @@ TEST_P(EverySystemOnEveryTarget, columns_of_larger_batches_are_read_and_written_
 INSTANTIATE_TEST_SUITE_P(systems, EverySystemOnEveryTarget, ::testing::ValuesIn(system_names()));
 
 }  // namespace models_vector_targets_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::models

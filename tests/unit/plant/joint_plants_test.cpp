@@ -8,7 +8,7 @@
 #include "harness/random/random_numbers.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace joint_plants_test {
 
 constexpr double kPeriod = 0.1;  // s
@@ -42,13 +42,13 @@ Eigen::VectorXd input_of(const JointPlant& plant, int period) {
 /// The states at the ends of the periods, by small steps of the analytic system.
 std::vector<Eigen::VectorXd> analytic_states(const JointPlant& plant, int steps_per_period) {
   const auto model =
-      make_dynamics(plant.reference_system, default_parameters(plant.reference_system),
-                    kPeriod / steps_per_period);
-  StateBatch state = vector_of(plant.start);
-  StateBatch next = state;
+      models::make_dynamics(plant.reference_system, default_parameters(plant.reference_system),
+                            kPeriod / steps_per_period);
+  models::StateBatch state = vector_of(plant.start);
+  models::StateBatch next = state;
   std::vector<Eigen::VectorXd> states;
   for (int k = 0; k < kPeriods; ++k) {
-    const StateBatch input = input_of(plant, k);
+    const models::StateBatch input = input_of(plant, k);
     for (int i = 0; i < steps_per_period; ++i) {
       model->step(state, input, next);
       state.swap(next);
@@ -133,4 +133,4 @@ TEST(JointPlants, the_slider_is_the_double_integrator) {
 }
 
 }  // namespace joint_plants_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "models/constants.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace mujoco_plant_fault_test {
 
 using ::testing::AllOf;
@@ -175,4 +175,4 @@ TEST_F(MujocoPlantFault, a_warning_goes_to_the_innermost_trap_of_its_own_thread)
 }
 
 }  // namespace mujoco_plant_fault_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

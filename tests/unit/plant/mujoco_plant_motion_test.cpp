@@ -10,7 +10,7 @@
 #include "models/dynamics/dynamics.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace mujoco_plant_motion_test {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -24,11 +24,11 @@ TEST(MujocoPlantMotion, drives_straight_as_the_model_does) {
   const auto car = make_car();
   const Eigen::VectorXd start = pose(1.0, -2.0, 0.7);
   car->reset(start);
-  const auto model = make_dynamics("dubins", {{"speed", kSpeed}}, kControlPeriod);
-  StateBatch expected = start;
+  const auto model = models::make_dynamics("dubins", {{"speed", kSpeed}}, kControlPeriod);
+  models::StateBatch expected = start;
   for (int k = 0; k < 40; ++k) {
-    StateBatch next(3, 1);
-    model->step(expected, StateBatch(yaw_rate(0.0)), next);
+    models::StateBatch next(3, 1);
+    model->step(expected, models::StateBatch(yaw_rate(0.0)), next);
     expected = next;
     const PlantStep step = car->advance(yaw_rate(0.0), no_disturbance());
     ASSERT_FALSE(step.fault.has_value()) << *step.fault;
@@ -66,14 +66,14 @@ INSTANTIATE_TEST_SUITE_P(rates, MujocoPlantTurning,
 TEST(MujocoPlantMotion, residual_of_one_step_is_small_under_random_inputs) {
   const auto car = make_car();
   car->reset(pose(0.0, 0.0, 0.0));
-  const auto model = make_dynamics("dubins", {{"speed", kSpeed}}, kControlPeriod);
+  const auto model = models::make_dynamics("dubins", {{"speed", kSpeed}}, kControlPeriod);
   constexpr int kPeriods = 600;
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();  // along, across, heading
   for (int k = 0; k < kPeriods; ++k) {
     const Eigen::VectorXd input = yaw_rate(random_yaw_rate(1, k));
-    const StateBatch before = car->state();
-    StateBatch predicted(3, 1);
-    model->step(before, StateBatch(input), predicted);
+    const models::StateBatch before = car->state();
+    models::StateBatch predicted(3, 1);
+    model->step(before, models::StateBatch(input), predicted);
     const PlantStep step = car->advance(input, no_disturbance());
     ASSERT_FALSE(step.fault.has_value()) << *step.fault;
     const Eigen::Vector3d residual = step.state - predicted.col(0);
@@ -226,4 +226,4 @@ TEST(MujocoPlantMotion, is_the_same_bit_for_bit_on_another_plant_and_after_reset
 }
 
 }  // namespace mujoco_plant_motion_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

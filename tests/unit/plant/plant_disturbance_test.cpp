@@ -12,7 +12,7 @@
 #include "tests/support/effort.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace plant_disturbance_test {
 
 /// Periods driven: a disturbance by force shoots for its effect, several simulations a period. The
@@ -143,4 +143,4 @@ INSTANTIATE_TEST_SUITE_P(all, PlantDisturbance, ::testing::ValuesIn(disturbed_pl
                          [](const auto& test) { return test.param.name; });
 
 }  // namespace plant_disturbance_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

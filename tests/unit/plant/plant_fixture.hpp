@@ -14,7 +14,7 @@
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 #include "models/dynamics/dynamics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr double kSpeed = 1.5;          // m/s
 inline constexpr double kControlPeriod = 0.1;  // s
@@ -22,10 +22,11 @@ inline constexpr const char* kCarFile = QSMPC_SOURCE_DIR "/models/mjcf/dubins_ca
 
 inline MujocoPlantSetup car_setup(const std::string& mjcf = kCarFile,
                                   double control_period = kControlPeriod) {
-  return {.mjcf = mjcf,
-          .control_period = control_period,
-          .system = make_dynamics("dubins", {{"speed", kSpeed}}, control_period)->description(),
-          .parameters = {{"speed", kSpeed}}};
+  return {
+      .mjcf = mjcf,
+      .control_period = control_period,
+      .system = models::make_dynamics("dubins", {{"speed", kSpeed}}, control_period)->description(),
+      .parameters = {{"speed", kSpeed}}};
 }
 
 inline std::unique_ptr<Plant> make_car(const std::string& mjcf = kCarFile,
@@ -87,4 +88,4 @@ inline std::string altered_car(const std::string& from, const std::string& to) {
   return text;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,7 +12,7 @@
 #include "tests/unit/plant/plant_fixture.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace plant_mapping_test {
 
 using ::testing::AllOf;
@@ -256,4 +256,4 @@ TEST(PlantVariation, is_drawn_from_its_own_stream_with_the_given_deviations) {
 }
 
 }  // namespace plant_mapping_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "harness/plant/analytic_plant.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace plant_registry_test {
 
 Scenario dubins_scenario(const std::string& kind) {
@@ -25,14 +25,14 @@ Scenario dubins_scenario(const std::string& kind) {
 
 TEST(AnalyticPlant, is_the_dynamics_plus_the_disturbance) {
   const auto plant = make_plant(dubins_scenario("analytic"));
-  const auto model = make_dynamics("dubins", {{"speed", kSpeed}}, kControlPeriod);
+  const auto model = models::make_dynamics("dubins", {{"speed", kSpeed}}, kControlPeriod);
   const MotionSample first = plant->reset(pose(1.0, 2.0, 3.0));
   EXPECT_EQ(first.time, 0.0);
-  StateBatch expected = pose(1.0, 2.0, 3.0);
+  models::StateBatch expected = pose(1.0, 2.0, 3.0);
   const Eigen::VectorXd disturbance = pose(0.1, -0.2, 0.3);
   for (int k = 1; k <= 20; ++k) {
-    StateBatch next(3, 1);
-    model->step(expected, StateBatch(yaw_rate(0.1 * k)), next);
+    models::StateBatch next(3, 1);
+    model->step(expected, models::StateBatch(yaw_rate(0.1 * k)), next);
     expected = next.col(0) + disturbance;
     const PlantStep step = plant->advance(yaw_rate(0.1 * k), disturbance);
     EXPECT_EQ(step.state, Eigen::VectorXd(expected.col(0)));
@@ -75,9 +75,9 @@ TEST(PlantRegistry, refuses_what_it_cannot_make) {
   scenario.model.parameters["speed"] = 0.0;
   EXPECT_THROW((void)make_plant(scenario), InputError);
   scenario = dubins_scenario("mujoco");
-  scenario.model = {.system = "bicycle", .parameters = systems().at(2).defaults};
+  scenario.model = {.system = "bicycle", .parameters = models::systems().at(2).defaults};
   EXPECT_THROW((void)make_plant(scenario), InputError);
 }
 
 }  // namespace plant_registry_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "models/dynamics/bicycle.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace wheeled_plants_test {
 
 constexpr double kPeriod = 0.1;  // s
@@ -61,10 +61,10 @@ INSTANTIATE_TEST_SUITE_P(all, SmallCar,
                          ::testing::Combine(::testing::Values(0.0005, 0.001, 0.002),
                                             ::testing::Values(0.5, 1.0, 1.5, 2.0, 3.0)));
 
-double kinetic_energy(const ParameterMap& constants, const Eigen::VectorXd& state) {
-  const double forward = state[Bicycle::kLongitudinalSpeed];
-  const double lateral = state[Bicycle::kLateralSpeed];
-  const double yaw_rate = state[Bicycle::kYawRate];
+double kinetic_energy(const models::ParameterMap& constants, const Eigen::VectorXd& state) {
+  const double forward = state[models::Bicycle::kLongitudinalSpeed];
+  const double lateral = state[models::Bicycle::kLateralSpeed];
+  const double yaw_rate = state[models::Bicycle::kYawRate];
   return 0.5 * constants.at("mass") * (forward * forward + lateral * lateral) +
          0.5 * constants.at("yaw_inertia") * yaw_rate * yaw_rate;
 }
@@ -81,7 +81,7 @@ TEST_P(FullSizeCar, is_stable_for_a_minute_of_random_inputs) {
   state << 0.0, 0.0, 0.0, speed, 0.0, 0.0;
   const MotionSample start = car->reset(state);
   for (int k = 0; k < kMinute; ++k) {
-    const double forward = car->state()[Bicycle::kLongitudinalSpeed];
+    const double forward = car->state()[models::Bicycle::kLongitudinalSpeed];
     const double acceleration =
         std::clamp(2.0 * (speed - forward) + uniform(2, k, 0, -2.0, 2.0), -5.0, 2.0);
     const double steering = uniform(2, k, 1, -0.78, 0.78);
@@ -107,20 +107,20 @@ INSTANTIATE_TEST_SUITE_P(all, FullSizeCar,
 Eigen::Vector2d identified_stiffnesses(double speed, double steering) {
   MujocoPlantSetup setup = shipped_setup("bicycle", "bicycle_car.xml");
   const auto car = make_mujoco_plant(setup);
-  const ParameterMap& constants = setup.parameters;
+  const models::ParameterMap& constants = setup.parameters;
   const double front = constants.at("front_axle_distance");
   const double rear = constants.at("rear_axle_distance");
   Eigen::VectorXd state(6);
   state << 0.0, 0.0, 0.0, speed, 0.0, 0.0;
   car->reset(state);
   for (int k = 0; k < 60; ++k) {
-    const double acceleration = 2.0 * (speed - car->state()[Bicycle::kLongitudinalSpeed]);
+    const double acceleration = 2.0 * (speed - car->state()[models::Bicycle::kLongitudinalSpeed]);
     (void)car->advance(Eigen::Vector2d(acceleration, steering), Eigen::VectorXd::Zero(6));
   }
   state = car->state();
-  const double forward = state[Bicycle::kLongitudinalSpeed];
-  const double lateral = state[Bicycle::kLateralSpeed];
-  const double yaw_rate = state[Bicycle::kYawRate];
+  const double forward = state[models::Bicycle::kLongitudinalSpeed];
+  const double lateral = state[models::Bicycle::kLateralSpeed];
+  const double yaw_rate = state[models::Bicycle::kYawRate];
   const double force = constants.at("mass") * forward * yaw_rate;
   const double front_slip = (lateral + front * yaw_rate) / forward - steering;
   const double rear_slip = (lateral - rear * yaw_rate) / forward;
@@ -128,7 +128,7 @@ Eigen::Vector2d identified_stiffnesses(double speed, double steering) {
 }
 
 TEST(FullSizeCar, corners_on_the_stiffnesses_of_table_b_2) {
-  const ParameterMap constants = default_parameters("bicycle");
+  const models::ParameterMap constants = default_parameters("bicycle");
   for (const double speed : {8.0, 15.0}) {
     const Eigen::Vector2d found = identified_stiffnesses(speed, 0.01);
     RecordProperty("front_at_" + std::to_string(static_cast<int>(speed)), std::to_string(found[0]));
@@ -149,8 +149,8 @@ TEST(FullSizeCar, gains_the_acceleration_that_is_asked_for) {
     before = car->state();
     (void)car->advance(Eigen::Vector2d(1.0, 0.0), Eigen::VectorXd::Zero(6));
   }
-  const double gained =
-      car->state()[Bicycle::kLongitudinalSpeed] - before[Bicycle::kLongitudinalSpeed];
+  const double gained = car->state()[models::Bicycle::kLongitudinalSpeed] -
+                        before[models::Bicycle::kLongitudinalSpeed];
   EXPECT_NEAR(gained, kPeriod, 0.002 * kPeriod);
 }
 
@@ -210,4 +210,4 @@ INSTANTIATE_TEST_SUITE_P(all, PushedCars,
                                                .speed = 8.0}));
 
 }  // namespace wheeled_plants_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

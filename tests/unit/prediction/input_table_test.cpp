@@ -8,7 +8,7 @@
 
 #include "harness/errors.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace input_table_test {
 
 InputTableFormat two_inputs() {
@@ -133,4 +133,4 @@ TEST(InputTable, a_file_that_is_not_there_is_refused_by_its_name) {
 }
 
 }  // namespace input_table_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

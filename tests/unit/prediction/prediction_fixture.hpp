@@ -13,8 +13,8 @@
 namespace qsmpc::testing {
 
 /// A car in a square, of few particles.
-inline Scenario small_scenario(const std::vector<std::string>& overrides = {}) {
-  return parse_scenario(
+inline harness::Scenario small_scenario(const std::vector<std::string>& overrides = {}) {
+  return harness::parse_scenario(
       "name: small\n"
       "model: {system: dubins, speed: 1.5}\n"
       "plant: {kind: analytic}\n"

@@ -16,7 +16,7 @@
 #include "harness/prediction/prediction_table.hpp"
 #include "tests/unit/prediction/prediction_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace prediction_output_test {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ using testing::TemporaryFolder;
 
 const PredictionReport& simulated() {
   static const PredictionReport report =
-      predict_scenario(small_scenario(), {.monte_carlo = {.samples = 2000}});
+      predict_scenario(testing::small_scenario(), {.monte_carlo = {.samples = 2000}});
   return report;
 }
 
@@ -64,11 +64,11 @@ TEST(PredictionJson, holds_the_reports_numbers_bit_for_bit) {
   ASSERT_EQ(json["stages"].size(), 4U);
   for (std::size_t k = 0; k < 4; ++k) {
     const auto& stage = json["stages"][k];
-    const StageCertificate& certificate = report.certificates[k];
-    const Eigen::MatrixXd covariance = covariance_of(report.prediction.stages[k + 1]);
+    const controller::StageCertificate& certificate = report.certificates[k];
+    const Eigen::MatrixXd covariance = controller::covariance_of(report.prediction.stages[k + 1]);
     EXPECT_EQ(json["inputs"][k][0], report.policy.inputs(0, static_cast<Eigen::Index>(k)));
     EXPECT_EQ(stage["stage"], k + 1);
-    EXPECT_EQ(stage["mean"][1], mean_of(report.prediction.stages[k + 1])[1]);
+    EXPECT_EQ(stage["mean"][1], controller::mean_of(report.prediction.stages[k + 1])[1]);
     EXPECT_EQ(stage["covariance"][2][0], covariance(2, 0));
     EXPECT_EQ(stage["w2_bound"], report.budgets[k + 1].total);
     EXPECT_EQ(stage["budget"]["model"], report.budgets[k + 1].model);
@@ -114,7 +114,7 @@ TEST(PredictionFile, holds_particles_policy_and_certificates) {
   const auto weights = file.doubles("/particles/weights");
   ASSERT_EQ(offsets.size(), 6U);
   for (std::size_t s = 0; s < 5; ++s) {
-    const DiscreteMeasure& stage = report.prediction.stages[s];
+    const controller::DiscreteMeasure& stage = report.prediction.stages[s];
     ASSERT_EQ(offsets[s + 1] - offsets[s], stage.size());
     const auto last = static_cast<std::size_t>(offsets[s + 1]) - 1;
     EXPECT_EQ(locations[3 * last + 1], stage.locations(1, stage.size() - 1));
@@ -199,4 +199,4 @@ TEST(PredictionTable, marks_the_published_value_as_no_bound) {
 }
 
 }  // namespace prediction_output_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

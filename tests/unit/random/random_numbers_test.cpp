@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace random_numbers_test {
 
 constexpr int kCount = 20000;
@@ -156,4 +156,4 @@ TEST(RandomNumbers, are_distributed_as_they_say) {
 }
 
 }  // namespace random_numbers_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -15,7 +15,7 @@
 #include "render/hud/hud.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace canvas_test {
 
 constexpr Colour kWhite{1.0F, 1.0F, 1.0F};
@@ -237,4 +237,4 @@ TEST(colour, stages_get_brighter_along_the_horizon) {
 }
 
 }  // namespace canvas_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -4,7 +4,7 @@
 
 #include "render/media/libav.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace {
 
 Image rgb_image(const AVFrame& frame) {
@@ -66,4 +66,4 @@ DecodedVideo decode_video(const std::string& path) {
   return video;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -5,7 +5,7 @@
 
 #include "render/frame.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 struct DecodedVideo {
   std::string codec;
@@ -20,4 +20,4 @@ struct DecodedVideo {
 /// Throws std::runtime_error when the file cannot be decoded to its end.
 [[nodiscard]] DecodedVideo decode_video(const std::string& path);
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

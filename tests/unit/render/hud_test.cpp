@@ -6,7 +6,7 @@
 #include "render/hud/strip_chart.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace hud_test {
 
 Image black_image(int width, int height) {
@@ -109,4 +109,4 @@ TEST(legend, keeps_to_its_width_and_lines) {
 }
 
 }  // namespace hud_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -9,7 +9,7 @@
 #include "render/scene/belief_painter.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace overlays_test {
 
 // Thin lines and translucent surfaces take on a part of what is below.
@@ -213,4 +213,4 @@ TEST(colours, of_risk_get_darker_and_are_the_same_beyond_their_ends) {
 }
 
 }  // namespace overlays_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -6,7 +6,7 @@
 #include "render/scene/thinning.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace points_test {
 
 ParticleStage weighted_row(std::size_t count) {
@@ -72,4 +72,4 @@ TEST(points, of_every_size_lie_where_they_project) {
 }
 
 }  // namespace points_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -12,7 +12,7 @@
 #include "render/hud/canvas.hpp"
 #include "render/renderer.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 
 inline const std::string kRedBox =
     std::string(QSMPC_SOURCE_DIR) + "/tests/data/red_box_vehicle.xml";
@@ -76,4 +76,4 @@ inline std::filesystem::path fresh_folder() {
   return folder;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -10,7 +10,7 @@
 #include "models/constants.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace renderer_test {
 
 // Smoothing and the opacity of particles mix a little of the surroundings into a colour.
@@ -196,4 +196,4 @@ TEST(renderer, missing_vehicle_is_an_exception_and_leaves_no_log_file) {
 }
 
 }  // namespace renderer_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render

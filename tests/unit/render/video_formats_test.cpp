@@ -15,7 +15,7 @@
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace video_formats_test {
 
 using testing::HasSubstr;
@@ -44,7 +44,7 @@ VideoSettings settings(VideoFormat format, int quality = kUsualQuality) {
 }
 
 void write_video(const std::string& path, int frames, const VideoSettings& wanted) {
-  VideoFile video(path, wanted);
+  harness::VideoFile video(path, wanted);
   for (int i = 0; i < frames; ++i) {
     video.add(test_image(i % 40));
   }
@@ -136,7 +136,7 @@ TEST(video_formats, killed_process_leaves_a_playable_webm) {
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    VideoFile video(path, settings(known_video_format(path)));
+    harness::VideoFile video(path, settings(known_video_format(path)));
     for (int i = 0; i < 60; ++i) {
       video.add(test_image(i % 40));
     }
@@ -181,7 +181,7 @@ TEST(video_formats, webp_shows_every_frame_for_its_time) {
 TEST(video_formats, killed_process_leaves_a_playable_video_beside_a_gif) {
   const std::string path = fresh_folder() / "video.gif";
   {
-    VideoFile video(path, settings(known_video_format(path)));
+    harness::VideoFile video(path, settings(known_video_format(path)));
     for (int i = 0; i < 7; ++i) {
       video.add(test_image(i));
     }
@@ -239,7 +239,7 @@ TEST_P(EveryFormat, lower_quality_is_a_smaller_file) {
   std::vector<std::uintmax_t> sizes;
   for (const int quality : {10, 60}) {
     const std::string path = folder / (std::to_string(quality) + "." + GetParam());
-    VideoFile video(path, settings(known_video_format(path), quality));
+    harness::VideoFile video(path, settings(known_video_format(path), quality));
     for (int i = 0; i < 6; ++i) {
       video.add(noisy_image(i));
     }
@@ -286,4 +286,4 @@ TEST(gif_palette, a_colour_that_is_missing_is_mixed_from_its_neighbours) {
 }
 
 }  // namespace video_formats_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render

@@ -22,7 +22,7 @@
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::render {
 namespace video_writer_test {
 
 using testing::HasSubstr;
@@ -61,7 +61,7 @@ std::string error_of(const Action& action) {
 TEST(video_writer, finished_video_is_whole_and_alone) {
   const auto folder = fresh_folder();
   const std::string path = folder / "a:b video.mp4";  // neither a protocol nor two words
-  VideoFile video(path, settings());
+  harness::VideoFile video(path, settings());
   for (int i = 0; i < 25; ++i) {
     video.add(test_image(i));
   }
@@ -88,7 +88,7 @@ TEST(video_writer, finished_video_is_whole_and_alone) {
 
 TEST(video_writer, index_of_a_finished_video_comes_before_its_pictures) {
   const std::string path = fresh_folder() / "video.mp4";
-  VideoFile video(path, settings());
+  harness::VideoFile video(path, settings());
   video.add(test_image(0));
   video.finish();
   std::ifstream file(path, std::ios::binary);
@@ -101,7 +101,7 @@ TEST(video_writer, index_of_a_finished_video_comes_before_its_pictures) {
 TEST(video_writer, unfinished_video_leaves_a_playable_partial_and_nothing_under_its_name) {
   const std::string path = fresh_folder() / "video.mp4";
   {
-    VideoFile video(path, settings());
+    harness::VideoFile video(path, settings());
     for (int i = 0; i < 7; ++i) {
       video.add(test_image(i));
     }
@@ -115,7 +115,7 @@ TEST(video_writer, killed_process_leaves_a_playable_partial_and_nothing_under_it
   const pid_t child = fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
-    VideoFile video(path, settings());
+    harness::VideoFile video(path, settings());
     for (int i = 0; i < 120; ++i) {
       video.add(test_image(i % 40));
     }
@@ -131,19 +131,19 @@ TEST(video_writer, killed_process_leaves_a_playable_partial_and_nothing_under_it
 
 TEST(video_writer, refuses_odd_sizes) {
   const std::string path = fresh_folder() / "video.mp4";
-  EXPECT_THROW(VideoFile(path, settings(161, 96)), std::invalid_argument);
-  EXPECT_THAT(error_of([&] { VideoFile(path, settings(160, 97)); }), HasSubstr("160x97"));
+  EXPECT_THROW(harness::VideoFile(path, settings(161, 96)), std::invalid_argument);
+  EXPECT_THAT(error_of([&] { harness::VideoFile(path, settings(160, 97)); }), HasSubstr("160x97"));
   EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
 }
 
 TEST(video_writer, refuses_frames_of_another_size) {
-  VideoFile video(fresh_folder() / "video.mp4", settings(kWidth + 2, kHeight));
+  harness::VideoFile video(fresh_folder() / "video.mp4", settings(kWidth + 2, kHeight));
   EXPECT_THROW(video.add(test_image(0)), std::invalid_argument);
 }
 
 TEST(video_writer, folder_that_does_not_exist_is_named_with_the_systems_words) {
   const std::string path = fresh_folder() / "missing" / "video.mp4";
-  const std::string error = error_of([&] { VideoFile(path, settings()); });
+  const std::string error = error_of([&] { harness::VideoFile(path, settings()); });
   EXPECT_THAT(error, HasSubstr(path));
   EXPECT_THAT(error, HasSubstr("No such file or directory"));
 }
@@ -152,7 +152,7 @@ TEST(video_writer, unknown_preset_is_an_error) {
   const std::string path = fresh_folder() / "video.mp4";
   VideoSettings wanted = settings();
   wanted.preset = "no such preset";
-  EXPECT_THROW(VideoFile(path, wanted), std::runtime_error);
+  EXPECT_THROW(harness::VideoFile(path, wanted), std::runtime_error);
 }
 
 TEST(video_writer, file_that_cannot_grow_is_an_error_and_leaves_nothing_under_its_name) {
@@ -165,7 +165,7 @@ TEST(video_writer, file_that_cannot_grow_is_an_error_and_leaves_nothing_under_it
     const rlimit limit{4096, 4096};
     setrlimit(RLIMIT_FSIZE, &limit);
     const std::string error = error_of([&] {
-      VideoFile video(path, settings());
+      harness::VideoFile video(path, settings());
       for (int i = 0; i < 200; ++i) {
         video.add(test_image(i % 40));
       }
@@ -183,7 +183,7 @@ TEST(video_writer, file_that_cannot_grow_is_an_error_and_leaves_nothing_under_it
 
 TEST(video_writer, finishing_without_frames_is_an_error) {
   const std::string path = fresh_folder() / "video.mp4";
-  VideoFile video(path, settings());
+  harness::VideoFile video(path, settings());
   EXPECT_THROW(video.finish(), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
@@ -197,7 +197,7 @@ class MemoryFile final : public ByteFile {
   std::int64_t size() override { return static_cast<std::int64_t>(bytes_.size()); }
   void write_at(std::int64_t position, std::span<const std::uint8_t> bytes) override {
     const auto end = static_cast<std::size_t>(position) + bytes.size();
-    if (end > static_cast<std::size_t>(room_)) throw IoError("no room in memory");
+    if (end > static_cast<std::size_t>(room_)) throw harness::IoError("no room in memory");
     bytes_.resize(std::max(bytes_.size(), end));
     std::copy(bytes.begin(), bytes.end(), bytes_.begin() + position);
   }
@@ -229,7 +229,7 @@ TEST_P(EveryKeptFormat, needs_no_file_system) {
     video.finish(finished);
   }
   const std::string path = fresh_folder() / ("video." + video_format_name(GetParam()));
-  write_file(path, finished.bytes());
+  harness::write_file(path, finished.bytes());
   // FFmpeg 5 writes animated WebP and cannot read it.
   if (GetParam() != VideoFormat::kWebp) {
     EXPECT_EQ(decode_video(path).frames, 12);
@@ -252,7 +252,7 @@ TEST_P(EveryKeptFormat, what_a_file_throws_reaches_the_caller) {
     // FFmpeg 5's own writer of GIF loses a packet's memory where its file is full.
     if (GetParam() == VideoFormat::kGif) continue;
     MemoryFile narrow(room / 10);
-    EXPECT_THROW(write(enough, narrow), IoError) << room;
+    EXPECT_THROW(write(enough, narrow), harness::IoError) << room;
   }
 }
 
@@ -263,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(Formats, EveryKeptFormat,
 TEST(png_image, keeps_every_pixel) {
   const std::string path = fresh_folder() / "picture.png";
   const Image image = test_image(3);
-  write_file(path, encode_png(image));
+  harness::write_file(path, encode_png(image));
   EXPECT_EQ(decode_video(path).first.rgb, image.rgb);
 }
 
@@ -275,4 +275,4 @@ TEST(png_image, refuses_data_that_do_not_fit_the_size) {
 }
 
 }  // namespace video_writer_test
-}  // namespace qsmpc
+}  // namespace qsmpc::render

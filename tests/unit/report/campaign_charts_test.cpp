@@ -10,7 +10,7 @@
 #include "harness/report/campaign_page.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace campaign_charts_test {
 
 using testing::contains;
@@ -58,10 +58,10 @@ TEST(CampaignFigures, are_documents_with_texts_that_are_escaped) {
   EXPECT_EQ(figures[2].file, "differences.svg");
   for (const CampaignFigure& figure : figures) {
     const std::string svg = svg_figure(figure.charts);
-    EXPECT_EQ(tag_problem(svg.substr(svg.find("<svg"))), "") << figure.file;
-    EXPECT_FALSE(contains(svg, "<b>")) << figure.file;
-    EXPECT_FALSE(contains(svg, "nan")) << figure.file;
-    EXPECT_FALSE(contains(svg, "inf")) << figure.file;
+    EXPECT_EQ(testing::tag_problem(svg.substr(svg.find("<svg"))), "") << figure.file;
+    EXPECT_FALSE(testing::contains(svg, "<b>")) << figure.file;
+    EXPECT_FALSE(testing::contains(svg, "nan")) << figure.file;
+    EXPECT_FALSE(testing::contains(svg, "inf")) << figure.file;
   }
 }
 
@@ -71,7 +71,8 @@ TEST(CampaignFigures, of_no_episodes_exist) {
   statistics.calibration = statistics.published = statistics.variants[0].calibration;
   for (const CampaignFigure& figure : campaign_figures(statistics)) {
     EXPECT_NE(figure.file, "differences.svg");
-    EXPECT_TRUE(contains(svg_figure(figure.charts), "No finite values to draw.")) << figure.file;
+    EXPECT_TRUE(testing::contains(svg_figure(figure.charts), "No finite values to draw."))
+        << figure.file;
   }
 }
 
@@ -90,7 +91,7 @@ TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_as_limits) {
   EXPECT_EQ(series_of(chart, "published value, no bound: exceeded"), nullptr);
   const auto limits = std::ranges::count(chart.series, Mark::kLimits, &Series::mark);
   EXPECT_EQ(limits, 2);
-  EXPECT_TRUE(contains(chart.note, "in 1 of 2 bins"));
+  EXPECT_TRUE(testing::contains(chart.note, "in 1 of 2 bins"));
 }
 
 TEST(ReliabilityFigure, shades_what_is_above_the_diagonal) {
@@ -100,7 +101,7 @@ TEST(ReliabilityFigure, shades_what_is_above_the_diagonal) {
     EXPECT_GE(chart.areas[0].y[i], chart.areas[0].x[i]);
   }
   const std::string svg = chart_drawing(chart);
-  EXPECT_EQ(occurrences(svg, "class=\"area\""), 1);
+  EXPECT_EQ(testing::occurrences(svg, "class=\"area\""), 1);
   EXPECT_LT(svg.find("class=\"area\""), svg.find("class=\"grid-line\"")) << "beneath all else";
 }
 
@@ -121,7 +122,7 @@ TEST(ReliabilityFigure, says_which_of_many_variants_have_a_chart) {
   statistics.variants[33] = exceeded;
   const std::vector<Chart> charts = campaign_figures(statistics)[0].charts;
   ASSERT_EQ(charts.size(), 2U + 16U);
-  EXPECT_TRUE(contains(charts[0].note, "Of 40 variants, 16 have a chart of their own"));
+  EXPECT_TRUE(testing::contains(charts[0].note, "Of 40 variants, 16 have a chart of their own"));
   EXPECT_TRUE(charts[2].title.starts_with("1: ")) << charts[2].title;
   EXPECT_TRUE(charts[17].title.starts_with("34: ")) << charts[17].title;
 }
@@ -146,17 +147,17 @@ TEST(CampaignFigures, begin_the_certified_axis_where_the_least_value_is) {
 
 TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
   const std::string page = campaign_page(example());
-  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
-  EXPECT_TRUE(contains(page, "2: often &lt;b&gt;"));
-  EXPECT_FALSE(contains(page, "often <b>"));
-  EXPECT_TRUE(contains(page, "2 less 1"));
-  EXPECT_EQ(occurrences(page, "<figure"), 4 + 2 + 6);
+  EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
+  EXPECT_TRUE(testing::contains(page, "2: often &lt;b&gt;"));
+  EXPECT_FALSE(testing::contains(page, "often <b>"));
+  EXPECT_TRUE(testing::contains(page, "2 less 1"));
+  EXPECT_EQ(testing::occurrences(page, "<figure"), 4 + 2 + 6);
 }
 
 TEST(CampaignPage, links_what_there_is_of_the_worst_episodes_and_says_how_to_make_the_rest) {
   CampaignStatistics statistics = example();
   statistics.variants[1].id = 1;
-  EXPECT_FALSE(contains(campaign_page(statistics), "The worst episodes"));
+  EXPECT_FALSE(testing::contains(campaign_page(statistics), "The worst episodes"));
   ListedEpisode made{.page = "episodes/1/7/report.html",
                      .video = "episodes/1/7/episode.mp4",
                      .trace = "episodes/1/7/a<b.h5"};
@@ -169,27 +170,29 @@ TEST(CampaignPage, links_what_there_is_of_the_worst_episodes_and_says_how_to_mak
   bare.row.seed = 12;
   bare.row.min_clearance = std::numeric_limits<double>::quiet_NaN();
   const std::string page = campaign_page(statistics, {made, bare});
-  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
-  EXPECT_TRUE(contains(page, "<a href=\"./episodes/1/7/report.html\">page</a> · "));
-  EXPECT_TRUE(contains(page, "<a href=\"./episodes/1/7/episode.mp4\">video</a>"));
-  EXPECT_TRUE(contains(page, "<a href=\"./episodes/1/7/a%3Cb.h5\">trace</a>"));
-  EXPECT_TRUE(contains(page, "<th scope=\"row\">2: often &lt;b&gt;</th><td>7</td>"));
-  EXPECT_TRUE(contains(page, "<td>−0.25</td>"));
-  EXPECT_TRUE(contains(page, "--seed 12 --out &lt;x&gt;</code>"));
-  EXPECT_FALSE(contains(page, "nan"));
-  EXPECT_EQ(occurrences(page, "role=\"region\" tabindex=\"0\""), occurrences(page, "<table"));
+  EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
+  EXPECT_TRUE(testing::contains(page, "<a href=\"./episodes/1/7/report.html\">page</a> · "));
+  EXPECT_TRUE(testing::contains(page, "<a href=\"./episodes/1/7/episode.mp4\">video</a>"));
+  EXPECT_TRUE(testing::contains(page, "<a href=\"./episodes/1/7/a%3Cb.h5\">trace</a>"));
+  EXPECT_TRUE(testing::contains(page, "<th scope=\"row\">2: often &lt;b&gt;</th><td>7</td>"));
+  EXPECT_TRUE(testing::contains(page, "<td>−0.25</td>"));
+  EXPECT_TRUE(testing::contains(page, "--seed 12 --out &lt;x&gt;</code>"));
+  EXPECT_FALSE(testing::contains(page, "nan"));
+  EXPECT_EQ(testing::occurrences(page, "role=\"region\" tabindex=\"0\""),
+            testing::occurrences(page, "<table"));
 }
 
 TEST(CampaignPage, says_first_whether_a_certificate_is_refuted) {
-  EXPECT_TRUE(contains(campaign_page(example()), "Certificates are exceeded"));
+  EXPECT_TRUE(testing::contains(campaign_page(example()), "Certificates are exceeded"));
   CampaignStatistics sound = example();
   sound.variants = {variant("seldom", 2000)};
   sound.calibration = sound.variants[0].calibration;
   sound.differences.clear();
   const std::string page = campaign_page(sound);
-  EXPECT_TRUE(contains(page, "No certificate is refuted"));
-  EXPECT_TRUE(contains(page, "<p>1 of 2000 periods ended unsafe; their certificates add up to 1."));
-  EXPECT_FALSE(contains(page, "Differences"));
+  EXPECT_TRUE(testing::contains(page, "No certificate is refuted"));
+  EXPECT_TRUE(testing::contains(
+      page, "<p>1 of 2000 periods ended unsafe; their certificates add up to 1."));
+  EXPECT_FALSE(testing::contains(page, "Differences"));
 }
 
 TEST(ErrorBars, reach_from_end_to_end_and_widen_the_axis) {
@@ -203,10 +206,10 @@ TEST(ErrorBars, reach_from_end_to_end_and_widen_the_axis) {
                           .lower = {0.0, 0.4},
                           .upper = {1.0, 0.6}}}};
   const std::string svg = chart_drawing(chart);
-  EXPECT_TRUE(contains(svg, "M75.0 244.0h6m-3 0V10.0m-3 0h6")) << "from foot to top";
+  EXPECT_TRUE(testing::contains(svg, "M75.0 244.0h6m-3 0V10.0m-3 0h6")) << "from foot to top";
   chart.series[0].upper[0] = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(contains(chart_drawing(chart), "nan"));
-  EXPECT_EQ(occurrences(chart_drawing(chart), "h6m-3 0V"), 1);
+  EXPECT_FALSE(testing::contains(chart_drawing(chart), "nan"));
+  EXPECT_EQ(testing::occurrences(chart_drawing(chart), "h6m-3 0V"), 1);
 }
 
 TEST(LogarithmicAxis, may_be_the_one_across) {
@@ -216,9 +219,9 @@ TEST(LogarithmicAxis, may_be_the_one_across) {
                     .x_scale = Scale::kLog,
                     .series = {{.name = "line", .x = {1e-4, 1e-2, 1.0}, .y = {0, 1, 2}}}};
   const std::string svg = chart_drawing(chart);
-  EXPECT_TRUE(contains(svg, ">10⁻²<"));
-  EXPECT_TRUE(contains(svg, "L272.0 ")) << "10⁻² is halfway";
+  EXPECT_TRUE(testing::contains(svg, ">10⁻²<"));
+  EXPECT_TRUE(testing::contains(svg, "L272.0 ")) << "10⁻² is halfway";
 }
 
 }  // namespace campaign_charts_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

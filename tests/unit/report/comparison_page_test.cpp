@@ -12,7 +12,7 @@
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace comparison_page_test {
 
 using testing::contains;
@@ -25,7 +25,7 @@ Comparison example() {
   options.plants = {"analytic", "mujoco_car"};
   options.episodes = 2;
   options.paths = 40;
-  return *compare_plants(short_scenario(), options);
+  return *compare_plants(testing::short_scenario(), options);
 }
 
 TEST(ComparisonPage, is_the_same_byte_for_byte_when_made_again_from_the_file) {
@@ -39,22 +39,23 @@ TEST(ComparisonPage, is_the_same_byte_for_byte_when_made_again_from_the_file) {
 
 TEST(ComparisonPage, has_all_parts_and_is_well_formed) {
   const std::string page = comparison_page(example());
-  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
+  EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
   for (const char* part :
        {"No certificate is exceeded on any plant", "Farthest from the model: mujoco_car",
         "<h2>Closed loop</h2>", "Certificates without model error", "covariance with heading",
         "– the model, but for rounding", "W₂ between the predicted measure and the plant",
         "Divergence from the model: y", "Numbers by stage: mujoco_car", "× real time",
         "every default filled in", "horizon: 3"}) {
-    EXPECT_TRUE(contains(page, part)) << part;
+    EXPECT_TRUE(testing::contains(page, part)) << part;
   }
-  EXPECT_FALSE(contains(page, "<script"));
-  EXPECT_FALSE(contains(page, "http://"));
-  EXPECT_FALSE(contains(page, ">nan<"));
-  EXPECT_FALSE(contains(page, ">inf<"));
-  EXPECT_EQ(occurrences(page, "tabindex=\"0\""), occurrences(page, "<table"));
-  EXPECT_EQ(occurrences(page, "role=\"region\""),
-            occurrences(page, "aria-label=\"") - occurrences(page, "role=\"img\""));
+  EXPECT_FALSE(testing::contains(page, "<script"));
+  EXPECT_FALSE(testing::contains(page, "http://"));
+  EXPECT_FALSE(testing::contains(page, ">nan<"));
+  EXPECT_FALSE(testing::contains(page, ">inf<"));
+  EXPECT_EQ(testing::occurrences(page, "tabindex=\"0\""), testing::occurrences(page, "<table"));
+  EXPECT_EQ(
+      testing::occurrences(page, "role=\"region\""),
+      testing::occurrences(page, "aria-label=\"") - testing::occurrences(page, "role=\"img\""));
 }
 
 TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
@@ -69,19 +70,20 @@ TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
             "On mujoco_car at stages 1 to 3 of the plan and in closed loop (p = 1 × 10⁻⁴).");
   const std::string page = comparison_page(comparison);
   EXPECT_LT(page.find("class=\"outcome bad\""), page.find("<h2>"));
-  EXPECT_TRUE(contains(page, "<strong>1 to 3</strong>"));
+  EXPECT_TRUE(testing::contains(page, "<strong>1 to 3</strong>"));
 }
 
 TEST(ComparisonVerdict, names_the_farthest_plant) {
   Comparison comparison = example();
   PlantComparison& car = comparison.plants[1];
   for (HorizonStage& stage : car.horizon) stage.divergence_rmse = Eigen::Vector3d(3, 4, 0);
-  EXPECT_TRUE(contains(comparison_verdict(comparison).sentences[0], "mujoco_car"));
-  EXPECT_TRUE(contains(comparison_verdict(comparison).sentences[0], "up to 5 "));
+  EXPECT_TRUE(testing::contains(comparison_verdict(comparison).sentences[0], "mujoco_car"));
+  EXPECT_TRUE(testing::contains(comparison_verdict(comparison).sentences[0], "up to 5 "));
   for (HorizonStage& stage : car.horizon) {
     stage.divergence_rmse.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
-  EXPECT_TRUE(contains(comparison_verdict(comparison).sentences[0], "broke on every path"));
+  EXPECT_TRUE(
+      testing::contains(comparison_verdict(comparison).sentences[0], "broke on every path"));
   comparison.plants.pop_back();
   EXPECT_EQ(comparison_verdict(comparison).sentences[0],
             "Every plant is the model, but for rounding.");
@@ -99,9 +101,9 @@ TEST(ComparisonPage, texts_are_escaped) {
   comparison.plants[1].name = "<script>alert(1)</script>";
   comparison.scenario.name = "\"><b>";
   const std::string page = comparison_page(comparison);
-  EXPECT_FALSE(contains(page, "<script"));
-  EXPECT_FALSE(contains(page, "<b>"));
-  EXPECT_EQ(tag_problem(page.substr(page.find("<html"))), "");
+  EXPECT_FALSE(testing::contains(page, "<script"));
+  EXPECT_FALSE(testing::contains(page, "<b>"));
+  EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
 }
 
 TEST(ComparisonFigures, stages_without_an_unsafe_path_are_upper_limits) {
@@ -119,4 +121,4 @@ TEST(ComparisonFigures, stages_without_an_unsafe_path_are_upper_limits) {
 }
 
 }  // namespace comparison_page_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

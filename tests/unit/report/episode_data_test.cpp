@@ -16,7 +16,7 @@
 #include "models/dynamics/dynamics.hpp"
 #include "tests/support/example_trace.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace episode_data_test {
 
 using testing::example_trace;
@@ -46,16 +46,16 @@ std::vector<Number> numbers_of(const nlohmann::json& text) {
 }
 
 nlohmann::json data_of(const Trace& trace) {
-  const auto model = make_dynamics(trace.scenario.model.system, trace.scenario.model.parameters,
-                                   trace.scenario.time_step);
-  const SystemDescription& system = model->description();
+  const auto model = models::make_dynamics(
+      trace.scenario.model.system, trace.scenario.model.parameters, trace.scenario.time_step);
+  const models::SystemDescription& system = model->description();
   const std::vector<Chart> charts = episode_charts(trace, system);
   const PlaneMap map = episode_ground(trace, system);
   return nlohmann::json::parse(episode_data(trace, system, {.charts = charts, .map = &map}));
 }
 
 TEST(EpisodeData, particles_are_where_the_trace_has_them) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   const nlohmann::json particles = data_of(trace)["map"]["particles"];
   EXPECT_EQ(particles["stride"], 1);
   const auto counts = numbers_of<float>(particles["counts"]);
@@ -78,7 +78,7 @@ TEST(EpisodeData, particles_are_where_the_trace_has_them) {
 }
 
 TEST(EpisodeData, poses_are_the_true_states_and_the_last_one) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   const auto poses = numbers_of<float>(data_of(trace)["map"]["poses"]);
   ASSERT_EQ(poses.size(), 3 * (trace.steps.size() + 1));
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
@@ -91,7 +91,7 @@ TEST(EpisodeData, poses_are_the_true_states_and_the_last_one) {
 }
 
 TEST(EpisodeData, what_is_not_finite_is_nowhere) {
-  Trace trace = example_trace();
+  Trace trace = testing::example_trace();
   trace.steps[0].particles[0].locations(0, 0) = std::numeric_limits<double>::quiet_NaN();
   trace.steps[0].particles[0].locations(1, 0) = 1e9;
   const auto places = numbers_of<std::uint16_t>(data_of(trace)["map"]["particles"]["places"]);
@@ -100,7 +100,7 @@ TEST(EpisodeData, what_is_not_finite_is_nowhere) {
 }
 
 TEST(EpisodeData, a_page_does_not_hold_more_particles_than_it_should) {
-  const Trace trace = example_trace({.steps = 400, .horizon = 18, .points = 120});
+  const Trace trace = testing::example_trace({.steps = 400, .horizon = 18, .points = 120});
   std::size_t all = 0;
   for (const StepRecord& step : trace.steps) {
     for (const StageParticles& stage : step.particles) {
@@ -116,7 +116,7 @@ TEST(EpisodeData, a_page_does_not_hold_more_particles_than_it_should) {
 }
 
 TEST(EpisodeData, ellipses_have_the_moments_of_the_particles) {
-  Trace trace = example_trace();
+  Trace trace = testing::example_trace();
   StageParticles& stage = trace.steps[2].particles[1];
   stage.locations = Eigen::Matrix3Xd::Zero(3, 2);
   stage.locations.col(0) << 1.0, 2.0, 0.0;
@@ -131,4 +131,4 @@ TEST(EpisodeData, ellipses_have_the_moments_of_the_particles) {
 }
 
 }  // namespace episode_data_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "tests/support/example_trace.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace episode_page_test {
 
 using testing::contains;
@@ -42,7 +42,7 @@ std::string between(const std::string& page, const std::string& begin, const std
 }
 
 Trace trace_that_failed_at_the_start() {
-  Trace trace = example_trace({.steps = 0});
+  Trace trace = testing::example_trace({.steps = 0});
   trace.motion.clear();
   trace.outcome = Outcome::kFault;
   trace.fault = "XML Error: <body> is broken";
@@ -50,53 +50,56 @@ Trace trace_that_failed_at_the_start() {
 }
 
 TEST(EpisodePage, its_tags_are_balanced) {
-  EXPECT_EQ(tag_problem(markup_of(episode_page(example_trace(), with_video()))), "");
-  EXPECT_EQ(tag_problem(markup_of(episode_page(trace_that_failed_at_the_start(), {}))), "");
+  EXPECT_EQ(testing::tag_problem(markup_of(episode_page(testing::example_trace(), with_video()))),
+            "");
+  EXPECT_EQ(testing::tag_problem(markup_of(episode_page(trace_that_failed_at_the_start(), {}))),
+            "");
 }
 
 TEST(EpisodePage, the_tag_check_finds_what_is_wrong) {
-  EXPECT_NE(tag_problem("<p><b></p></b>"), "");
-  EXPECT_NE(tag_problem("<p>"), "");
-  EXPECT_NE(tag_problem("<p>1 < 2</p>"), "");
+  EXPECT_NE(testing::tag_problem("<p><b></p></b>"), "");
+  EXPECT_NE(testing::tag_problem("<p>"), "");
+  EXPECT_NE(testing::tag_problem("<p>1 < 2</p>"), "");
 }
 
 TEST(EpisodePage, refers_to_nothing_but_the_video) {
-  const std::string whole = episode_page(example_trace(), with_video());
-  EXPECT_FALSE(contains(whole, "src=\"http"));
+  const std::string whole = episode_page(testing::example_trace(), with_video());
+  EXPECT_FALSE(testing::contains(whole, "src=\"http"));
   const std::string page = markup_of(whole);
-  EXPECT_FALSE(contains(page, "http:"));
-  EXPECT_FALSE(contains(page, "https:"));
-  EXPECT_FALSE(contains(page, "@import"));
-  EXPECT_FALSE(contains(page, "url("));
-  EXPECT_FALSE(contains(page, "<link"));
-  EXPECT_EQ(occurrences(page, "src="), 1);
-  EXPECT_EQ(occurrences(page, "src=\"./episode.mp4\""), 1);
-  EXPECT_EQ(occurrences(page, "href="), 1);
-  EXPECT_EQ(occurrences(page, "href=\"./episode.mp4\""), 1);
+  EXPECT_FALSE(testing::contains(page, "http:"));
+  EXPECT_FALSE(testing::contains(page, "https:"));
+  EXPECT_FALSE(testing::contains(page, "@import"));
+  EXPECT_FALSE(testing::contains(page, "url("));
+  EXPECT_FALSE(testing::contains(page, "<link"));
+  EXPECT_EQ(testing::occurrences(page, "src="), 1);
+  EXPECT_EQ(testing::occurrences(page, "src=\"./episode.mp4\""), 1);
+  EXPECT_EQ(testing::occurrences(page, "href="), 1);
+  EXPECT_EQ(testing::occurrences(page, "href=\"./episode.mp4\""), 1);
 }
 
 TEST(EpisodePage, without_a_video_refers_to_nothing) {
-  const std::string page = markup_of(episode_page(example_trace(), {}));
-  EXPECT_EQ(occurrences(page, "src="), 0);
-  EXPECT_EQ(occurrences(page, "href="), 0);
-  EXPECT_FALSE(contains(page, "<video"));
+  const std::string page = markup_of(episode_page(testing::example_trace(), {}));
+  EXPECT_EQ(testing::occurrences(page, "src="), 0);
+  EXPECT_EQ(testing::occurrences(page, "href="), 0);
+  EXPECT_FALSE(testing::contains(page, "<video"));
 }
 
 TEST(EpisodePage, its_policy_comes_first_and_forbids_all_but_its_own_and_media) {
-  const std::string page = episode_page(example_trace(), with_video());
+  const std::string page = episode_page(testing::example_trace(), with_video());
   const std::string policy =
       between(page, "<meta http-equiv=\"Content-Security-Policy\" content=\"", "\"");
   EXPECT_TRUE(policy.starts_with("default-src 'none'; style-src 'sha256-")) << policy;
-  EXPECT_TRUE(contains(policy, "script-src 'sha256-")) << policy;
-  EXPECT_TRUE(contains(policy, "media-src 'self' file:; base-uri 'none'; form-action 'none'"));
-  EXPECT_FALSE(contains(policy, "unsafe"));
+  EXPECT_TRUE(testing::contains(policy, "script-src 'sha256-")) << policy;
+  EXPECT_TRUE(
+      testing::contains(policy, "media-src 'self' file:; base-uri 'none'; form-action 'none'"));
+  EXPECT_FALSE(testing::contains(policy, "unsafe"));
   EXPECT_LT(page.find("Content-Security-Policy"), page.find("<style"));
   EXPECT_LT(page.find("Content-Security-Policy"), page.find("<title"));
 }
 
 TEST(EpisodePage, texts_of_the_scenario_do_nothing) {
   const std::string attack = "</title><script>alert(1)</script><img src=x onerror='alert(2)'>";
-  Trace trace = example_trace({.name = attack});
+  Trace trace = testing::example_trace({.name = attack});
   trace.scenario.description = attack;
   trace.scenario.plant.kind = attack;
   trace.version = attack;
@@ -104,88 +107,90 @@ TEST(EpisodePage, texts_of_the_scenario_do_nothing) {
   trace.steps[1].solver_status = attack;
   const std::string whole = episode_page(trace, {.video_file = "\" onerror=\"alert(3)"});
   // Two scripts: the data, in which no tag can begin or end, and the page's own.
-  EXPECT_EQ(occurrences(whole, "<script"), 2);
-  EXPECT_EQ(occurrences(whole, "</script>"), 2);
+  EXPECT_EQ(testing::occurrences(whole, "<script"), 2);
+  EXPECT_EQ(testing::occurrences(whole, "</script>"), 2);
   const std::string data = between(whole, "id=\"episode-data\">", "</script>");
-  EXPECT_TRUE(contains(data, "\\u003c/title\\u003e"));
+  EXPECT_TRUE(testing::contains(data, "\\u003c/title\\u003e"));
   EXPECT_EQ(data.find_first_of("<>&"), std::string::npos);
   const std::string page = markup_of(whole);
-  EXPECT_FALSE(contains(page, "<script"));
-  EXPECT_FALSE(contains(page, "<img"));
-  EXPECT_FALSE(contains(page, "onerror='"));
-  EXPECT_FALSE(contains(page, "onerror=\""));
-  EXPECT_TRUE(contains(page, "&lt;script&gt;alert(1)&lt;/script&gt;"));
-  EXPECT_EQ(tag_problem(page), "");
+  EXPECT_FALSE(testing::contains(page, "<script"));
+  EXPECT_FALSE(testing::contains(page, "<img"));
+  EXPECT_FALSE(testing::contains(page, "onerror='"));
+  EXPECT_FALSE(testing::contains(page, "onerror=\""));
+  EXPECT_TRUE(testing::contains(page, "&lt;script&gt;alert(1)&lt;/script&gt;"));
+  EXPECT_EQ(testing::tag_problem(page), "");
 }
 
 TEST(EpisodePage, shows_the_numbers_of_the_summary) {
-  const Trace trace = example_trace({.steps = 40});
+  const Trace trace = testing::example_trace({.steps = 40});
   const Summary summary = summarise(trace);
   const std::string page = episode_page(trace, with_video());
   const auto value = [](const std::string& text) {
     return "<dd class=\"value\">" + text + "</dd>";
   };
-  EXPECT_TRUE(contains(page, "Target reached after 4 s"));
-  EXPECT_TRUE(contains(page, value("4 s")));
-  EXPECT_TRUE(contains(page, value(format_number(summary.min_clearance) + " m")));
-  EXPECT_TRUE(contains(page, value(format_bound(summary.next_step_max))));
-  EXPECT_TRUE(contains(page, value(format_bound(summary.next_step_sum))));
-  EXPECT_TRUE(contains(page, value(format_bound(summary.horizon_max))));
-  EXPECT_TRUE(contains(page, value(format_number(summary.ocp_ms.median) + " / " +
-                                   format_number(summary.ocp_ms.p99) + " ms")));
-  EXPECT_TRUE(contains(page, value(std::to_string(summary.deadline_misses) + " of 40")));
+  EXPECT_TRUE(testing::contains(page, "Target reached after 4 s"));
+  EXPECT_TRUE(testing::contains(page, value("4 s")));
+  EXPECT_TRUE(testing::contains(page, value(format_number(summary.min_clearance) + " m")));
+  EXPECT_TRUE(testing::contains(page, value(format_bound(summary.next_step_max))));
+  EXPECT_TRUE(testing::contains(page, value(format_bound(summary.next_step_sum))));
+  EXPECT_TRUE(testing::contains(page, value(format_bound(summary.horizon_max))));
+  EXPECT_TRUE(testing::contains(page, value(format_number(summary.ocp_ms.median) + " / " +
+                                            format_number(summary.ocp_ms.p99) + " ms")));
+  EXPECT_TRUE(testing::contains(page, value(std::to_string(summary.deadline_misses) + " of 40")));
   for (Eigen::Index i = 0; i < 3; ++i) {
-    EXPECT_TRUE(contains(page, "<td>" + format_number(summary.mismatch_rmse[i]) + "</td>"));
+    EXPECT_TRUE(
+        testing::contains(page, "<td>" + format_number(summary.mismatch_rmse[i]) + "</td>"));
   }
-  EXPECT_TRUE(contains(page, "<td>rad</td>"));
+  EXPECT_TRUE(testing::contains(page, "<td>rad</td>"));
 }
 
 TEST(EpisodePage, entering_the_unsafe_set_is_never_shown_as_success) {
-  Trace trace = example_trace();
+  Trace trace = testing::example_trace();
   trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);  // inside of the first obstacle
   const std::string page = episode_page(trace, with_video());
-  EXPECT_TRUE(contains(page, "<section class=\"outcome bad\">"));
-  EXPECT_TRUE(contains(page, "Target reached after 0.6 s, but through the unsafe set"));
-  EXPECT_TRUE(contains(page, "Entered the unsafe set</dt><dd class=\"value\">yes</dd>"));
+  EXPECT_TRUE(testing::contains(page, "<section class=\"outcome bad\">"));
+  EXPECT_TRUE(testing::contains(page, "Target reached after 0.6 s, but through the unsafe set"));
+  EXPECT_TRUE(testing::contains(page, "Entered the unsafe set</dt><dd class=\"value\">yes</dd>"));
 }
 
 TEST(EpisodePage, says_what_a_certificate_does_not_cover) {
-  const std::string page = episode_page(example_trace(), with_video());
-  EXPECT_TRUE(contains(page, "plan as planned"));
-  EXPECT_TRUE(contains(page, "Neither covers the plant’s mismatch"));
-  EXPECT_TRUE(contains(page, "published method, worst stage: not a bound"));
+  const std::string page = episode_page(testing::example_trace(), with_video());
+  EXPECT_TRUE(testing::contains(page, "plan as planned"));
+  EXPECT_TRUE(testing::contains(page, "Neither covers the plant’s mismatch"));
+  EXPECT_TRUE(testing::contains(page, "published method, worst stage: not a bound"));
 }
 
 TEST(EpisodePage, has_a_chart_of_each_kind_and_the_map) {
-  const std::string page = episode_page(example_trace(), with_video());
+  const std::string page = episode_page(testing::example_trace(), with_video());
   for (const char* title : {"Certificates: ", "Clearance", "Input: ", "Solve time against",
                             "Solve times: ", "Expected cost", "Error budget at", "Map: "}) {
-    EXPECT_EQ(occurrences(page, "<figcaption>" + std::string(title)), 1) << title;
+    EXPECT_EQ(testing::occurrences(page, "<figcaption>" + std::string(title)), 1) << title;
   }
   for (const char* label : {"x (m)", "y (m)", "time (s)", "probability (–)", "wall clock (ms)"}) {
-    EXPECT_TRUE(contains(page, ">" + std::string(label) + "</text>"));
+    EXPECT_TRUE(testing::contains(page, ">" + std::string(label) + "</text>"));
   }
 }
 
 TEST(EpisodePage, a_fault_at_the_start_gives_its_words_and_no_charts) {
   const std::string page = episode_page(trace_that_failed_at_the_start(), {});
-  EXPECT_TRUE(contains(page, "The simulator failed at the start"));
-  EXPECT_TRUE(contains(page, "XML Error: &lt;body&gt; is broken"));
-  EXPECT_FALSE(contains(page, "<figcaption>Certificates"));
-  EXPECT_TRUE(contains(page, "<figcaption>Map</figcaption>"));
-  EXPECT_TRUE(contains(page, "Largest next-step certificate</dt><dd class=\"value\">–</dd>"));
+  EXPECT_TRUE(testing::contains(page, "The simulator failed at the start"));
+  EXPECT_TRUE(testing::contains(page, "XML Error: &lt;body&gt; is broken"));
+  EXPECT_FALSE(testing::contains(page, "<figcaption>Certificates"));
+  EXPECT_TRUE(testing::contains(page, "<figcaption>Map</figcaption>"));
+  EXPECT_TRUE(
+      testing::contains(page, "Largest next-step certificate</dt><dd class=\"value\">–</dd>"));
 }
 
 TEST(EpisodePage, a_trace_without_any_state_gives_a_page) {
   Trace trace = trace_that_failed_at_the_start();
   trace.final_state.resize(0);
   const std::string page = episode_page(trace, {});
-  EXPECT_EQ(tag_problem(markup_of(page)), "");
-  EXPECT_TRUE(contains(page, "no state is known"));
+  EXPECT_EQ(testing::tag_problem(markup_of(page)), "");
+  EXPECT_TRUE(testing::contains(page, "no state is known"));
 }
 
 TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {
-  Trace trace = example_trace({.steps = 12});
+  Trace trace = testing::example_trace({.steps = 12});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   trace.steps[3].state.setConstant(nan);
@@ -203,41 +208,41 @@ TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {
   trace.final_state.setConstant(1e300);
   const std::string page = episode_page(trace, with_video());
   const std::string own = markup_of(page);
-  EXPECT_EQ(tag_problem(own), "");
+  EXPECT_EQ(testing::tag_problem(own), "");
   for (std::size_t at = own.find(" d=\""); at != std::string::npos;
        at = own.find(" d=\"", at + 1)) {
     const std::string data = own.substr(at + 4, own.find('"', at + 4) - at - 4);
     EXPECT_EQ(data.find_first_not_of("MLHVhv0123456789.- "), std::string::npos) << data;
   }
-  EXPECT_FALSE(contains(own, "=\"nan\""));
-  EXPECT_FALSE(contains(own, "=\"inf\""));
-  EXPECT_TRUE(contains(own, "not finite and not drawn"));
+  EXPECT_FALSE(testing::contains(own, "=\"nan\""));
+  EXPECT_FALSE(testing::contains(own, "=\"inf\""));
+  EXPECT_TRUE(testing::contains(own, "not finite and not drawn"));
 }
 
 TEST(EpisodePage, a_state_far_away_leaves_the_map_readable) {
-  Trace trace = example_trace();
+  Trace trace = testing::example_trace();
   for (const double sign : {-1.0, 1.0}) {
     trace.final_state[0] = sign * 1e9;
     const std::string page = episode_page(trace, {});
     const std::size_t begin = page.find("<figcaption>Map");
     const std::string map = page.substr(begin, page.find("</figure>", begin) - begin);
     // The axis reaches one more length of the bounds, -1 … 12, and not to the state.
-    EXPECT_TRUE(contains(map, sign > 0.0 ? ">25</text>" : ">−10</text>"));
-    EXPECT_FALSE(contains(map, "10⁹"));
-    EXPECT_FALSE(contains(map, "10⁸"));
+    EXPECT_TRUE(testing::contains(map, sign > 0.0 ? ">25</text>" : ">−10</text>"));
+    EXPECT_FALSE(testing::contains(map, "10⁹"));
+    EXPECT_FALSE(testing::contains(map, "10⁸"));
   }
 }
 
 TEST(EpisodePage, the_largest_usual_episode_stays_small) {
   constexpr std::size_t kLargest = 5'000'000;  // bytes, without the video
-  const Trace trace = example_trace({.steps = 400, .horizon = 18, .points = 100});
+  const Trace trace = testing::example_trace({.steps = 400, .horizon = 18, .points = 100});
   EXPECT_LT(episode_page(trace, with_video()).size(), kLargest);
 }
 
 TEST(EpisodePage, the_same_trace_gives_the_same_page) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   EXPECT_EQ(episode_page(trace, with_video()), episode_page(trace, with_video()));
 }
 
 }  // namespace episode_page_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

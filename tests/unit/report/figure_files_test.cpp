@@ -9,7 +9,7 @@
 #include "tests/support/example_trace.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace figure_files_test {
 
 using testing::TemporaryFolder;
@@ -71,4 +71,4 @@ TEST(WriteFigures, where_one_cannot_be_written_none_has_its_name) {
 }
 
 }  // namespace figure_files_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 #include "harness/text/base64.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace packed_numbers_test {
 
 std::string base64_of(std::string_view text) {
@@ -43,4 +43,4 @@ TEST(PackedNumbers, keep_what_is_not_finite) {
 }
 
 }  // namespace packed_numbers_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

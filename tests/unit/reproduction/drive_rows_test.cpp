@@ -11,7 +11,7 @@
 
 #include "harness/statistics/sample_statistics.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace drive_rows_test {
 
 using ::testing::DoubleEq;
@@ -132,4 +132,4 @@ TEST(SampleStatistics, of_nothing_are_not_a_number) {
 }
 
 }  // namespace drive_rows_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

@@ -14,8 +14,10 @@
 #include "harness/reproduction/published_way.hpp"
 #include "tests/support/effort.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace experiment_test {
+
+using namespace testing;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
@@ -165,19 +167,20 @@ TEST(Reproduce, is_complete_when_all_that_was_asked_for_is_done) {
 }
 
 TEST(PublishedWay, is_below_the_truth_beside_a_wall_and_in_an_obstacle) {
-  SafeSet room = unbounded_safe_set(2);
+  controller::SafeSet room = controller::unbounded_safe_set(2);
   room.bounds.lower << 0.0, 0.0;
   room.bounds.upper << 10.0, 10.0;
   room.obstacles.push_back(
       {.lower = Eigen::Vector2d(4.0, 4.0), .upper = Eigen::Vector2d(6.0, 6.0)});
-  DiscreteMeasure inside{.locations = Points(2, 1), .weights = Eigen::VectorXd::Ones(1)};
+  controller::DiscreteMeasure inside{.locations = controller::Points(2, 1),
+                                     .weights = Eigen::VectorXd::Ones(1)};
   inside.locations << 5.0, 5.0;
   const WorstCase in_obstacle = worst_cases(inside, room, {.sound = 0.1, .published = 0.1});
   EXPECT_LT(in_obstacle.published, 0.1);
   EXPECT_EQ(in_obstacle.distance, 1.0);
   EXPECT_EQ(in_obstacle.sound, 1.0);
 
-  DiscreteMeasure near_wall = inside;
+  controller::DiscreteMeasure near_wall = inside;
   near_wall.locations << 0.1, 5.0;  // 0.1 from the nearest wall
   const WorstCase at_wall = worst_cases(near_wall, room, {.sound = 0.05, .published = 0.05});
   EXPECT_NEAR(at_wall.sound, 0.25, 1e-12);
@@ -200,4 +203,4 @@ TEST(PublishedWay, of_a_drive_has_the_sound_value_of_its_certificates) {
 }
 
 }  // namespace experiment_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

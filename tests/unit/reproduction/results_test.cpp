@@ -11,7 +11,7 @@
 #include "harness/reproduction/results_page.hpp"
 #include "harness/reproduction/results_table.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::harness {
 namespace results_test {
 
 using ::testing::HasSubstr;
@@ -136,4 +136,4 @@ TEST(Machine, has_a_processor_cores_and_a_compiler) {
 }
 
 }  // namespace results_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include "harness/scenario/scenario_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace bench_scenarios_test {
 
 TEST(BenchScenarios, all_load_and_are_driven_without_a_simulator) {
@@ -25,4 +25,4 @@ TEST(BenchScenarios, all_load_and_are_driven_without_a_simulator) {
 }
 
 }  // namespace bench_scenarios_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace broken_scenario_test {
 
 using ::testing::HasSubstr;
@@ -310,4 +310,4 @@ TEST(BrokenScenarios, a_zero_covariance_and_a_zero_cost_are_accepted) {
 }
 
 }  // namespace broken_scenario_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

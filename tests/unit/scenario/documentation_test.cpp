@@ -6,7 +6,7 @@
 #include "models/dynamics/dynamics.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace documentation_test {
 
 // The dotted paths of everything that is not a mapping.
@@ -47,15 +47,15 @@ TEST(Documentation, describes_every_key_that_a_resolved_scenario_has) {
 
 TEST(Documentation, names_every_system_with_its_states_inputs_and_constants) {
   const std::string document = content_of(std::string(QSMPC_SOURCE_DIR) + "/docs/scenario.md");
-  for (const SystemEntry& entry : systems()) {
+  for (const models::SystemEntry& entry : models::systems()) {
     const std::size_t begin = document.find("\n| `" + entry.name + "` |");
     ASSERT_NE(begin, std::string::npos) << entry.name;
     const std::string row = document.substr(begin, document.find('\n', begin + 1) - begin);
-    const auto model = make_dynamics(entry.name, {}, 0.1);
-    for (const Coordinate& state : model->description().states) {
+    const auto model = models::make_dynamics(entry.name, {}, 0.1);
+    for (const models::Coordinate& state : model->description().states) {
       EXPECT_THAT(row, ::testing::HasSubstr("`" + state.name + "`"));
     }
-    for (const Coordinate& input : model->description().inputs) {
+    for (const models::Coordinate& input : model->description().inputs) {
       EXPECT_THAT(row, ::testing::HasSubstr("`" + input.name + "`"));
     }
     for (const auto& [name, value] : entry.defaults) {
@@ -65,4 +65,4 @@ TEST(Documentation, names_every_system_with_its_states_inputs_and_constants) {
 }
 
 }  // namespace documentation_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

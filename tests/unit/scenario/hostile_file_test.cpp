@@ -7,7 +7,7 @@
 #include "harness/scenario/yaml_tree.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace hostile_file_test {
 
 std::string repeated(const std::string& piece, std::size_t bytes) {
@@ -123,4 +123,4 @@ TEST(HostileFile, a_damaged_file_is_loaded_or_refused_and_nothing_else) {
 }
 
 }  // namespace hostile_file_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

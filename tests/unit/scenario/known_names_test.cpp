@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace known_names_test {
 
 using ::testing::ElementsAre;
@@ -40,4 +40,4 @@ TEST(ExpectedNames, says_the_suggestion_before_the_list) {
 }
 
 }  // namespace known_names_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

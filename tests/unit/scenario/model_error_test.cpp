@@ -9,7 +9,7 @@
 #include "harness/scenario/model_error_reader.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace scenario_model_error_test {
 
 using ::testing::HasSubstr;
@@ -41,13 +41,13 @@ std::string indented(const std::string& text) {
   return out;
 }
 
-ModelError loaded(const std::string& text) {
+controller::ModelError loaded(const std::string& text) {
   const Scenario scenario = parse_scenario(minimal_text + "model_error:\n" + indented(text));
   EXPECT_TRUE(scenario.model_error.has_value());
-  return scenario.model_error.value_or(ModelError{});
+  return scenario.model_error.value_or(controller::ModelError{});
 }
 
-void expect_same(const ModelError& one, const ModelError& other) {
+void expect_same(const controller::ModelError& one, const controller::ModelError& other) {
   EXPECT_EQ(one.mean, other.mean);
   EXPECT_EQ(one.covariance, other.covariance);
   EXPECT_EQ(one.root_mean_square, other.root_mean_square);
@@ -59,7 +59,7 @@ void expect_same(const ModelError& one, const ModelError& other) {
 }
 
 TEST(ModelErrorKey, every_key_reaches_its_value) {
-  const ModelError error = loaded(whole_text);
+  const controller::ModelError error = loaded(whole_text);
   EXPECT_EQ(error.mean, Eigen::Vector3d(0.001, -0.002, 0.0003));
   EXPECT_EQ(error.covariance(1, 0), 1e-5);
   EXPECT_EQ(error.root_mean_square, Eigen::Vector3d(0.01, 0.02, 0.001));
@@ -69,7 +69,7 @@ TEST(ModelErrorKey, every_key_reaches_its_value) {
 }
 
 TEST(ModelErrorKey, first_periods_of_a_drive_have_keys_of_their_own) {
-  const ModelError error = loaded(drive_text);
+  const controller::ModelError error = loaded(drive_text);
   EXPECT_EQ(error.root_mean_square, Eigen::Vector3d(0.01, 0.02, 0.001));
   EXPECT_EQ(error.offset.size(), 0);
   ASSERT_EQ(error.first.size(), 2U);
@@ -84,7 +84,7 @@ TEST(ModelErrorKey, first_periods_of_a_drive_have_keys_of_their_own) {
 }
 
 TEST(ModelErrorKey, what_is_left_out_is_unknown) {
-  const ModelError error = loaded("rms: [0.03, 0.04, 0]\n");
+  const controller::ModelError error = loaded("rms: [0.03, 0.04, 0]\n");
   EXPECT_EQ(error.mean.size(), 0);
   EXPECT_EQ(error.covariance.size(), 0);
   EXPECT_EQ(error.higher[0][1], std::numeric_limits<double>::infinity());
@@ -108,7 +108,7 @@ TEST(ModelErrorKey, resolved_scenarios_hold_it_and_read_it_back_bit_for_bit) {
 
 TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
   const TemporaryFolder folder;
-  const ModelError error = loaded(whole_text);
+  const controller::ModelError error = loaded(whole_text);
   (void)folder.file("error.yaml", model_error_yaml(error, "dubins", "from 3 episodes"));
   const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
   expect_same(load_scenario(path).model_error.value(), error);
@@ -120,7 +120,7 @@ TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
 
 TEST(ModelErrorKey, of_a_drive_is_read_back_from_a_file) {
   const TemporaryFolder folder;
-  const ModelError error = loaded(drive_text);
+  const controller::ModelError error = loaded(drive_text);
   (void)folder.file("error.yaml", model_error_yaml(error, "dubins", "of a drive"));
   const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
   expect_same(load_scenario(path).model_error.value(), error);
@@ -128,7 +128,7 @@ TEST(ModelErrorKey, of_a_drive_is_read_back_from_a_file) {
 
 TEST(ModelErrorKey, of_the_command_line_is_found_in_the_working_folder_too) {
   const TemporaryFolder folder;
-  const ModelError error = loaded(whole_text);
+  const controller::ModelError error = loaded(whole_text);
   (void)folder.file("error.yaml", model_error_yaml(error, "dubins", ""));
   const TemporaryFolder elsewhere;
   const std::string path = elsewhere.file("s.yaml", minimal_text);
@@ -219,4 +219,4 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 }  // namespace scenario_model_error_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

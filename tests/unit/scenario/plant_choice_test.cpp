@@ -11,7 +11,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace plant_choice_test {
 
 using ::testing::EndsWith;
@@ -23,7 +23,7 @@ TEST(PlantChoice, every_system_has_a_plant_in_joints_and_every_file_is_there) {
     EXPECT_NE(find_mjcf(plant.mjcf, ""), "") << plant.mjcf;
     systems_with_plants.insert(plant.system);
   }
-  for (const SystemEntry& system : systems()) {
+  for (const models::SystemEntry& system : models::systems()) {
     EXPECT_TRUE(systems_with_plants.contains(system.name)) << system.name;
   }
 }
@@ -68,4 +68,4 @@ TEST(PlantChoice, a_path_is_taken_from_the_working_folder) {
 }
 
 }  // namespace plant_choice_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -11,7 +11,7 @@
 #include "models/constants.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace scenario_file_test {
 
 using ::testing::HasSubstr;
@@ -112,10 +112,10 @@ TEST(ScenarioFile, what_is_left_out_gets_its_documented_default) {
   EXPECT_FALSE(scenario.controller.feedback_gain.has_value());
   EXPECT_EQ(scenario.controller.cost.state, Eigen::MatrixXd::Identity(3, 3));
   EXPECT_EQ(scenario.controller.cost.terminal, scenario.controller.cost.state);
-  const auto car = make_dynamics("dubins", {}, 0.1);
+  const auto car = models::make_dynamics("dubins", {}, 0.1);
   EXPECT_EQ(scenario.controller.input_lower, car->description().input_lower);
   EXPECT_EQ(scenario.controller.input_upper, car->description().input_upper);
-  EXPECT_EQ(scenario.model.parameters, systems().front().defaults);
+  EXPECT_EQ(scenario.model.parameters, models::systems().front().defaults);
   EXPECT_EQ(scenario.step_limit, 200);
   EXPECT_TRUE(scenario.stop_when_unsafe);
   EXPECT_EQ(scenario.video.width, 1280);
@@ -223,7 +223,7 @@ TEST(ScenarioFile, gains_can_be_optimised_and_another_solver_be_named) {
 }
 
 TEST(ScenarioFile, every_bounding_of_the_inputs_can_be_named) {
-  for (const SolverEntry& entry : input_boundings()) {
+  for (const controller::SolverEntry& entry : controller::input_boundings()) {
     const Scenario scenario = minimal_with({"controller.input_bounding=" + entry.name});
     EXPECT_EQ(scenario.controller.input_bounding, entry.name);
     expect_round_trip(scenario);
@@ -240,13 +240,13 @@ TEST(ScenarioFile, a_deadline_is_written_unless_there_is_none) {
 }
 
 TEST(ScenarioFile, every_propagator_of_noise_and_every_quantiser_can_be_named) {
-  for (const PropagatorEntry& entry : propagators()) {
+  for (const controller::PropagatorEntry& entry : controller::propagators()) {
     if (entry.name == "noise_free") continue;  // it is propagate_noise: false
     const Scenario scenario = minimal_with({"controller.propagator=" + entry.name});
     EXPECT_EQ(scenario.controller.propagator, entry.name);
     expect_round_trip(scenario);
   }
-  for (const QuantiserEntry& entry : quantisers()) {
+  for (const controller::QuantiserEntry& entry : controller::quantisers()) {
     const Scenario scenario = minimal_with({"controller.quantisation.quantiser=" + entry.name});
     EXPECT_EQ(scenario.controller.quantisation.quantiser, entry.name);
     expect_round_trip(scenario);
@@ -429,4 +429,4 @@ TEST(Overrides, a_hostile_key_is_refused) {
 }
 
 }  // namespace scenario_file_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 /// The least that is a scenario: lines 1 to 5. Tests put more lines after it.
 inline const std::string minimal_text =
@@ -43,4 +43,4 @@ inline std::string content_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace shipped_files_test {
 
 // QSMPC_MODELS for as long as it lives.
@@ -77,4 +77,4 @@ TEST(FindMjcf, a_shipped_file_is_named_without_the_path_of_this_machine) {
 }
 
 }  // namespace shipped_files_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace yaml_text_test {
 
 // Plain text that is neither a number nor true or false may come back quoted.
@@ -112,4 +112,4 @@ TEST(YamlFlow, a_key_longer_than_a_plain_one_may_be_reads_back) {
 }
 
 }  // namespace yaml_text_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

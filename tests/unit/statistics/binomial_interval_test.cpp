@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace binomial_interval_test {
 
 /// P(X ≥ least) for X ~ Binomial(n, p), term by term.
@@ -47,4 +47,4 @@ TEST(ClopperPearson, counts_that_cannot_be_are_refused) {
 }
 
 }  // namespace binomial_interval_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace chi_squared_test {
 
 TEST(ChiSquaredTail, of_two_degrees_is_exponential) {
@@ -26,4 +26,4 @@ TEST(ChiSquaredTail, refuses_what_cannot_be) {
 }
 
 }  // namespace chi_squared_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 
 #include "harness/random/random_numbers.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace exceedance_test {
 
 TEST(Exceedance, nothing_certified_and_nothing_happened_is_no_evidence) {
@@ -99,4 +99,4 @@ TEST(Exceedance, refuses_what_cannot_be) {
 }
 
 }  // namespace exceedance_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -8,7 +8,7 @@
 
 #include "harness/statistics/sample_statistics.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace quantiles_test {
 
 TEST(SortedQuantiles, are_the_values_at_the_nearest_ranks) {
@@ -85,4 +85,4 @@ TEST(RunningMean, says_what_it_cannot_know) {
 }
 
 }  // namespace quantiles_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace sample_statistics_test {
 
 const std::vector<double> kSample{4.0, 1.0, 7.0, 2.0};  // mean 3.5, squares about it 21
@@ -38,4 +38,4 @@ TEST(SampleStatistics, are_not_numbers_of_too_few) {
 }
 
 }  // namespace sample_statistics_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace csv_test {
 
 TEST(CsvField, quotes_a_field_that_needs_it) {
@@ -13,4 +13,4 @@ TEST(CsvField, quotes_a_field_that_needs_it) {
 }
 
 }  // namespace csv_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

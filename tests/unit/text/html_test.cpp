@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace html_test {
 
 TEST(EscapeHtml, markup_characters_become_references) {
@@ -37,4 +37,4 @@ TEST(UrlBeside, nothing_but_a_file_beside_the_page_can_be_named) {
 }
 
 }  // namespace html_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace json_text_test {
 
 using Json = nlohmann::ordered_json;
@@ -25,4 +25,4 @@ TEST(JsonText, numbers_that_are_not_finite_are_null) {
 }
 
 }  // namespace json_text_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace number_format_test {
 
 TEST(FormatNumber, ordinary_numbers_are_plain_decimals) {
@@ -69,4 +69,4 @@ TEST(PlainInTable, holds_for_zero_and_ordinary_sizes) {
 }
 
 }  // namespace number_format_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

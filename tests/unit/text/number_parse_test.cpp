@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace number_parse_test {
 
 TEST(ParseInteger, takes_the_whole_text_or_nothing) {
@@ -33,4 +33,4 @@ TEST(ParseDecimal, refuses_everything_else) {
 }
 
 }  // namespace number_parse_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace printable_test {
 
 TEST(Printable, replaces_control_characters_by_spaces) {
@@ -20,4 +20,4 @@ TEST(Printable, cuts_no_character_in_half) {
 }
 
 }  // namespace printable_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace text_width_test {
 
 TEST(TextLayout, lines_are_broken_at_spaces_and_never_within_a_character) {
@@ -27,4 +27,4 @@ TEST(Padded, fills_up_to_the_columns_and_counts_characters) {
 }
 
 }  // namespace text_width_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace utf8_test {
 
 using std::string_literals::operator""s;
@@ -56,4 +56,4 @@ TEST(ControlCharacter, is_below_the_space_or_delete) {
 }
 
 }  // namespace utf8_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

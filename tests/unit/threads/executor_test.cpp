@@ -12,12 +12,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace executor_test {
 
 TEST(Executor, runs_every_task_exactly_once) {
   for (const int threads : {1, 2, 5}) {
-    const Executor run = executor_of(threads);
+    const controller::Executor run = executor_of(threads);
     for (const int count : {0, 1, 2, 1000}) {
       std::vector<std::atomic<int>> runs(static_cast<std::size_t>(count));
       run(count, [&](int n) { ++runs.at(static_cast<std::size_t>(n)); });
@@ -30,7 +30,7 @@ TEST(Executor, runs_every_task_exactly_once) {
 }
 
 TEST(Executor, has_ended_every_task_when_it_returns) {
-  const Executor run = executor_of(5);
+  const controller::Executor run = executor_of(5);
   for (int round = 0; round < 200; ++round) {
     std::vector<int> squares(100);  // not atomic: read after all are written
     run(100, [&](int n) { squares[static_cast<std::size_t>(n)] = n * n; });
@@ -62,9 +62,9 @@ TEST(Executor, of_one_thread_runs_in_turn_in_the_calling_thread) {
 }
 
 TEST(Executor, a_copy_outlives_the_original) {
-  Executor copy;
+  controller::Executor copy;
   {
-    const Executor original = executor_of(2);
+    const controller::Executor original = executor_of(2);
     copy = original;
   }
   std::atomic<int> sum = 0;
@@ -75,7 +75,7 @@ TEST(Executor, a_copy_outlives_the_original) {
 // Tasks that loop over many particles may be in a task themselves.
 TEST(Executor, a_task_may_use_it_again) {
   for (const int threads : {1, 2, 5}) {
-    const Executor run = executor_of(threads);
+    const controller::Executor run = executor_of(threads);
     std::atomic<int> runs = 0;
     run(10, [&](int) { run(10, [&](int) { ++runs; }); });
     EXPECT_EQ(runs, 100);
@@ -84,7 +84,7 @@ TEST(Executor, a_task_may_use_it_again) {
 
 TEST(Executor, what_a_task_throws_passes_through_and_the_next_call_works) {
   for (const int threads : {1, 2, 5}) {
-    const Executor run = executor_of(threads);
+    const controller::Executor run = executor_of(threads);
     try {
       run(1000, [](int n) {
         if (n == 700) throw std::runtime_error("task 700");
@@ -105,4 +105,4 @@ TEST(Executor, needs_a_thread) {
 }
 
 }  // namespace executor_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

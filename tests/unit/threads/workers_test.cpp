@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace workers_test {
 
 TEST(AvailableThreads, are_at_least_one_and_bound_what_is_asked_for) {
@@ -92,4 +92,4 @@ TEST(Workers, destroying_them_waits_and_drops_what_they_threw) {
 }
 
 }  // namespace workers_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

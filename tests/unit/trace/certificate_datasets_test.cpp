@@ -9,7 +9,7 @@
 #include "harness/trace/file_header.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace certificate_datasets_test {
 
 using ::testing::ElementsAre;
@@ -42,11 +42,11 @@ TEST(CertificateDatasets, what_is_appended_is_read_back) {
                            .scenario_text = "name: a",
                            .scenario_name = "a",
                            .seed = 11});
-  StageBudget budget;
+  controller::StageBudget budget;
   budget.belief = 1.0;
   budget.total = 2.0;
   budget.model = 3.0;
-  StageCertificate certificate;
+  controller::StageCertificate certificate;
   certificate.value = 0.25;
   certificate.kind = "c2";
   append_certificates(file, {budget, budget}, {certificate});
@@ -64,10 +64,10 @@ TEST(CertificateDatasets, what_is_appended_is_read_back) {
 }
 
 TEST(CostFields, hold_every_part_once) {
-  const CostParts cost{.state = 1, .input = 2, .terminal = 4, .box = 8, .obstacle = 16};
+  const controller::CostParts cost{.state = 1, .input = 2, .terminal = 4, .box = 8, .obstacle = 16};
   EXPECT_THAT(cost_row(cost), ElementsAre(1, 2, 4, 8, 16));
   EXPECT_THAT(cost_part_names(), ElementsAre("state", "input", "terminal", "box", "obstacle"));
 }
 
 }  // namespace certificate_datasets_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace residuals_test {
 
 /// A unit mass that moves by the model's period and is then off by `bias`.
-Trace biased_trace(const Dynamics& model, const Eigen::Vector2d& bias, int steps) {
+Trace biased_trace(const models::Dynamics& model, const Eigen::Vector2d& bias, int steps) {
   Trace trace;
   Eigen::VectorXd state = Eigen::Vector2d(0.5, -1.0);
   for (int k = 0; k < steps; ++k) {
@@ -16,8 +16,8 @@ Trace biased_trace(const Dynamics& model, const Eigen::Vector2d& bias, int steps
     step.state = state;
     step.input = Eigen::VectorXd::Constant(1, 0.1 * k);
     step.disturbance = Eigen::Vector2d(0.01 * k, -0.03);
-    StateBatch next(2, 1);
-    model.step(StateBatch(step.state), StateBatch(step.input), next);
+    models::StateBatch next(2, 1);
+    model.step(models::StateBatch(step.state), models::StateBatch(step.input), next);
     state = next.col(0) + step.disturbance + bias;
     trace.steps.push_back(step);
   }
@@ -26,7 +26,7 @@ Trace biased_trace(const Dynamics& model, const Eigen::Vector2d& bias, int steps
 }
 
 TEST(OneStepResiduals, are_what_the_plant_adds_to_model_and_disturbance) {
-  const auto model = make_dynamics("double_integrator", {}, 0.1);
+  const auto model = models::make_dynamics("double_integrator", {}, 0.1);
   const Eigen::Vector2d bias(0.02, -0.003);
   const Eigen::MatrixXd residuals = one_step_residuals(biased_trace(*model, bias, 5), *model);
   ASSERT_EQ(residuals.cols(), 5);
@@ -35,7 +35,7 @@ TEST(OneStepResiduals, are_what_the_plant_adds_to_model_and_disturbance) {
 }
 
 TEST(OneStepResiduals, leave_out_the_period_that_broke_and_one_without_an_end) {
-  const auto model = make_dynamics("double_integrator", {}, 0.1);
+  const auto model = models::make_dynamics("double_integrator", {}, 0.1);
   Trace trace = biased_trace(*model, Eigen::Vector2d::Zero(), 3);
   EXPECT_EQ(true_states(trace).cols(), 4);
   trace.outcome = Outcome::kFault;
@@ -47,9 +47,9 @@ TEST(OneStepResiduals, leave_out_the_period_that_broke_and_one_without_an_end) {
 }
 
 TEST(OneStepResiduals, of_nothing_are_none) {
-  const auto model = make_dynamics("double_integrator", {}, 0.1);
+  const auto model = models::make_dynamics("double_integrator", {}, 0.1);
   EXPECT_EQ(one_step_residuals(Trace(), *model).cols(), 0);
 }
 
 }  // namespace residuals_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 
 #include "harness/scenario/scenario_file.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace summary_test {
 
 /// Straight on at 1.5 m/s from (0, 0) with heading 0: a period of the model is 0.15 m along x.
@@ -166,4 +166,4 @@ TEST(Summary, an_episode_that_broke_before_it_began_has_one_too) {
 }
 
 }  // namespace summary_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

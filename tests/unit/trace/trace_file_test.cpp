@@ -28,7 +28,7 @@
 extern "C" const char* __lsan_default_suppressions() { return "leak:libhdf5"; }
 #endif
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace trace_file_test {
 
 namespace fs = std::filesystem;
@@ -75,13 +75,14 @@ class TraceFile : public ::testing::Test {
 };
 
 TEST_F(TraceFile, reading_gives_back_what_was_written_bit_for_bit) {
-  Trace trace = example_trace();
+  Trace trace = testing::example_trace();
   trace.fault = "it said \"bang\" — and stopped";
   trace.outcome = Outcome::kFault;
   trace.steps[1].state[0] = std::bit_cast<double>(0x7FF800000000BEEFULL);  // NaN with a payload
   trace.steps[2].certificates[0].value = -0.0;
   trace.steps[3].timing.total = std::numeric_limits<double>::infinity();
-  trace.steps[4].particles[1] = {.locations = StateBatch(3, 0), .weights = Eigen::VectorXd(0)};
+  trace.steps[4].particles[1] = {.locations = models::StateBatch(3, 0),
+                                 .weights = Eigen::VectorXd(0)};
   write_trace(path(), trace);
 
   const Trace read = read_trace(path());
@@ -92,10 +93,10 @@ TEST_F(TraceFile, reading_gives_back_what_was_written_bit_for_bit) {
   EXPECT_EQ(to_yaml(read.scenario), trace.scenario_text);
   EXPECT_EQ(read.outcome, trace.outcome);
   EXPECT_EQ(read.fault, trace.fault);
-  EXPECT_TRUE(same_bits(read.final_state, trace.final_state));
+  EXPECT_TRUE(testing::same_bits(read.final_state, trace.final_state));
   ASSERT_EQ(read.steps.size(), trace.steps.size());
   for (std::size_t k = 0; k < read.steps.size(); ++k) {
-    expect_same_step(read.steps[k], trace.steps[k]);
+    testing::expect_same_step(read.steps[k], trace.steps[k]);
   }
   ASSERT_EQ(read.motion.size(), trace.motion.size());
   for (std::size_t i = 0; i < read.motion.size(); ++i) {
@@ -139,7 +140,7 @@ void copy_without(const std::string& file, const std::vector<std::string>& missi
 }
 
 TEST_F(TraceFile, a_trace_from_before_the_newer_numbers_is_read_with_what_it_has) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   write_trace(path("new.h5"), trace);
   copy_without(path("new.h5"),
                {"/certificate/smoothed", "/certificate/dynamics", "/certificate/model"},
@@ -148,38 +149,38 @@ TEST_F(TraceFile, a_trace_from_before_the_newer_numbers_is_read_with_what_it_has
   ASSERT_EQ(read.steps.size(), trace.steps.size());
   for (std::size_t k = 0; k < read.steps.size(); ++k) {
     StepRecord expected = trace.steps[k];
-    for (StageCertificate& stage : expected.certificates) stage.smoothed = 1.0;
-    for (StageBudget& stage : expected.budgets) {
+    for (controller::StageCertificate& stage : expected.certificates) stage.smoothed = 1.0;
+    for (controller::StageBudget& stage : expected.budgets) {
       stage.dynamics = std::numeric_limits<double>::quiet_NaN();
       stage.model = 0.0;
     }
-    expect_same_step(read.steps[k], expected);
+    testing::expect_same_step(read.steps[k], expected);
   }
 }
 
 TEST_F(TraceFile, a_trace_from_before_measurement_noise_is_of_a_planner_that_saw_the_state) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   write_trace(path("new.h5"), trace);
   copy_without(path("new.h5"), {"/plant/observation"}, path("old.h5"));
   const Trace read = read_trace(path("old.h5"));
   ASSERT_EQ(read.steps.size(), trace.steps.size());
   for (std::size_t k = 0; k < read.steps.size(); ++k) {
-    EXPECT_FALSE(same_bits(trace.steps[k].observation, trace.steps[k].state));
+    EXPECT_FALSE(testing::same_bits(trace.steps[k].observation, trace.steps[k].state));
     StepRecord expected = trace.steps[k];
     expected.observation = expected.state;
-    expect_same_step(read.steps[k], expected);
+    testing::expect_same_step(read.steps[k], expected);
   }
 }
 
 TEST_F(TraceFile, an_episode_without_steps_and_one_without_a_mujoco_model_are_read_back) {
-  Trace trace = example_trace({.steps = 0});
+  Trace trace = testing::example_trace({.steps = 0});
   trace.motion.clear();
   write_trace(path("empty.h5"), trace);
   const Trace empty = read_trace(path("empty.h5"));
   EXPECT_TRUE(empty.steps.empty());
-  EXPECT_TRUE(same_bits(empty.final_state, trace.final_state));
+  EXPECT_TRUE(testing::same_bits(empty.final_state, trace.final_state));
 
-  Trace analytic = example_trace();
+  Trace analytic = testing::example_trace();
   for (MotionSample& sample : analytic.motion) sample.qpos.clear();
   write_trace(path("analytic.h5"), analytic);
   const Trace read = read_trace(path("analytic.h5"));
@@ -189,14 +190,14 @@ TEST_F(TraceFile, an_episode_without_steps_and_one_without_a_mujoco_model_are_re
 }
 
 TEST_F(TraceFile, a_scenario_text_beyond_the_size_of_a_plain_attribute_is_kept) {
-  Trace trace = example_trace({.steps = 1});
+  Trace trace = testing::example_trace({.steps = 1});
   trace.scenario_text += "# " + std::string(200'000, 'x') + "\n";
   write_trace(path(), trace);
   EXPECT_EQ(read_trace(path()).scenario_text, trace.scenario_text);
 }
 
 TEST_F(TraceFile, every_dataset_says_its_units_and_names_every_axis) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   write_trace(path(), trace);
   const Hdf5File file = Hdf5File::open(path());
   for (const DatasetSpec& spec : trace_layout(trace.scenario)) {
@@ -209,14 +210,14 @@ TEST_F(TraceFile, every_dataset_says_its_units_and_names_every_axis) {
 }
 
 TEST_F(TraceFile, the_finished_file_is_closed_for_every_reader) {
-  write_trace(path(), example_trace());
+  write_trace(path(), testing::example_trace());
   EXPECT_FALSE(Hdf5File::open(path()).left_open_by_writer());
   // Byte 11 of the superblock holds the flags of an open writer; other programs refuse on them.
   EXPECT_EQ(bytes_of(path()).at(11), '\0');
 }
 
 TEST_F(TraceFile, equal_traces_give_equal_content_whatever_the_timings) {
-  Trace trace = example_trace({.steps = 40});
+  Trace trace = testing::example_trace({.steps = 40});
   write_trace(path("a.h5"), trace);
   write_trace(path("b.h5"), trace);
   const std::string a = content_of(path("a.h5"));
@@ -233,7 +234,7 @@ TEST_F(TraceFile, equal_traces_give_equal_content_whatever_the_timings) {
 }
 
 TEST_F(TraceFile, a_killed_run_leaves_every_step_that_was_appended) {
-  const Trace trace = example_trace({.steps = 30});
+  const Trace trace = testing::example_trace({.steps = 30});
   const pid_t child = ::fork();
   ASSERT_GE(child, 0);
   if (child == 0) {
@@ -251,12 +252,12 @@ TEST_F(TraceFile, a_killed_run_leaves_every_step_that_was_appended) {
   EXPECT_EQ(read.final_state.size(), 0);
   ASSERT_EQ(read.steps.size(), trace.steps.size());
   for (std::size_t k = 0; k < read.steps.size(); ++k) {
-    expect_same_step(read.steps[k], trace.steps[k]);
+    testing::expect_same_step(read.steps[k], trace.steps[k]);
   }
 }
 
 TEST_F(TraceFile, a_run_that_is_killed_at_any_moment_leaves_a_readable_file) {
-  const Trace trace = example_trace({.steps = 20});
+  const Trace trace = testing::example_trace({.steps = 20});
   for (const std::size_t before : {0, 1, 2, 5, 11, 19, 37}) {
     std::array<int, 2> pipe{};
     ASSERT_EQ(::pipe(pipe.data()), 0);
@@ -279,13 +280,13 @@ TEST_F(TraceFile, a_run_that_is_killed_at_any_moment_leaves_a_readable_file) {
     const Trace read = read_trace(path() + ".partial");
     EXPECT_GE(read.steps.size(), before);
     for (std::size_t k = 0; k < read.steps.size(); ++k) {
-      expect_same_step(read.steps[k], trace.steps[k % trace.steps.size()]);
+      testing::expect_same_step(read.steps[k], trace.steps[k % trace.steps.size()]);
     }
   }
 }
 
 TEST_F(TraceFile, a_writer_that_is_given_up_leaves_the_partial_file_and_the_old_result) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   write_bytes(path(), "an older result");
   {
     TraceWriter writer(path(), trace);
@@ -296,7 +297,7 @@ TEST_F(TraceFile, a_writer_that_is_given_up_leaves_the_partial_file_and_the_old_
 }
 
 TEST_F(TraceFile, a_path_that_cannot_be_written_is_named_with_the_systems_words) {
-  const Trace trace = example_trace({.steps = 1});
+  const Trace trace = testing::example_trace({.steps = 1});
   try {
     write_trace(path("no/such/folder/episode.h5"), trace);
     FAIL() << "no error";
@@ -308,7 +309,7 @@ TEST_F(TraceFile, a_path_that_cannot_be_written_is_named_with_the_systems_words)
 
 TEST_F(TraceFile, a_name_that_is_taken_by_a_folder_is_an_error_at_the_end) {
   fs::create_directories(path() + "/occupied");
-  EXPECT_THROW(write_trace(path(), example_trace({.steps = 1})), IoError);
+  EXPECT_THROW(write_trace(path(), testing::example_trace({.steps = 1})), IoError);
 }
 
 /// What `write_trace` does in a process whose files may not grow beyond `limit` bytes; 0: it threw
@@ -321,7 +322,7 @@ int outcome_of_a_full_disk(const std::string& file, rlim_t limit) {
     ::setrlimit(RLIMIT_FSIZE, &size);
     int code = 1;
     try {
-      write_trace(file, example_trace({.steps = 60, .points = 100}));
+      write_trace(file, testing::example_trace({.steps = 60, .points = 100}));
     } catch (const IoError& error) {
       const std::string text = error.what();
       const bool says_why =
@@ -344,7 +345,7 @@ TEST_F(TraceFile, a_disk_that_is_full_is_an_error_at_whatever_size_it_comes) {
 }
 
 TEST_F(TraceFile, a_record_of_the_wrong_size_is_refused_before_anything_is_written) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   TraceWriter writer(path(), trace);
   StepRecord wrong = trace.steps[0];
   wrong.plan_states.conservativeResize(3, 2);
@@ -376,7 +377,7 @@ TEST_F(TraceFile, files_that_are_no_traces_are_refused_by_name) {
 }
 
 TEST_F(TraceFile, a_trace_cut_at_any_length_is_refused) {
-  write_trace(path(), example_trace());
+  write_trace(path(), testing::example_trace());
   const std::string whole = bytes_of(path());
   for (std::size_t length = 0; length < whole.size(); length += whole.size() / 50) {
     write_bytes(path("cut.h5"), whole.substr(0, length));
@@ -385,7 +386,7 @@ TEST_F(TraceFile, a_trace_cut_at_any_length_is_refused) {
 }
 
 TEST_F(TraceFile, a_damaged_partial_file_is_refused_at_once) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   {
     TraceWriter writer(path(), trace);
     writer.append(trace.steps[0], trace.motion);
@@ -400,7 +401,7 @@ TEST_F(TraceFile, a_damaged_partial_file_is_refused_at_once) {
 }
 
 TEST_F(TraceFile, a_damaged_trace_is_read_or_refused_and_never_anything_else) {
-  write_trace(path(), example_trace({.steps = 2}));
+  write_trace(path(), testing::example_trace({.steps = 2}));
   const std::string whole = bytes_of(path());
   std::size_t refused = 0;
   for (std::size_t at = 0; at < whole.size(); at += 97) {
@@ -413,7 +414,7 @@ TEST_F(TraceFile, a_damaged_trace_is_read_or_refused_and_never_anything_else) {
 }
 
 TEST_F(TraceFile, threads_may_write_traces_at_the_same_time) {
-  const Trace trace = example_trace();
+  const Trace trace = testing::example_trace();
   std::vector<std::thread> threads;
   threads.reserve(4);
   for (int i = 0; i < 4; ++i) {
@@ -436,4 +437,4 @@ TEST(OutcomeName, every_outcome_has_a_name_that_leads_back_to_it) {
 }
 
 }  // namespace trace_file_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -23,7 +23,7 @@ template <class Matrix>
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
 }
 
-inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
+inline void expect_same_stages(const harness::StepRecord& a, const harness::StepRecord& b) {
   ASSERT_EQ(a.particles.size(), b.particles.size());
   for (std::size_t s = 0; s < a.particles.size(); ++s) {
     EXPECT_TRUE(same_bits(a.particles[s].locations, b.particles[s].locations));
@@ -52,7 +52,7 @@ inline void expect_same_stages(const StepRecord& a, const StepRecord& b) {
   }
 }
 
-inline void expect_same_step(const StepRecord& a, const StepRecord& b) {
+inline void expect_same_step(const harness::StepRecord& a, const harness::StepRecord& b) {
   EXPECT_TRUE(same_bits(a.time, b.time));
   EXPECT_TRUE(same_bits(a.state, b.state));
   EXPECT_TRUE(same_bits(a.observation, b.observation));

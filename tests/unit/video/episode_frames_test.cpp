@@ -12,13 +12,13 @@
 #include "render/scene/belief_painter.hpp"
 #include "tests/unit/video/straight_episode.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace episode_frames_test {
 
 using testing::HasSubstr;
 
-std::string row_of(const Frame& frame, const std::string& name) {
-  for (const HudRow& row : frame.hud) {
+std::string row_of(const render::Frame& frame, const std::string& name) {
+  for (const render::HudRow& row : frame.hud) {
     if (row.name == name) {
       return row.value;
     }
@@ -45,7 +45,7 @@ TEST(episode_frames, camera_follows_smoothly_without_lag) {
   const EpisodeFrames frames(trace);
   // The states lie on a line, which the smoothing must reproduce, at its ends too.
   for (const double time : {0.0, 0.13, 0.37, 0.6}) {
-    const Frame frame = frames.at(time);
+    const render::Frame frame = frames.at(time);
     ASSERT_TRUE(frame.followed);
     EXPECT_NEAR(frame.followed->x, kStride * time / kPeriod, 1e-9) << time;
     EXPECT_NEAR(frame.followed->y, kKick * time / kPeriod, 1e-9) << time;
@@ -76,7 +76,7 @@ TEST(episode_frames, qpos_comes_from_the_recorded_motion) {
 TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   const Trace trace = straight_trace();
   const EpisodeFrames frames(trace);
-  const Frame frame = frames.at(0.2);  // the third period begins
+  const render::Frame frame = frames.at(0.2);  // the third period begins
   ASSERT_EQ(frame.charts.size(), 4U);
   ASSERT_EQ(frame.planned_path.size(), 3U);
   EXPECT_DOUBLE_EQ(frame.planned_path[0].x, 2.0 * kStride);
@@ -93,11 +93,11 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
 
 TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
   Trace trace = straight_trace();
-  Box obstacle = unbounded_safe_set(3).bounds;
+  controller::Box obstacle = controller::unbounded_safe_set(3).bounds;
   obstacle.lower.head(2) << 1.0, 0.5;
   obstacle.upper.head(2) << 1.5, 0.8;
   trace.scenario.safe_set.obstacles.push_back(obstacle);
-  const World world = EpisodeFrames(trace).world();
+  const render::World world = EpisodeFrames(trace).world();
   EXPECT_EQ(world.bounds.x_upper, 3.0);
   EXPECT_EQ(world.bounds.y_lower, -1.0);
   ASSERT_EQ(world.obstacles.size(), 1U);
@@ -137,14 +137,14 @@ Trace cloudy_trace() {
 
 TEST(episode_frames, ellipses_and_tube_are_those_of_the_particles_moments) {
   const Trace trace = cloudy_trace();
-  const Frame frame = EpisodeFrames(trace).at(0.2);
+  const render::Frame frame = EpisodeFrames(trace).at(0.2);
   ASSERT_EQ(frame.ellipses.size(), 3U);
   const double radius = std::sqrt(-2.0 * std::log(0.05));  // of 95 % of the standard Gaussian
-  const PlanarEllipse& most = frame.ellipses[1].most;
+  const render::PlanarEllipse& most = frame.ellipses[1].most;
   EXPECT_NEAR(most.centre.x, 3.0 * kStride, 1e-12);
-  EXPECT_NEAR(std::abs(on_ellipse(most, 0.0).y - most.centre.y), 0.2 * radius, 1e-12);
-  EXPECT_NEAR(std::abs(on_ellipse(most, 0.5 * std::numbers::pi).x - most.centre.x), 0.1 * radius,
-              1e-12);
+  EXPECT_NEAR(std::abs(render::on_ellipse(most, 0.0).y - most.centre.y), 0.2 * radius, 1e-12);
+  EXPECT_NEAR(std::abs(render::on_ellipse(most, 0.5 * std::numbers::pi).x - most.centre.x),
+              0.1 * radius, 1e-12);
   EXPECT_NEAR(std::hypot(frame.ellipses[1].half.first_axis.x, frame.ellipses[1].half.first_axis.y),
               0.2 * std::sqrt(-2.0 * std::log(0.5)), 1e-12);
   // The plan runs along x: the tube is as wide as the ellipse is along y.
@@ -165,7 +165,7 @@ TEST(episode_frames, ghost_drives_along_the_plan_of_the_period_before) {
 
 TEST(episode_frames, clearance_of_the_driven_path_is_the_distance_to_the_unsafe_set) {
   const Trace trace = straight_trace();
-  const Frame frame = EpisodeFrames(trace).at(0.05);
+  const render::Frame frame = EpisodeFrames(trace).at(0.05);
   ASSERT_EQ(frame.clearances.size(), frame.driven_path.size());
   EXPECT_NEAR(frame.clearances.front(), 1.0, 1e-12);  // from the origin to the walls at -1
 }
@@ -174,10 +174,10 @@ TEST(episode_frames, raw_points_are_the_stepped_ones_with_the_noise) {
   const Trace trace = cloudy_trace();
   Overlays overlays;
   overlays.raw = true;
-  const Frame frame = EpisodeFrames(trace, overlays).at(0.2);
+  const render::Frame frame = EpisodeFrames(trace, overlays).at(0.2);
   ASSERT_GT(frame.raw_points.size(), 2U * 4U);
   EXPECT_EQ(row_of(frame, "raw points drawn"), "all");
-  PlanarPoint mean;
+  render::PlanarPoint mean;
   for (std::size_t i = 0; i < frame.raw_points.size(); ++i) mean.x += frame.raw_points[i].x;
   // Both stages step 0.15 m ahead; noise and clouds are symmetric and as heavy on either side.
   EXPECT_NEAR(mean.x / static_cast<double>(frame.raw_points.size()), (3.0 + 4.0) / 2.0 * kStride,
@@ -189,11 +189,11 @@ TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
   Trace trace = straight_trace();
   constexpr Eigen::Index kMany = 7000;  // a stage, three stages
   for (StageParticles& stage : trace.steps[0].particles) {
-    stage.locations = Points::Random(3, kMany);
+    stage.locations = controller::Points::Random(3, kMany);
     stage.weights = Eigen::VectorXd::Constant(kMany, 1.0 / kMany);
   }
   const EpisodeFrames frames(trace);
-  const Frame frame = frames.at(0.0);
+  const render::Frame frame = frames.at(0.0);
   EXPECT_EQ(frame.particles[0].points.size(), 3500U);
   EXPECT_EQ(row_of(frame, "particles drawn"), "1 of 2");
   EXPECT_EQ(row_of(frames.at(0.2), "particles drawn"), "no row particles drawn");
@@ -201,7 +201,7 @@ TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
 
 TEST(episode_frames, overlays_can_be_switched_off) {
   const Trace trace = cloudy_trace();
-  const Frame frame = EpisodeFrames(trace, parse_overlays("none", "--overlays")).at(0.2);
+  const render::Frame frame = EpisodeFrames(trace, parse_overlays("none", "--overlays")).at(0.2);
   EXPECT_TRUE(frame.particles.empty() && frame.ellipses.empty() && frame.tube.empty());
   EXPECT_TRUE(frame.raw_points.empty() && frame.clearances.empty() && !frame.ghost);
   EXPECT_FALSE(frame.planned_path.empty());
@@ -209,7 +209,7 @@ TEST(episode_frames, overlays_can_be_switched_off) {
 
 TEST(episode_frames, planning_time_has_the_deadline_as_its_limit) {
   Trace trace = straight_trace();
-  const auto limit_of = [](const Frame& frame) { return frame.charts.at(3).limit.value(); };
+  const auto limit_of = [](const render::Frame& frame) { return frame.charts.at(3).limit.value(); };
   EXPECT_EQ(limit_of(EpisodeFrames(trace).at(0.2)).value, 1000.0 * kPeriod);
   EXPECT_THAT(limit_of(EpisodeFrames(trace).at(0.2)).label, HasSubstr("period"));
   trace.scenario.controller.deadline = 0.05;
@@ -225,7 +225,7 @@ TEST(episode_frames, a_long_history_scrolls) {
     trace.steps.push_back(step);
     trace.steps.back().time = kPeriod * k;
   }
-  const Frame frame = EpisodeFrames(trace).at(29.95);
+  const render::Frame frame = EpisodeFrames(trace).at(29.95);
   EXPECT_EQ(frame.charts[0].slots, 200U);  // 20 s
   EXPECT_EQ(frame.charts[0].values.size(), 200U);
 }
@@ -248,4 +248,4 @@ TEST(overlays, lists_name_what_is_shown) {
 }
 
 }  // namespace episode_frames_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

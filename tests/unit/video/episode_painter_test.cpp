@@ -8,7 +8,7 @@
 
 #include "tests/unit/video/straight_episode.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace episode_painter_test {
 
 constexpr VideoLayout kSmall{.width = 640, .height = 360};
@@ -19,11 +19,11 @@ VideoLayout seen_by(const std::string& camera) {
   return layout;
 }
 
-int red_pixels(const Image& image, int x_begin, int x_end) {
+int red_pixels(const render::Image& image, int x_begin, int x_end) {
   int count = 0;
   for (int y = 40; y < image.height / 2; ++y) {
     for (int x = x_begin; x < x_end; ++x) {
-      const Pixel pixel = pixel_at(image, {x + 0.5, y + 0.5});
+      const render::Pixel pixel = render::pixel_at(image, {x + 0.5, y + 0.5});
       count += pixel.red > 180 && pixel.green < 70 && pixel.blue < 70 ? 1 : 0;
     }
   }
@@ -34,8 +34,8 @@ TEST(episode_painter, two_threads_draw_the_same_pictures_whatever_came_before) {
   const Trace trace = straight_trace();
   for (const char* camera : {"chase", "split"}) {
     const EpisodePictures pictures(trace, seen_by(camera));
-    Image images[2];
-    const auto draw = [&pictures](double before, Image& image) {
+    render::Image images[2];
+    const auto draw = [&pictures](double before, render::Image& image) {
       EpisodePainter painter(pictures);
       painter.draw(before, image);
       painter.draw(0.37, image);
@@ -53,7 +53,7 @@ TEST(episode_painter, shows_two_episodes_side_by_side) {
   const Trace left = straight_trace();
   const EpisodePictures pictures(left, kSmall, &left);
   EpisodePainter painter(pictures);
-  Image image;
+  render::Image image;
   painter.draw(0.3, image);
   EXPECT_GT(red_pixels(image, 0, 319), 50);
   EXPECT_GT(red_pixels(image, 321, 640), 50);
@@ -66,7 +66,7 @@ TEST(episode_painter, the_shorter_episode_stands_on_its_last_frame) {
   right.final_state = state_at(3);
   const EpisodePictures pictures(left, kSmall, &right);
   EXPECT_DOUBLE_EQ(pictures.duration(), 0.6);
-  const std::vector<Frame> frames = pictures.at(0.5);
+  const std::vector<render::Frame> frames = pictures.at(0.5);
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_TRUE(frames[0].banner.empty());
   EXPECT_THAT(frames[1].banner, testing::HasSubstr("target reached after 0.3 s"));
@@ -90,4 +90,4 @@ TEST(episode_painter, refuses_cameras_that_are_none) {
 }
 
 }  // namespace episode_painter_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

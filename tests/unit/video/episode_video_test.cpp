@@ -11,7 +11,7 @@
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/video/straight_episode.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace episode_video_test {
 
 using testing::HasSubstr;
@@ -19,28 +19,28 @@ using testing::HasSubstr;
 constexpr EpisodeVideoOptions kSmallVideo{.width = 320, .height = 180, .fps = 10};
 
 TEST(episode_video, lasts_as_long_as_the_episode_and_a_second_more) {
-  const std::string path = fresh_folder() / "episode.mp4";
+  const std::string path = render::fresh_folder() / "episode.mp4";
   int calls = 0;
   write_episode_video(straight_trace(), kSmallVideo, path, [&](int done, int total) {
     EXPECT_EQ(done, ++calls);
     EXPECT_EQ(total, 16);
     return true;
   });
-  const DecodedVideo video = decode_video(path);
+  const render::DecodedVideo video = render::decode_video(path);
   EXPECT_EQ(video.frames, 16);  // 0.6 s and 1 s at 10 frames a second
   EXPECT_NEAR(video.duration, 1.6, 1e-3);
   EXPECT_EQ(video.width, 320);
 }
 
 TEST(episode_video, does_not_depend_on_the_number_of_threads) {
-  const auto folder = fresh_folder();
+  const auto folder = render::fresh_folder();
   EpisodeVideoOptions options = kSmallVideo;
   for (const int threads : {1, 3}) {
     options.threads = threads;
     write_episode_video(straight_trace(), options, folder / (std::to_string(threads) + ".mp4"));
   }
-  const DecodedVideo one = decode_video(folder / "1.mp4");
-  const DecodedVideo three = decode_video(folder / "3.mp4");
+  const render::DecodedVideo one = render::decode_video(folder / "1.mp4");
+  const render::DecodedVideo three = render::decode_video(folder / "3.mp4");
   EXPECT_EQ(one.frames, three.frames);
   // The pictures are the same to the last bit (episode_painter_test.cpp); the encoder is not.
   ASSERT_EQ(one.first.rgb.size(), three.first.rgb.size());
@@ -52,25 +52,25 @@ TEST(episode_video, does_not_depend_on_the_number_of_threads) {
 }
 
 TEST(episode_video, speed_shortens_the_episode_and_not_the_second_of_its_outcome) {
-  const std::string path = fresh_folder() / "episode.mp4";
+  const std::string path = render::fresh_folder() / "episode.mp4";
   EpisodeVideoOptions options = kSmallVideo;
   options.speed = 2.0;
   const VideoTimings timings = write_episode_video(straight_trace(), options, path);
   EXPECT_EQ(timings.frames, 13);  // 0.3 s and 1 s at 10 frames a second
-  EXPECT_EQ(decode_video(path).frames, 13);
+  EXPECT_EQ(render::decode_video(path).frames, 13);
 }
 
 TEST(episode_video, part_of_an_episode_has_the_length_of_the_part) {
-  const auto folder = fresh_folder();
+  const auto folder = render::fresh_folder();
   EpisodeVideoOptions options = kSmallVideo;
   options.from = 0.2;
   options.to = 0.5;
   write_episode_video(straight_trace(), options, folder / "part.mp4");
-  EXPECT_EQ(decode_video(folder / "part.mp4").frames, 3);  // no outcome is shown
+  EXPECT_EQ(render::decode_video(folder / "part.mp4").frames, 3);  // no outcome is shown
   // It begins where the whole one is then.
   write_episode_still(straight_trace(), options, 0.2, folder / "still.png");
-  const Image begin = decode_video(folder / "part.mp4").first;
-  const Image still = decode_video(folder / "still.png").first;
+  const render::Image begin = render::decode_video(folder / "part.mp4").first;
+  const render::Image still = render::decode_video(folder / "still.png").first;
   double difference = 0.0;
   for (std::size_t i = 0; i < still.rgb.size(); ++i) {
     difference += std::abs(begin.rgb[i] - still.rgb[i]);
@@ -79,7 +79,7 @@ TEST(episode_video, part_of_an_episode_has_the_length_of_the_part) {
 }
 
 TEST(episode_video, speeds_and_times_that_are_none_are_refused_and_leave_no_file) {
-  const auto folder = fresh_folder();
+  const auto folder = render::fresh_folder();
   const auto refused = [&](double speed, double from, double to) {
     EpisodeVideoOptions options = kSmallVideo;
     options.speed = speed;
@@ -99,11 +99,11 @@ TEST(episode_video, speeds_and_times_that_are_none_are_refused_and_leave_no_file
 }
 
 TEST(episode_video, every_format_shows_the_whole_episode) {
-  const auto folder = fresh_folder();
+  const auto folder = render::fresh_folder();
   for (const std::string name : {"webm", "gif"}) {
     const std::string path = folder / ("episode." + name);
     write_episode_video(straight_trace(), kSmallVideo, path);
-    const DecodedVideo video = decode_video(path);
+    const render::DecodedVideo video = render::decode_video(path);
     EXPECT_EQ(video.frames, 16) << name;
     EXPECT_NEAR(video.duration, 1.6, 0.02) << name;
     EXPECT_EQ(video.width, 320) << name;
@@ -116,7 +116,7 @@ TEST(episode_video, timings_say_what_was_made_and_what_it_cost) {
     step.timing.simulate = 2.5;
   }
   const VideoTimings timings =
-      write_episode_video(trace, kSmallVideo, fresh_folder() / "episode.mp4");
+      write_episode_video(trace, kSmallVideo, render::fresh_folder() / "episode.mp4");
   EXPECT_EQ(timings.frames, 16);
   EXPECT_EQ(timings.codec, "h264");
   EXPECT_EQ(timings.width, 320);
@@ -133,14 +133,14 @@ TEST(episode_video, timings_say_what_was_made_and_what_it_cost) {
 }
 
 TEST(episode_video, stopping_early_keeps_what_is_done) {
-  const std::string path = fresh_folder() / "episode.mp4";
+  const std::string path = render::fresh_folder() / "episode.mp4";
   write_episode_video(straight_trace(), kSmallVideo, path,
                       [](int done, int /*total*/) { return done < 5; });
-  EXPECT_EQ(decode_video(path).frames, 5);
+  EXPECT_EQ(render::decode_video(path).frames, 5);
 }
 
 TEST(episode_video, vehicle_that_cannot_be_loaded_ends_it_without_a_video) {
-  const std::string path = fresh_folder() / "episode.mp4";
+  const std::string path = render::fresh_folder() / "episode.mp4";
   Trace trace = straight_trace();
   trace.scenario.plant.mjcf = "/nonexistent/car.xml";
   EXPECT_THROW(write_episode_video(trace, kSmallVideo, path), std::runtime_error);
@@ -169,7 +169,7 @@ TEST(episode_video, what_cannot_be_drawn_is_said_instead) {
 }
 
 TEST(episode_video, motion_of_another_vehicle_is_refused) {
-  const std::string path = fresh_folder() / "episode.mp4";
+  const std::string path = render::fresh_folder() / "episode.mp4";
   Trace trace = straight_trace();
   trace.motion = {{0.0, {1.0, 2.0}}, {0.6, {1.0, 2.0}}};
   EXPECT_THROW(write_episode_video(trace, kSmallVideo, path), std::invalid_argument);
@@ -177,12 +177,12 @@ TEST(episode_video, motion_of_another_vehicle_is_refused) {
 }
 
 TEST(episode_video, still_is_a_picture_of_the_size_asked_for) {
-  const std::string path = fresh_folder() / "still.png";
+  const std::string path = render::fresh_folder() / "still.png";
   write_episode_still(straight_trace(), kSmallVideo, 0.3, path);
-  const DecodedVideo still = decode_video(path);
+  const render::DecodedVideo still = render::decode_video(path);
   EXPECT_EQ(still.width, 320);
   EXPECT_EQ(still.height, 180);
 }
 
 }  // namespace episode_video_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

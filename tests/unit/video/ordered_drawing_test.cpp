@@ -8,23 +8,23 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace ordered_drawing_test {
 
 OrderedDrawing::Drawer number_drawer() {
-  return [](int index, Image& out) { out.width = index; };
+  return [](int index, render::Image& out) { out.width = index; };
 }
 
 TEST(ordered_drawing, pictures_come_in_order_whoever_drew_them) {
   constexpr int kTotal = 50;
   OrderedDrawing drawing({.total = kTotal, .threads = 3}, [] {
-    return [](int index, Image& out) {
+    return [](int index, render::Image& out) {
       // Every third is late.
       std::this_thread::sleep_for(std::chrono::milliseconds(index % 3 == 0 ? 2 : 0));
       out.width = index;
     };
   });
-  Image image;
+  render::Image image;
   for (int index = 0; index < kTotal; ++index) {
     drawing.take(image);
     EXPECT_EQ(image.width, index);
@@ -35,13 +35,13 @@ TEST(ordered_drawing, pictures_come_in_order_whoever_drew_them) {
 TEST(ordered_drawing, no_more_pictures_are_begun_than_there_are_slots) {
   std::atomic<int> begun = 0;
   OrderedDrawing drawing({.total = 100, .threads = 3}, [&begun] {
-    return [&begun](int index, Image& out) {
+    return [&begun](int index, render::Image& out) {
       ++begun;
       out.width = index;
     };
   });
   ASSERT_EQ(drawing.slots(), 6);
-  Image image;
+  render::Image image;
   for (int taken = 1; taken <= 20; ++taken) {
     drawing.take(image);
     EXPECT_LE(begun, taken + drawing.slots());
@@ -53,12 +53,12 @@ TEST(ordered_drawing, no_more_pictures_are_begun_than_there_are_slots) {
 TEST(ordered_drawing, memory_of_pictures_is_used_again) {
   std::atomic<int> allocations = 0;
   OrderedDrawing drawing({.total = 60, .threads = 2}, [&allocations] {
-    return [&allocations](int /*index*/, Image& out) {
+    return [&allocations](int /*index*/, render::Image& out) {
       allocations += out.rgb.empty() ? 1 : 0;
       out.rgb.resize(12);
     };
   });
-  Image image;
+  render::Image image;
   for (int index = 0; index < 60; ++index) {
     drawing.take(image);
   }
@@ -71,11 +71,11 @@ TEST(ordered_drawing, each_thread_makes_its_own_drawer_and_uses_it_alone) {
   OrderedDrawing drawing({.total = 40, .threads = 2}, [&] {
     ++drawers;
     const std::thread::id owner = std::this_thread::get_id();
-    return [&strangers, owner](int /*index*/, Image& /*out*/) {
+    return [&strangers, owner](int /*index*/, render::Image& /*out*/) {
       strangers += std::this_thread::get_id() == owner ? 0 : 1;
     };
   });
-  Image image;
+  render::Image image;
   for (int index = 0; index < 40; ++index) {
     drawing.take(image);
   }
@@ -85,11 +85,11 @@ TEST(ordered_drawing, each_thread_makes_its_own_drawer_and_uses_it_alone) {
 
 TEST(ordered_drawing, what_a_drawer_throws_reaches_the_taker) {
   OrderedDrawing drawing({.total = 100, .threads = 2}, [] {
-    return [](int index, Image& /*out*/) {
+    return [](int index, render::Image& /*out*/) {
       if (index == 7) throw std::runtime_error("no paint");
     };
   });
-  Image image;
+  render::Image image;
   const auto take_all = [&] {
     for (int index = 0; index < 100; ++index) {
       drawing.take(image);
@@ -101,23 +101,23 @@ TEST(ordered_drawing, what_a_drawer_throws_reaches_the_taker) {
 TEST(ordered_drawing, what_making_a_drawer_throws_reaches_the_taker) {
   OrderedDrawing drawing({.total = 5, .threads = 1},
                          []() -> OrderedDrawing::Drawer { throw std::runtime_error("no easel"); });
-  Image image;
+  render::Image image;
   EXPECT_THROW(drawing.take(image), std::runtime_error);
 }
 
 TEST(ordered_drawing, ends_though_pictures_are_left) {
   OrderedDrawing drawing({.total = 1000, .threads = 2}, number_drawer);
-  Image image;
+  render::Image image;
   drawing.take(image);
 }
 
 TEST(ordered_drawing, tells_how_long_drawing_took) {
   OrderedDrawing drawing({.total = 4, .threads = 2}, [] {
-    return [](int /*index*/, Image& /*out*/) {
+    return [](int /*index*/, render::Image& /*out*/) {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     };
   });
-  Image image;
+  render::Image image;
   for (int index = 0; index < 4; ++index) {
     drawing.take(image);
   }
@@ -129,4 +129,4 @@ TEST(ordered_drawing, needs_a_thread) {
 }
 
 }  // namespace ordered_drawing_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -7,7 +7,7 @@
 #include "harness/trace/trace.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 
 inline constexpr int kSteps = 6;
 inline constexpr double kPeriod = 0.1;   // s
@@ -22,9 +22,9 @@ inline Scenario straight_scenario() {
   Scenario scenario;
   scenario.name = "straight";
   scenario.model = {"dubins", {{"speed", 1.5}}};
-  scenario.plant = {"analytic", kRedBox};
+  scenario.plant = {"analytic", render::kRedBox};
   scenario.time_step = kPeriod;
-  scenario.safe_set = unbounded_safe_set(3);
+  scenario.safe_set = controller::unbounded_safe_set(3);
   scenario.safe_set.bounds.lower << -1.0, -1.0, -HUGE_VAL;
   scenario.safe_set.bounds.upper << 3.0, 2.0, HUGE_VAL;
   scenario.target = {Eigen::Vector3d(2.0, 1.0, 0.0), 0.3};
@@ -46,7 +46,8 @@ inline Trace straight_trace() {
     step.plan_states = Eigen::MatrixXd::Zero(3, 3);
     for (int stage = 0; stage < 3; ++stage) {
       step.plan_states.col(stage) = state_at(k) + Eigen::Vector3d(kStride * stage, 0.0, 0.0);
-      step.particles.push_back({StateBatch(step.plan_states.col(stage)), Eigen::VectorXd::Ones(1)});
+      step.particles.push_back(
+          {models::StateBatch(step.plan_states.col(stage)), Eigen::VectorXd::Ones(1)});
     }
     step.certificates.resize(2);
     step.certificates[0].value = 1e-3 * (k + 1);
@@ -58,4 +59,4 @@ inline Trace straight_trace() {
   return trace;
 }
 
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -9,7 +9,7 @@
 #include "harness/errors.hpp"
 #include "tests/support/temporary_folder.hpp"
 
-namespace qsmpc {
+namespace qsmpc::harness {
 namespace video_timings_test {
 
 std::string written(const testing::TemporaryFolder& folder, const std::string& text) {
@@ -51,4 +51,4 @@ TEST(video_timings, what_is_no_such_file_is_refused_with_its_name) {
 }
 
 }  // namespace video_timings_test
-}  // namespace qsmpc
+}  // namespace qsmpc::harness

@@ -12,8 +12,10 @@
 #include "models/dynamics/templated_dynamics.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace affine_surrogate_test {
+
+using namespace testing;
 
 TEST(AffineSurrogate, law_is_that_of_simulated_paths) {
   Generator generator(111);
@@ -112,7 +114,7 @@ TEST(AffineSurrogate, known_example_has_the_known_error) {
   const std::vector<SurrogateStage> stages = affine_surrogates(one.motion());
   ASSERT_EQ(stages.size(), 9U);
   EXPECT_NEAR(stages.back().error.norm(), 0.0104, 5e-5);  // as printed
-  EXPECT_EQ(stages.back().error[Dubins::kHeading], 0.0);
+  EXPECT_EQ(stages.back().error[models::Dubins::kHeading], 0.0);
   EXPECT_EQ(stages.back().leaving, 0.0);
 }
 
@@ -142,7 +144,7 @@ TEST(AffineSurrogate, regions_are_charged_for) {
 }
 
 TEST(AffineSurrogate, car_at_rest_is_its_surrogate) {
-  const Case one = make_case("car at rest", make_dynamics("dubins", {{"speed", 0.0}}, 0.1),
+  const Case one = make_case("car at rest", models::make_dynamics("dubins", {{"speed", 0.0}}, 0.1),
                              dubins_belief(), 0.01 * Eigen::Matrix3d::Identity(),
                              Eigen::VectorXd::Constant(1, 0.3), {.closed_loop = true});
   const std::vector<SurrogateStage> stages = affine_surrogates(one.motion());
@@ -202,8 +204,8 @@ struct CubicInput {
   void step(const Scalar* x, const Scalar* u, Scalar* next) const {
     next[0] = x[0] + 0.1 * (u[0] * u[0] * u[0]);
   }
-  [[nodiscard]] SystemDescription description() const {
-    SystemDescription description;
+  [[nodiscard]] models::SystemDescription description() const {
+    models::SystemDescription description;
     description.name = "cubic input";
     description.states = {{"x", "m"}};
     description.inputs = {{"u", "m^(1/3)"}};
@@ -218,15 +220,15 @@ struct CubicInput {
 
 TEST(AffineSurrogate, curvature_in_an_input_needs_the_core) {
   // The second derivative is bounded on the core's inputs only.
-  const Case one =
-      make_case("cubic input", std::make_shared<TemplatedDynamics<CubicInput>>(CubicInput{}),
-                around(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)),
-                0.01 * Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Constant(1, 0.2),
-                {.closed_loop = true, .gain = -Eigen::MatrixXd::Ones(1, 1)});
+  const Case one = make_case("cubic input",
+                             std::make_shared<models::TemplatedDynamics<CubicInput>>(CubicInput{}),
+                             around(Eigen::VectorXd::Zero(1), Eigen::VectorXd::Ones(1)),
+                             0.01 * Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Constant(1, 0.2),
+                             {.closed_loop = true, .gain = -Eigen::MatrixXd::Ones(1, 1)});
   const std::vector<SurrogateStage> stages = affine_surrogates(one.motion());
   EXPECT_GT(stages[1].error[0], 0.0);
   EXPECT_GT(stages[1].leaving, 0.0);
 }
 
 }  // namespace affine_surrogate_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

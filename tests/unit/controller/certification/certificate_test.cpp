@@ -12,8 +12,10 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace certificate_test {
+
+using namespace testing;
 
 std::vector<StageCertificate> certificates_of(const Planner& planner, const Gaussian& belief,
                                               const Plan& plan) {
@@ -23,7 +25,7 @@ std::vector<StageCertificate> certificates_of(const Planner& planner, const Gaus
 
 /// A dynamic bicycle at 5 m/s between walls 2 m away, 8 stages; the plan drives straight on.
 struct DrivenBicycle {
-  std::unique_ptr<const Dynamics> dynamics = make_dynamics("bicycle", {}, 0.1);
+  std::unique_ptr<const models::Dynamics> dynamics = models::make_dynamics("bicycle", {}, 0.1);
   Gaussian belief;
   std::unique_ptr<Planner> planner;
   Plan plan;
@@ -275,9 +277,9 @@ TEST(ErrorBudget, local_constants_hold_between_states_of_the_region) {
       return state;
     };
     const auto step = [&](const Eigen::VectorXd& state) {
-      const StateBatch from = state;
-      const StateBatch input = policy_input(motion.policy, k, state);
-      StateBatch next(6, 1);
+      const models::StateBatch from = state;
+      const models::StateBatch input = policy_input(motion.policy, k, state);
+      models::StateBatch next(6, 1);
       motion.dynamics.step(from, input, next);
       return Eigen::VectorXd(next.col(0));
     };
@@ -355,4 +357,4 @@ TEST(Certificate, says_one_for_a_plan_of_a_broken_model) {
 }
 
 }  // namespace certificate_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -11,8 +11,10 @@
 #include "models/dynamics/dubins.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace drive_error_test {
+
+using namespace testing;
 
 // Rounding of sums and products of few terms of order one.
 constexpr double kRounding = 1e-14;
@@ -200,9 +202,11 @@ TEST(DriveSurrogate, cuts_each_periods_error_off_where_its_own_norms_say) {
   const TruncatedError own = truncate_error(error.first[1], 9, kWideCore);
   EXPECT_TRUE((next.largest.array() >= own.bound.largest().array()).all());
   // The heading's error is carried on as it is, and no residual is added to it.
-  EXPECT_NEAR(next.largest[Dubins::kHeading],
-              cut.bound.largest()[Dubins::kHeading] + own.bound.largest()[Dubins::kHeading], 1e-12);
+  EXPECT_NEAR(
+      next.largest[models::Dubins::kHeading],
+      cut.bound.largest()[models::Dubins::kHeading] + own.bound.largest()[models::Dubins::kHeading],
+      1e-12);
 }
 
 }  // namespace drive_error_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -12,8 +12,10 @@
 #include "models/dynamics/dubins.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace certification_plant_certificate_test {
+
+using namespace testing;
 // Rounding of sums and products of few terms of order one.
 constexpr double kRounding = 1e-14;
 
@@ -220,13 +222,13 @@ TEST(ErrorCut, is_as_far_off_as_the_highest_known_norm_asks) {
 TEST(PlantSurrogate, unknown_norms_are_unknown_only_where_they_reach) {
   const Case one = dubins({});
   ModelError error = bounded(Eigen::Vector3d(0.01, 0.0, 0.0));
-  error.higher[0][Dubins::kX] = kInfinity;
-  error.higher[1][Dubins::kX] = kInfinity;
+  error.higher[0][models::Dubins::kX] = kInfinity;
+  error.higher[1][models::Dubins::kX] = kInfinity;
   PredictedMotion motion = one.motion();
   motion.model_error = &error;
   const SurrogateStage last = affine_surrogates(motion).back();
-  EXPECT_EQ(last.higher[1][Dubins::kX], kInfinity);
-  EXPECT_TRUE(std::isfinite(last.higher[1][Dubins::kY]));
+  EXPECT_EQ(last.higher[1][models::Dubins::kX], kInfinity);
+  EXPECT_TRUE(std::isfinite(last.higher[1][models::Dubins::kY]));
   EXPECT_TRUE(last.error.allFinite());
   EXPECT_LT(last.leaving, 1e-4);
 }
@@ -242,9 +244,9 @@ TEST(PlantSurrogate, what_unknown_norms_of_a_heading_do_is_bounded_by_their_cut)
   motion.model_error = &unknown;
   const SurrogateStage without = affine_surrogates(motion).back();
   for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
-    EXPECT_TRUE(std::isfinite(without.higher[k][Dubins::kX]));
-    EXPECT_GT(without.higher[k][Dubins::kX], with_norms.higher[k][Dubins::kX]);
-    EXPECT_EQ(without.higher[k][Dubins::kHeading], kInfinity);
+    EXPECT_TRUE(std::isfinite(without.higher[k][models::Dubins::kX]));
+    EXPECT_GT(without.higher[k][models::Dubins::kX], with_norms.higher[k][models::Dubins::kX]);
+    EXPECT_EQ(without.higher[k][models::Dubins::kHeading], kInfinity);
   }
 }
 
@@ -305,4 +307,4 @@ TEST(PlantCertificate, grows_with_the_error_and_with_what_is_unknown_of_it) {
 }
 
 }  // namespace certification_plant_certificate_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

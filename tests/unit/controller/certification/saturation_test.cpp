@@ -12,8 +12,10 @@
 
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace saturation_test {
+
+using namespace testing;
 
 /// A clamp under N(mean, deviation²).
 struct Clamp {
@@ -201,4 +203,4 @@ TEST(Saturation, largest_residual_is_that_of_a_fine_grid) {
 }
 
 }  // namespace saturation_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -10,8 +10,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace smoothed_bound_test {
+
+using namespace testing;
 constexpr int kSamples = 200000;
 // Five standard errors of a mean of kSamples numbers in [0, 1] are at most 0.0056.
 constexpr double kFiveStandardErrors = 0.0056;
@@ -209,4 +211,4 @@ TEST(Smoothed, says_one_where_nothing_is_known) {
 }
 
 }  // namespace smoothed_bound_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

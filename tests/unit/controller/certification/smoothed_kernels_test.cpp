@@ -12,8 +12,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace smoothed_kernels_test {
+
+using namespace testing;
 // The scalar formula's own allowance for the far tails and its rounding of numbers up to one.
 constexpr double kScalarError = 1e-15;
 
@@ -118,4 +120,4 @@ TEST(RectangleEstimate, is_near_the_probability) {
 }
 
 }  // namespace smoothed_kernels_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

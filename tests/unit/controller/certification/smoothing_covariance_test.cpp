@@ -6,8 +6,10 @@
 
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace smoothing_covariance_test {
+
+using namespace testing;
 
 TEST(Smoothing, is_a_part_of_the_surrogate) {
   Generator generator(115);
@@ -117,4 +119,4 @@ TEST(Smoothing, is_independent_of_the_error_and_of_the_rest) {
 }
 
 }  // namespace smoothing_covariance_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

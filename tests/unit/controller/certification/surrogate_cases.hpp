@@ -23,13 +23,15 @@ constexpr int kSamples = 10000;
 /// A prescribed plan with all that its motion refers to.
 struct Case {
   std::string name;
-  std::shared_ptr<const Dynamics> dynamics;
-  Gaussian belief;
-  PlannerSettings settings;
-  std::shared_ptr<Planner> planner;
-  Plan plan;
+  std::shared_ptr<const models::Dynamics> dynamics;
+  controller::Gaussian belief;
+  controller::PlannerSettings settings;
+  std::shared_ptr<controller::Planner> planner;
+  controller::Plan plan;
 
-  [[nodiscard]] PredictedMotion motion() const { return motion_of(*planner, belief, plan); }
+  [[nodiscard]] controller::PredictedMotion motion() const {
+    return controller::motion_of(*planner, belief, plan);
+  }
 };
 
 /// How a case's inputs are fed back: not at all, by LQR, or by this gain.
@@ -38,11 +40,11 @@ struct Feedback {
   std::optional<Eigen::MatrixXd> gain = std::nullopt;
 };
 
-inline Case make_case(const std::string& name, std::shared_ptr<const Dynamics> dynamics,
-                      const Gaussian& belief, const Eigen::MatrixXd& noise,
+inline Case make_case(const std::string& name, std::shared_ptr<const models::Dynamics> dynamics,
+                      const controller::Gaussian& belief, const Eigen::MatrixXd& noise,
                       const Eigen::VectorXd& input, const Feedback& feedback, int horizon = 8) {
   const int dim = dynamics->state_dim();
-  PlannerSettings settings;
+  controller::PlannerSettings settings;
   settings.horizon = horizon;
   settings.closed_loop = feedback.closed_loop;
   settings.feedback_gain = feedback.gain;
@@ -54,20 +56,20 @@ inline Case make_case(const std::string& name, std::shared_ptr<const Dynamics> d
                    .input = 0.1 * Eigen::MatrixXd::Identity(input.size(), input.size()),
                    .terminal = Eigen::MatrixXd::Identity(dim, dim),
                    .target = Eigen::VectorXd::Zero(dim)};
-  settings.safe_set = unbounded_safe_set(dim);
+  settings.safe_set = controller::unbounded_safe_set(dim);
   settings.bounds = {.lower = dynamics->description().input_lower,
                      .upper = dynamics->description().input_upper};
   Case result{.name = name,
               .dynamics = dynamics,
               .belief = belief,
               .settings = settings,
-              .planner = std::make_shared<Planner>(*dynamics, settings),
+              .planner = std::make_shared<controller::Planner>(*dynamics, settings),
               .plan = {}};
   result.plan = result.planner->prescribe(belief, input.replicate(1, horizon));
   return result;
 }
 
-inline Gaussian around(const Eigen::VectorXd& mean, const Eigen::VectorXd& deviation) {
+inline controller::Gaussian around(const Eigen::VectorXd& mean, const Eigen::VectorXd& deviation) {
   return {.mean = mean, .covariance = deviation.cwiseAbs2().asDiagonal()};
 }
 
@@ -87,7 +89,7 @@ inline Case skewed_dubins(const Feedback& feedback, Generator& generator) {
 }
 
 inline Case double_integrator(const Feedback& feedback, double input = 0.5, double width = 0.1) {
-  return make_case("double integrator", make_dynamics("double_integrator", {}, 0.1),
+  return make_case("double integrator", models::make_dynamics("double_integrator", {}, 0.1),
                    around(Eigen::Vector2d(1.0, 0.2), Eigen::Vector2d(width, width)),
                    Eigen::Vector2d(1e-4, 1e-3).asDiagonal(), Eigen::VectorXd::Constant(1, input),
                    feedback);
@@ -100,13 +102,14 @@ inline Case bicycle(const Feedback& feedback, double speed = 10.0, double width 
   deviation << 0.1, 0.1, 0.03, 0.2, 0.1, 0.05;
   Eigen::VectorXd noise(6);
   noise << 0.03, 0.03, 0.01, 0.05, 0.03, 0.02;
-  return make_case("bicycle", make_dynamics("bicycle", {}, 0.1), around(mean, width * deviation),
-                   noise.cwiseAbs2().asDiagonal(), Eigen::Vector2d(0.2, 0.03), feedback);
+  return make_case("bicycle", models::make_dynamics("bicycle", {}, 0.1),
+                   around(mean, width * deviation), noise.cwiseAbs2().asDiagonal(),
+                   Eigen::Vector2d(0.2, 0.03), feedback);
 }
 
 inline Case cart_pole(const Feedback& feedback, double width = 1.0) {
   Eigen::Vector4d deviation(0.05, 0.05, 0.02, 0.05);
-  return make_case("cart-pole", make_dynamics("cart_pole", {}, 0.05),
+  return make_case("cart-pole", models::make_dynamics("cart_pole", {}, 0.05),
                    around(Eigen::Vector4d(0.0, 0.1, 0.05, 0.0), width * deviation),
                    (0.02 * Eigen::Vector4d::Ones()).cwiseAbs2().asDiagonal(),
                    Eigen::VectorXd::Constant(1, 1.0), feedback);
@@ -114,18 +117,20 @@ inline Case cart_pole(const Feedback& feedback, double width = 1.0) {
 
 /// Paths of the state and of its surrogate under the same draws; stages 0 … horizon.
 struct Pairs {
-  std::vector<Points> state;
-  std::vector<Points> surrogate;
-  std::vector<Points> noise;  ///< of the step that leads to the stage; at 0 what the belief drew
+  std::vector<controller::Points> state;
+  std::vector<controller::Points> surrogate;
+  std::vector<controller::Points>
+      noise;  ///< of the step that leads to the stage; at 0 what the belief drew
 };
 
-inline Pairs simulate_pairs(const PredictedMotion& motion,
-                            const std::vector<SurrogateStage>& stages, Generator& generator) {
+inline Pairs simulate_pairs(const controller::PredictedMotion& motion,
+                            const std::vector<controller::SurrogateStage>& stages,
+                            Generator& generator) {
   NormalSampler belief(motion.belief.covariance);
   NormalSampler noise(motion.noise_covariance);
   const Eigen::Index dim = motion.belief.mean.size();
   const auto draws = [&](NormalSampler& sampler) {
-    Points result(dim, kSamples);
+    controller::Points result(dim, kSamples);
     for (int i = 0; i < kSamples; ++i) result.col(i) = sampler(generator);
     return result;
   };
@@ -135,25 +140,26 @@ inline Pairs simulate_pairs(const PredictedMotion& motion,
   pairs.surrogate.push_back(pairs.state[0]);
   for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
     pairs.noise.push_back(draws(noise));
-    Points inputs(motion.policy.inputs.rows(), kSamples);
-    Points next(dim, kSamples);
-    policy_inputs(motion.policy, k, pairs.state[k], inputs);
+    controller::Points inputs(motion.policy.inputs.rows(), kSamples);
+    controller::Points next(dim, kSamples);
+    controller::policy_inputs(motion.policy, k, pairs.state[k], inputs);
     motion.dynamics.step(pairs.state[k], inputs, next);
     pairs.state.push_back(next + pairs.noise.back());
-    const Points offset = pairs.surrogate[k].colwise() - stages[k].law.mean;
+    const controller::Points offset = pairs.surrogate[k].colwise() - stages[k].law.mean;
     pairs.surrogate.push_back(((stages[k].transition * offset).colwise() + stages[k + 1].law.mean) +
                               pairs.noise.back());
   }
   return pairs;
 }
 
-inline Eigen::VectorXd root_mean_squares(const Points& values) {
+inline Eigen::VectorXd root_mean_squares(const controller::Points& values) {
   return (values.rowwise().squaredNorm() / static_cast<double>(values.cols())).cwiseSqrt();
 }
 
-inline Eigen::MatrixXd sample_covariance(const Points& first, const Points& second) {
-  const Points a = first.colwise() - first.rowwise().mean();
-  const Points b = second.colwise() - second.rowwise().mean();
+inline Eigen::MatrixXd sample_covariance(const controller::Points& first,
+                                         const controller::Points& second) {
+  const controller::Points a = first.colwise() - first.rowwise().mean();
+  const controller::Points b = second.colwise() - second.rowwise().mean();
   return a * b.transpose() / static_cast<double>(a.cols());
 }
 

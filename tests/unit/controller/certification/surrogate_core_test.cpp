@@ -7,8 +7,10 @@
 #include "controller/certification/affine_surrogate.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace surrogate_core_test {
+
+using namespace testing;
 
 using Event = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
@@ -94,4 +96,4 @@ TEST(SurrogateCore, narrow_one_is_left_more_often_and_has_smaller_errors) {
 }
 
 }  // namespace surrogate_core_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

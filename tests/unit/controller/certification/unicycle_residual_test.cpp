@@ -9,10 +9,12 @@
 #include "controller/measure/normal/normal_distribution.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace unicycle_residual_test {
 
-constexpr UnicycleStructure kUnicycle{.reach = 0.15, .input_gain = 0.1};
+using namespace testing;
+
+constexpr models::UnicycleStructure kUnicycle{.reach = 0.15, .input_gain = 0.1};
 
 /// (Re r, Im r) of r = e^{iφ} − e^{im − v/2}(1 + i(φ − m)) at φ.
 Eigen::Vector2d residual(double heading, double mean, double variance) {
@@ -152,4 +154,4 @@ TEST(UnicycleResidual, carried_residuals_match_simulation) {
 }
 
 }  // namespace unicycle_residual_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -14,8 +14,10 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace unsafe_region_bound_test {
+
+using namespace testing;
 constexpr int kSamples = 20000;
 
 bool inside(const Box& box, const Eigen::VectorXd& point) {
@@ -375,4 +377,4 @@ TEST(PartBounds, known_example_has_the_known_figures) {
 }
 
 }  // namespace unsafe_region_bound_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

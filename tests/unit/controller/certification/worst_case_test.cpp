@@ -10,8 +10,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace worst_case_test {
+
+using namespace testing;
 constexpr double kRounding = 1e-13;  // sums of a few numbers of at most one
 
 /// min over λ ≥ 0 of λ r² + Σ π (1 − λ d²)₊, the dual: piecewise linear and convex in λ, so that
@@ -151,4 +153,4 @@ TEST(ThesisProbability, takes_the_norm_of_the_face_distances_and_ignores_obstacl
 }
 
 }  // namespace worst_case_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -11,8 +11,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace bivariate_normal_test {
+
+using namespace testing;
 
 Eigen::Matrix2d covariance_of(double first, double second, double correlation) {
   const double cross = correlation * first * second;
@@ -191,4 +193,4 @@ TEST(BivariateNormal, error_bound_holds_up_to_dependent_coordinates) {
 }
 
 }  // namespace bivariate_normal_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

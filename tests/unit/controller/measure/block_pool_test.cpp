@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace block_pool_test {
 
 TEST(BlockPool, blocks_are_apart_and_begin_a_cache_line) {
@@ -55,4 +55,4 @@ TEST(BlockPool, what_is_given_back_is_used_again_for_as_much_or_hardly_less) {
 }
 
 }  // namespace block_pool_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

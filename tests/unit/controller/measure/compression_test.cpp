@@ -7,8 +7,10 @@
 
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace compression_test {
+
+using namespace testing;
 
 // Sums of some hundred terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -170,4 +172,4 @@ TEST(Compression, refuses_what_is_no_measure) {
 }
 
 }  // namespace compression_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -10,8 +10,10 @@
 #include "controller/measure/quantisation/normal_quantiser.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace gaussian_quantiser_test {
+
+using namespace testing;
 
 // Sums of up to a thousand terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -203,4 +205,4 @@ TEST(GaussianQuantiser, refuses_what_is_no_gaussian) {
 }
 
 }  // namespace gaussian_quantiser_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -15,14 +15,15 @@ namespace qsmpc::testing {
 struct MixtureCase {
   std::string name;
   Eigen::MatrixXd covariance;
-  DiscreteMeasure sources;
+  controller::DiscreteMeasure sources;
   int cells = 1;
   int parts = 1;
 };
 
-inline MixtureCells split(const MixtureCase& mixture, const Executor& run = run_in_turn) {
-  MixtureSplitter splitter(mixture.covariance, mixture.cells, mixture.parts);
-  MixtureCells cells;
+inline controller::MixtureCells split(const MixtureCase& mixture,
+                                      const controller::Executor& run = controller::run_in_turn) {
+  controller::MixtureSplitter splitter(mixture.covariance, mixture.cells, mixture.parts);
+  controller::MixtureCells cells;
   splitter.split(mixture.sources.locations, mixture.sources.weights, run, cells);
   return cells;
 }

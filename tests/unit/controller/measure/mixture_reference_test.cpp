@@ -7,8 +7,10 @@
 #include "tests/support/plain_mixture.hpp"
 #include "tests/unit/controller/measure/mixture_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace mixture_reference_test {
+
+using namespace testing;
 
 // Weights, shares and positions are of the order of one. Moments of a cell are differences of
 // moments of the cells it was cut from, so that what rounding leaves grows with their number.
@@ -77,4 +79,4 @@ TEST(MixtureReference, agrees_on_clusters_that_are_far_apart) {
 }
 
 }  // namespace mixture_reference_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -15,8 +15,10 @@
 #include "tests/support/executors.hpp"
 #include "tests/unit/controller/measure/mixture_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace mixture_split_test {
+
+using namespace testing;
 
 // Sums of some thousand terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -238,4 +240,4 @@ TEST(MixtureSplit, refuses_senseless_arguments) {
 }
 
 }  // namespace mixture_split_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -4,8 +4,10 @@
 
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace nearest_centre_test {
+
+using namespace testing;
 
 TEST(NearestCentre, finds_what_comparing_all_centres_finds_while_they_move) {
   Generator generator(71);
@@ -57,4 +59,4 @@ TEST(NearestCentre, a_point_stays_where_no_centre_is_strictly_nearer) {
 }
 
 }  // namespace nearest_centre_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -13,7 +13,7 @@ namespace qsmpc::testing {
 
 class NearestPoint {
  public:
-  explicit NearestPoint(const Points& points)
+  explicit NearestPoint(const controller::Points& points)
       : dim_(static_cast<int>(points.rows())), order_(points.cols()) {
     std::iota(order_.begin(), order_.end(), 0);
     split(points, 0, static_cast<int>(order_.size()));
@@ -41,10 +41,10 @@ class NearestPoint {
     return count <= kLeaf ? 0 : 1 + cuts_of(count / 2) + cuts_of(count - count / 2);
   }
 
-  void split(const Points& points, int begin, int end) {
+  void split(const controller::Points& points, int begin, int end) {
     if (end - begin <= kLeaf) return;
     const std::vector<int> inside(order_.begin() + begin, order_.begin() + end);
-    const Points box = points(Eigen::all, inside);
+    const controller::Points box = points(Eigen::all, inside);
     int axis = 0;
     (box.rowwise().maxCoeff() - box.rowwise().minCoeff()).maxCoeff(&axis);
     const int middle = begin + (end - begin) / 2;

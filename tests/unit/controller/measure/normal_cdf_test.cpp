@@ -14,8 +14,10 @@
 #include "models/simd/lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace HWY_NAMESPACE {
+
+using namespace models::HWY_NAMESPACE;
 
 void normal_values_of(const std::vector<double>& z, std::vector<double>& probability,
                       std::vector<double>& density) {
@@ -27,7 +29,7 @@ void normal_values_of(const std::vector<double>& z, std::vector<double>& probabi
 }
 
 }  // namespace HWY_NAMESPACE
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
@@ -35,12 +37,13 @@ HWY_AFTER_NAMESPACE();
 
 #include "tests/support/vector_targets.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 
 HWY_EXPORT(normal_values_of);
 
-namespace testing {
 namespace normal_cdf_test {
+
+using namespace testing;
 
 // As stated in normal_cdf-inl.hpp.
 constexpr double kError = 1e-15;
@@ -75,8 +78,8 @@ std::vector<double> arguments() {
 
 TEST(NormalValues, are_within_the_stated_error_of_the_standard_library) {
   const std::vector<double> all = arguments();
-  for (const std::int64_t target : vector_targets()) {
-    const OnTarget only(target);
+  for (const std::int64_t target : testing::vector_targets()) {
+    const testing::OnTarget only(target);
     const Values values = values_of(all);
     for (std::size_t i = 0; i < all.size(); ++i) {
       const double z = all[i];
@@ -105,8 +108,8 @@ TEST(NormalValues, probability_does_not_fall_and_stays_within_zero_and_one) {
 TEST(NormalValues, are_the_same_on_every_target) {
   const std::vector<double> all = arguments();
   const Values best = values_of(all);
-  for (const std::int64_t target : vector_targets()) {
-    const OnTarget only(target);
+  for (const std::int64_t target : testing::vector_targets()) {
+    const testing::OnTarget only(target);
     const Values values = values_of(all);
     EXPECT_EQ(values.probability, best.probability) << hwy::TargetName(target);
     EXPECT_EQ(values.density, best.density) << hwy::TargetName(target);
@@ -114,8 +117,8 @@ TEST(NormalValues, are_the_same_on_every_target) {
 }
 
 TEST(NormalValues, not_a_number_is_not_hidden) {
-  for (const std::int64_t target : vector_targets()) {
-    const OnTarget only(target);
+  for (const std::int64_t target : testing::vector_targets()) {
+    const testing::OnTarget only(target);
     const Values values = values_of({std::nan(""), 0.0});
     EXPECT_FALSE(values.probability[0] >= 0.0 && values.probability[0] <= 1.0 &&
                  values.density[0] > 0.0)
@@ -125,6 +128,5 @@ TEST(NormalValues, not_a_number_is_not_hidden) {
 }
 
 }  // namespace normal_cdf_test
-}  // namespace testing
-}  // namespace qsmpc
+}  // namespace qsmpc::controller
 #endif

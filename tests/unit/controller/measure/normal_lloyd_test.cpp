@@ -12,8 +12,10 @@
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace normal_lloyd_test {
+
+using namespace testing;
 
 // Masses and means are sums over some 1e5 cells.
 constexpr double kRounding = 1e-11;
@@ -145,4 +147,4 @@ TEST(SpreadQuantiser, refuses_what_is_no_gaussian_and_no_budget) {
 }
 
 }  // namespace normal_lloyd_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -8,7 +8,7 @@
 #include "controller/measure/normal/normal_distribution.hpp"
 #include "models/constants.hpp"
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace normal_quantiser_test {
 
 struct KnownDistortion {
@@ -148,4 +148,4 @@ TEST(NormalDistribution, tails_keep_their_relative_accuracy) {
 }
 
 }  // namespace normal_quantiser_test
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

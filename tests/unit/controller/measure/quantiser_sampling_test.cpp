@@ -8,8 +8,10 @@
 #include "tests/unit/controller/measure/nearest_point.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace quantiser_sampling_test {
+
+using namespace testing;
 
 /// √E min |x − c_n|² from samples, and its standard error.
 struct Estimate {
@@ -90,4 +92,4 @@ TEST(QuantiserSampling, w2_of_spread_points_is_a_bound_and_not_far_from_the_dist
 }
 
 }  // namespace quantiser_sampling_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

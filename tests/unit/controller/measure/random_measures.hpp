@@ -30,9 +30,10 @@ inline Eigen::MatrixXd random_spd(Generator& generator, Eigen::Index dim, double
   return scale * (root * root.transpose() + 0.1 * Eigen::MatrixXd::Identity(dim, dim));
 }
 
-inline DiscreteMeasure random_measure(Generator& generator, Eigen::Index dim, Eigen::Index size) {
-  DiscreteMeasure measure{.locations = random_matrix(generator, dim, size, 2.0),
-                          .weights = random_matrix(generator, size, 1).cwiseAbs()};
+inline controller::DiscreteMeasure random_measure(Generator& generator, Eigen::Index dim,
+                                                  Eigen::Index size) {
+  controller::DiscreteMeasure measure{.locations = random_matrix(generator, dim, size, 2.0),
+                                      .weights = random_matrix(generator, size, 1).cwiseAbs()};
   measure.weights.array() += 0.01;
   measure.weights /= measure.weights.sum();
   return measure;

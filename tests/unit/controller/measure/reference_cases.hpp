@@ -21,7 +21,7 @@ struct ReferenceCase {
   std::string system;
   bool closed_loop = false;
   bool noise = true;
-  PenaltyShape shape = PenaltyShape::kSmooth;
+  controller::PenaltyShape shape = controller::PenaltyShape::kSmooth;
   int points = 100;      ///< at the start
   int compressed = 100;  ///< afterwards
 };
@@ -29,7 +29,7 @@ struct ReferenceCase {
 inline std::string name_of(const ReferenceCase& options) {
   return options.system + (options.closed_loop ? "_closed" : "_open") +
          (options.noise ? "_mixture" : "_noise_free") +
-         (options.shape == PenaltyShape::kThesis ? "_thesis_" : "_smooth_") +
+         (options.shape == controller::PenaltyShape::kThesis ? "_thesis_" : "_smooth_") +
          std::to_string(options.points) + "_" + std::to_string(options.compressed);
 }
 
@@ -38,8 +38,8 @@ class ReferenceProblem {
   explicit ReferenceProblem(const ReferenceCase& options) : options_(options) {
     Generator generator(404);
     const bool car = options.system == "dubins";
-    dynamics_ =
-        car ? make_dynamics("dubins", {{"speed", 1.5}}, 0.1) : make_dynamics("bicycle", {}, 0.1);
+    dynamics_ = car ? models::make_dynamics("dubins", {{"speed", 1.5}}, 0.1)
+                    : models::make_dynamics("bicycle", {}, 0.1);
     const Eigen::Index dim = dynamics_->state_dim();
     const Eigen::Index inputs = dynamics_->input_dim();
     Eigen::VectorXd mean = random_matrix(generator, dim, 1, 0.2);
@@ -57,18 +57,18 @@ class ReferenceProblem {
     penalty_.shape = options.shape;
     make_room(mean, car ? 0.15 : 1.5);
     make_policy(generator, mean);
-    propagator_ =
-        make_propagator(options.noise ? "mixture" : "noise_free",
-                        {.noise = {.mean = Eigen::VectorXd::Zero(dim), .covariance = noise_},
-                         .noise_points = kParts,
-                         .compressed_points = options.compressed});
+    propagator_ = controller::make_propagator(
+        options.noise ? "mixture" : "noise_free",
+        {.noise = {.mean = Eigen::VectorXd::Zero(dim), .covariance = noise_},
+         .noise_points = kParts,
+         .compressed_points = options.compressed});
   }
 
-  [[nodiscard]] const Dynamics& dynamics() const { return *dynamics_; }
-  [[nodiscard]] const DiscreteMeasure& start() const { return start_; }
-  [[nodiscard]] const Policy& policy() const { return policy_; }
-  [[nodiscard]] Propagator& propagator() const { return *propagator_; }
-  [[nodiscard]] HorizonCostTerms terms() const {
+  [[nodiscard]] const models::Dynamics& dynamics() const { return *dynamics_; }
+  [[nodiscard]] const controller::DiscreteMeasure& start() const { return start_; }
+  [[nodiscard]] const controller::Policy& policy() const { return policy_; }
+  [[nodiscard]] controller::Propagator& propagator() const { return *propagator_; }
+  [[nodiscard]] controller::HorizonCostTerms terms() const {
     return {.dynamics = *dynamics_,
             .safe_set = safe_set_,
             .cost = cost_,
@@ -82,14 +82,14 @@ class ReferenceProblem {
             .cells = options_.compressed,
             .parts = kParts};
   }
-  [[nodiscard]] Prediction predict() const {
-    return qsmpc::predict(*dynamics_, *propagator_, start_, policy_);
+  [[nodiscard]] controller::Prediction predict() const {
+    return qsmpc::controller::predict(*dynamics_, *propagator_, start_, policy_);
   }
   /// Particles of stage 0 with an input at a bound.
   [[nodiscard]] int saturated() const {
     int count = 0;
     for (Eigen::Index i = 0; i < start_.size(); ++i) {
-      const Eigen::VectorXd input = policy_input(policy_, 0, start_.locations.col(i));
+      const Eigen::VectorXd input = controller::policy_input(policy_, 0, start_.locations.col(i));
       count += (input.array() == policy_.bounds.lower.array()).any() ||
                (input.array() == policy_.bounds.upper.array()).any();
     }
@@ -104,14 +104,14 @@ class ReferenceProblem {
   void make_room(const Eigen::VectorXd& mean, double reach) {
     const Eigen::Index dim = mean.size();
     constexpr double kFar = std::numeric_limits<double>::infinity();
-    safe_set_ = unbounded_safe_set(dim);
+    safe_set_ = controller::unbounded_safe_set(dim);
     safe_set_.bounds.lower[0] = mean[0] - 0.2;
     safe_set_.bounds.upper[0] = mean[0] + 3.0 * reach;
     safe_set_.bounds.upper[1] = mean[1] + 0.25;
     safe_set_.bounds.lower[2] = mean[2] - 0.3;
     const auto block = [&](double x, double y, double half) {
-      Box box{.lower = Eigen::VectorXd::Constant(dim, -kFar),
-              .upper = Eigen::VectorXd::Constant(dim, kFar)};
+      controller::Box box{.lower = Eigen::VectorXd::Constant(dim, -kFar),
+                          .upper = Eigen::VectorXd::Constant(dim, kFar)};
       box.lower.head<2>() << mean[0] + x - half, mean[1] + y - half;
       box.upper.head<2>() << mean[0] + x + half, mean[1] + y + half;
       return box;
@@ -124,7 +124,7 @@ class ReferenceProblem {
   void make_policy(Generator& generator, const Eigen::VectorXd& mean) {
     const Eigen::Index inputs = dynamics_->input_dim();
     policy_.inputs = random_matrix(generator, inputs, kHorizon, 0.2);
-    policy_.states = nominal_states(*dynamics_, mean, policy_.inputs);
+    policy_.states = controller::nominal_states(*dynamics_, mean, policy_.inputs);
     // Closed loop: near enough for some particles to be clamped.
     const double bound = options_.closed_loop ? 0.3 : 2.0;
     policy_.bounds = {.lower = Eigen::VectorXd::Constant(inputs, -bound),
@@ -136,16 +136,16 @@ class ReferenceProblem {
   }
 
   ReferenceCase options_;
-  std::unique_ptr<const Dynamics> dynamics_;
-  DiscreteMeasure start_;
+  std::unique_ptr<const models::Dynamics> dynamics_;
+  controller::DiscreteMeasure start_;
   Eigen::MatrixXd noise_;
   Eigen::MatrixXd no_noise_;
   Eigen::MatrixXd within_;
-  QuadraticCost cost_;
-  Penalty penalty_;
-  SafeSet safe_set_;
-  Policy policy_;
-  std::unique_ptr<Propagator> propagator_;
+  controller::QuadraticCost cost_;
+  controller::Penalty penalty_;
+  controller::SafeSet safe_set_;
+  controller::Policy policy_;
+  std::unique_ptr<controller::Propagator> propagator_;
 };
 
 /// Both systems, loops, propagators and penalties at the usual size; other sizes for some: one
@@ -155,16 +155,18 @@ inline std::vector<ReferenceCase> reference_cases() {
   for (const char* system : {"dubins", "bicycle"}) {
     for (const bool closed_loop : {false, true}) {
       for (const bool noise : {false, true}) {
-        for (const PenaltyShape shape : {PenaltyShape::kSmooth, PenaltyShape::kThesis}) {
+        for (const controller::PenaltyShape shape :
+             {controller::PenaltyShape::kSmooth, controller::PenaltyShape::kThesis}) {
           cases.push_back({system, closed_loop, noise, shape, 100, 101});
         }
       }
       for (const auto& [points, compressed] : {std::pair{1, 1}, std::pair{1, 50}, std::pair{7, 3},
                                                std::pair{101, 7}, std::pair{3000, 1100}}) {
-        cases.push_back({system, closed_loop, true, PenaltyShape::kSmooth, points, compressed});
+        cases.push_back(
+            {system, closed_loop, true, controller::PenaltyShape::kSmooth, points, compressed});
       }
     }
-    cases.push_back({system, true, false, PenaltyShape::kThesis, 3000, 3000});
+    cases.push_back({system, true, false, controller::PenaltyShape::kThesis, 3000, 3000});
   }
   return cases;
 }

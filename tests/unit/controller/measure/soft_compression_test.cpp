@@ -11,8 +11,10 @@
 #include "controller/measure/wasserstein.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace soft_compression_test {
+
+using namespace testing;
 
 // Sums of some hundred terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -147,4 +149,4 @@ TEST(SoftCompression, refuses_bad_settings_and_what_is_no_measure) {
 }
 
 }  // namespace soft_compression_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

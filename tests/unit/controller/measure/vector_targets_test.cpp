@@ -11,8 +11,10 @@
 #include "tests/unit/controller/measure/mixture_cases.hpp"
 #include "tests/unit/controller/measure/reference_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace measure_vector_targets_test {
+
+using namespace testing;
 
 constexpr int kSizes[] = {1, 2, 3, 5, 7, 8, 9, 16, 17, 100, 101, 1023};
 
@@ -191,4 +193,4 @@ TEST(VectorTargets, whole_predictions_with_cost_and_gradient_are_equal_bit_for_b
 }
 
 }  // namespace measure_vector_targets_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -13,8 +13,10 @@
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace wasserstein_test {
+
+using namespace testing;
 
 // Sums of some hundred squares of the order of ten, and a root where W2 is of the order of one.
 constexpr double kRounding = 1e-12;
@@ -239,4 +241,4 @@ TEST(Wasserstein, too_large_a_problem_is_refused) {
 }
 
 }  // namespace wasserstein_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

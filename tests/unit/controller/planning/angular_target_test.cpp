@@ -11,8 +11,10 @@
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace angular_target_test {
+
+using namespace testing;
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr int kHeading = 2;
@@ -142,4 +144,4 @@ TEST(AngularTarget, angles_that_are_no_states_are_refused) {
 }
 
 }  // namespace angular_target_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

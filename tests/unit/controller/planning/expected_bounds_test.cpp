@@ -10,8 +10,10 @@
 #include "tests/support/executors.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace expected_bounds_test {
+
+using namespace testing;
 
 SafeSet room() {
   SafeSet room = unbounded_safe_set(3);
@@ -199,4 +201,4 @@ TEST(ExpectedBounds, smoothing_ends_as_particles_grow_in_number) {
 }
 
 }  // namespace expected_bounds_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -7,13 +7,15 @@
 #include "controller/planning/planner.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace first_guess_test {
+
+using namespace testing;
 
 /// The comparison that a planner makes, by itself.
 class Guesses {
  public:
-  Guesses(const Dynamics& dynamics, const PlannerSettings& settings)
+  Guesses(const models::Dynamics& dynamics, const PlannerSettings& settings)
       : settings_(settings),
         policies_(dynamics, settings_),
         cost_(settings_.horizon, {.dynamics = dynamics,
@@ -108,4 +110,4 @@ TEST(FirstGuess, a_plan_that_leads_into_a_block_is_given_up) {
 }
 
 }  // namespace first_guess_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -11,8 +11,10 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace horizon_cost_test {
+
+using namespace testing;
 
 // Central differences with h = 1e-6: rounding is ε·cost/h ≈ 2e-10 of the cost, truncation h² less.
 constexpr double kDifferenceStep = 1e-6;
@@ -95,7 +97,7 @@ class GradientCase {
   }
 
  private:
-  std::unique_ptr<const Dynamics> car_;
+  std::unique_ptr<const models::Dynamics> car_;
   PlannerSettings settings_;
   GaussianQuantisation belief_;
   Policy policy_;
@@ -316,4 +318,4 @@ TEST(HorizonCost, one_step_from_a_belief_is_exact_but_for_the_belief_quantiser) 
 }
 
 }  // namespace horizon_cost_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

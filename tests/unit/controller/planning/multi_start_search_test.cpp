@@ -6,8 +6,10 @@
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace multi_start_search_test {
+
+using namespace testing;
 
 using Clock = std::chrono::steady_clock;
 
@@ -36,7 +38,7 @@ class Valleys : public ::testing::Test {
     return path(1, 6);  // 0.9 m on the way
   }
 
-  std::unique_ptr<const Dynamics> car_;
+  std::unique_ptr<const models::Dynamics> car_;
   PlannerSettings settings_;
   Eigen::MatrixXd zero_ = Eigen::MatrixXd::Zero(3, 3);
   PolicyMaker policies_;
@@ -100,4 +102,4 @@ TEST(PlannerValleys, a_cold_start_takes_the_deeper_of_two) {
 }
 
 }  // namespace multi_start_search_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

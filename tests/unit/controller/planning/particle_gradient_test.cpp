@@ -8,8 +8,10 @@
 
 #include "tests/unit/controller/measure/reference_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace particle_gradient_test {
+
+using namespace testing;
 
 // Central differences: truncation h² of the third derivatives, rounding ε/h of the values.
 constexpr double kStep = 1e-6;
@@ -162,4 +164,4 @@ TEST(HorizonCostByGain, gradient_equals_central_differences) {
 }
 
 }  // namespace particle_gradient_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

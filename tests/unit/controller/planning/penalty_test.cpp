@@ -8,8 +8,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace penalty_test {
+
+using namespace testing;
 // Central differences of a function with bounded second derivative (weights · 1/ℓ² ≈ 2e3): the
 // rounding ε·|f|/h is about 1e-7 of the gradient's scale; kinks are kept 1e-4 away.
 constexpr double kDifferenceStep = 1e-6;
@@ -142,4 +144,4 @@ TEST(ThesisPenalty, is_flat_inside_an_obstacle_with_a_halo_of_one) {
 }
 
 }  // namespace penalty_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -8,8 +8,10 @@
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_constraints_test {
+
+using namespace testing;
 
 constexpr double kKept = 1e-6;  // m; up to here the planner counts a bound as kept
 
@@ -100,4 +102,4 @@ TEST(PlannerConstraints, other_solvers_report_no_violation) {
 }
 
 }  // namespace planner_constraints_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -5,8 +5,10 @@
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_deadline_test {
+
+using namespace testing;
 
 constexpr double kNoTime = 1e-9;     // s; over before anything can begin
 constexpr double kAllTime = 3600.0;  // s
@@ -83,4 +85,4 @@ TEST(PlannerDeadline, one_that_is_never_reached_changes_no_bit) {
 }
 
 }  // namespace planner_deadline_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -7,8 +7,10 @@
 #include "tests/support/executors.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_executor_test {
+
+using namespace testing;
 
 void expect_same_plan(const Plan& one, const Plan& other) {
   EXPECT_EQ(one.policy.inputs, other.policy.inputs);
@@ -50,4 +52,4 @@ TEST(PlannerExecutor, plans_are_equal_bit_for_bit_however_tasks_are_run) {
 }
 
 }  // namespace planner_executor_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -12,12 +12,12 @@
 
 namespace qsmpc::testing {
 
-inline std::unique_ptr<const Dynamics> dubins_car() {
-  return make_dynamics("dubins", {{"speed", 1.5}}, 0.1);
+inline std::unique_ptr<const models::Dynamics> dubins_car() {
+  return models::make_dynamics("dubins", {{"speed", 1.5}}, 0.1);
 }
 
-inline PlannerSettings dubins_settings() {
-  PlannerSettings settings;
+inline controller::PlannerSettings dubins_settings() {
+  controller::PlannerSettings settings;
   settings.horizon = 5;
   settings.state_points = 30;
   settings.noise_points = 20;
@@ -27,7 +27,7 @@ inline PlannerSettings dubins_settings() {
                    .input = Eigen::MatrixXd::Constant(1, 1, 0.1),
                    .terminal = Eigen::Vector3d(4.0, 4.0, 0.0).asDiagonal(),
                    .target = Eigen::Vector3d(5.0, 5.0, 0.0)};
-  settings.safe_set = unbounded_safe_set(3);
+  settings.safe_set = controller::unbounded_safe_set(3);
   settings.safe_set.bounds.lower.head<2>().setConstant(-1.0);
   settings.safe_set.bounds.upper.head<2>().setConstant(12.0);
   settings.bounds = {.lower = Eigen::VectorXd::Constant(1, -2.0),
@@ -35,13 +35,13 @@ inline PlannerSettings dubins_settings() {
   return settings;
 }
 
-inline Gaussian dubins_belief() {
+inline controller::Gaussian dubins_belief() {
   return {.mean = Eigen::Vector3d::Zero(), .covariance = 0.01 * Eigen::Matrix3d::Identity()};
 }
 
 /// A block before the car, nearly in the middle of its way: below is a little shorter.
-inline PlannerSettings block_settings() {
-  PlannerSettings settings = dubins_settings();
+inline controller::PlannerSettings block_settings() {
+  controller::PlannerSettings settings = dubins_settings();
   settings.horizon = 12;
   settings.cost.target << 6.0, 0.0, 0.0;
   settings.penalty.obstacle = 5000.0;
@@ -53,11 +53,11 @@ inline PlannerSettings block_settings() {
 }
 
 /// The Dubins car, of which no Lipschitz constant is known, and which gives NaN when `broken`.
-class FragileCar final : public Dynamics {
+class FragileCar final : public models::Dynamics {
  public:
   bool broken = false;
 
-  [[nodiscard]] const SystemDescription& description() const override {
+  [[nodiscard]] const models::SystemDescription& description() const override {
     return car_->description();
   }
   void step(const BatchView& states, const BatchView& inputs, BatchOut next) const override {
@@ -79,7 +79,7 @@ class FragileCar final : public Dynamics {
   }
 
  private:
-  std::unique_ptr<const Dynamics> car_ = dubins_car();
+  std::unique_ptr<const models::Dynamics> car_ = dubins_car();
 };
 
 }  // namespace qsmpc::testing

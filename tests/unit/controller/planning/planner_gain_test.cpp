@@ -5,8 +5,10 @@
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_gain_test {
+
+using namespace testing;
 
 // Both stop within this of the bottom of their valley, relatively: the solver's tolerance is 1e-6
 // an iteration, and a round of new assignments is worth 1e-5.
@@ -109,4 +111,4 @@ TEST(PlannerGain, open_loop_has_nothing_to_optimise) {
 }
 
 }  // namespace planner_gain_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -7,12 +7,16 @@
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_recovery_test {
 
-std::unique_ptr<const Dynamics> bicycle() { return make_dynamics("bicycle", {}, 0.1); }
+using namespace testing;
 
-PlannerSettings bicycle_settings(const Dynamics& car) {
+std::unique_ptr<const models::Dynamics> bicycle() {
+  return models::make_dynamics("bicycle", {}, 0.1);
+}
+
+PlannerSettings bicycle_settings(const models::Dynamics& car) {
   PlannerSettings settings;
   settings.horizon = 5;
   settings.state_points = 64;
@@ -50,7 +54,7 @@ void expect_same_plan(const Plan& one, const Plan& other) {
 }
 
 /// Plans, meets `bad`, and plans again.
-void expect_cold_start_after(const Dynamics& car, const PlannerSettings& settings,
+void expect_cold_start_after(const models::Dynamics& car, const PlannerSettings& settings,
                              const Gaussian& good, const Gaussian& bad) {
   Planner planner(car, settings);
   Gaussian moved = good;
@@ -132,4 +136,4 @@ TEST(PlannerRecovery, a_bicycle_at_its_pole_is_no_exception) {
 }
 
 }  // namespace planner_recovery_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

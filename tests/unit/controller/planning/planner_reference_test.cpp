@@ -12,8 +12,10 @@
 #include "tests/support/plain_planner.hpp"
 #include "tests/unit/controller/measure/reference_cases.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_reference_test {
+
+using namespace testing;
 
 // Relative to the values' scale: rounding of some ten thousand operations, grown along the horizon.
 constexpr double kTolerance = 1e-9;
@@ -109,4 +111,4 @@ TEST(ReferenceCases, meet_walls_obstacles_and_input_bounds) {
 }
 
 }  // namespace planner_reference_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

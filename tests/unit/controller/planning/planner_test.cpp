@@ -9,8 +9,10 @@
 
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace planner_test {
+
+using namespace testing;
 
 TEST(Planner, plan_is_consistent_with_itself) {
   const auto car = dubins_car();
@@ -277,4 +279,4 @@ TEST(Planner, refuses_prescribed_inputs_that_it_could_not_apply) {
 }
 
 }  // namespace planner_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -8,8 +8,10 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/solver_problems.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace projected_bfgs_test {
+
+using namespace testing;
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -254,4 +256,4 @@ TEST(ProjectedBfgs, takes_no_constraints) {
 }
 
 }  // namespace projected_bfgs_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

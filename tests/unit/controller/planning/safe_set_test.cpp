@@ -8,8 +8,10 @@
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace safe_set_test {
+
+using namespace testing;
 // Differences of numbers of the order of one.
 constexpr double kRounding = 1e-14;
 // The grid of a search. Next to the nearest point of a set of boxes, or of their complement, lies a
@@ -155,4 +157,4 @@ TEST(SafeSet, senseless_boxes_are_refused) {
 }
 
 }  // namespace safe_set_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -9,8 +9,10 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/solver_problems.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace slsqp_test {
+
+using namespace testing;
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -320,4 +322,4 @@ TEST_F(Slsqp, groups_must_be_as_many_as_constraints) {
 }
 
 }  // namespace slsqp_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -19,12 +19,12 @@ struct SolverChoice {
 /// Every solver; "lbfgs" with every bounding.
 inline std::vector<SolverChoice> solver_choices() {
   std::vector<SolverChoice> choices;
-  for (const SolverEntry& solver : solvers()) {
+  for (const controller::SolverEntry& solver : controller::solvers()) {
     if (solver.name != "lbfgs") {
-      choices.push_back({solver.name, input_boundings()[0].name});
+      choices.push_back({solver.name, controller::input_boundings()[0].name});
       continue;
     }
-    for (const SolverEntry& bounding : input_boundings()) {
+    for (const controller::SolverEntry& bounding : controller::input_boundings()) {
       choices.push_back({solver.name, bounding.name});
     }
   }
@@ -33,9 +33,9 @@ inline std::vector<SolverChoice> solver_choices() {
 
 /// ½ Σ_i w_i (z_i − target_i)², w = 1, 4, 1, 4, …, with −0.1 ≤ z_i ≤ 0.3 and −1 ≤ z_i ≤ 2 in turn:
 /// separable, so that the minimum over the box is the target's projection.
-inline OcpProblem boxed_bowl(const Eigen::VectorXd& target) {
+inline controller::OcpProblem boxed_bowl(const Eigen::VectorXd& target) {
   const Eigen::Index n = target.size();
-  OcpProblem problem{
+  controller::OcpProblem problem{
       .cost = {}, .lower = Eigen::VectorXd(n), .upper = Eigen::VectorXd(n), .constraints = {}};
   Eigen::VectorXd weights(n);
   for (Eigen::Index i = 0; i < n; ++i) {
@@ -50,7 +50,7 @@ inline OcpProblem boxed_bowl(const Eigen::VectorXd& target) {
   return problem;
 }
 
-inline bool within_bounds(const OcpProblem& problem, const Eigen::VectorXd& z) {
+inline bool within_bounds(const controller::OcpProblem& problem, const Eigen::VectorXd& z) {
   return (z.array() >= problem.lower.array()).all() && (z.array() <= problem.upper.array()).all();
 }
 

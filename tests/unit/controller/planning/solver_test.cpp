@@ -12,8 +12,10 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/solver_problems.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace solver_test {
+
+using namespace testing;
 
 using Eigen::VectorXd;
 
@@ -228,4 +230,4 @@ TEST(SolverStatus, every_status_has_a_name) {
 }
 
 }  // namespace solver_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc {
+namespace qsmpc::controller {
 namespace prediction_model_error_test {
 
 // Rounding of sums of few terms.
@@ -88,4 +88,4 @@ TEST(model_error, without_samples_it_is_refused) {
 }
 
 }  // namespace prediction_model_error_test
-}  // namespace qsmpc
+}  // namespace qsmpc::controller

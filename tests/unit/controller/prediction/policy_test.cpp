@@ -7,17 +7,21 @@
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace policy_test {
 
+using namespace testing;
+
 /// x⁺ = Ax + Bu: what the linear-quadratic regulator is exact for.
-class LinearSystem final : public Dynamics {
+class LinearSystem final : public models::Dynamics {
  public:
   LinearSystem(Eigen::MatrixXd a, Eigen::MatrixXd b) : a_(std::move(a)), b_(std::move(b)) {
     description_.states.resize(a_.rows());
     description_.inputs.resize(b_.cols());
   }
-  [[nodiscard]] const SystemDescription& description() const override { return description_; }
+  [[nodiscard]] const models::SystemDescription& description() const override {
+    return description_;
+  }
   void step(const BatchView& states, const BatchView& inputs, BatchOut next) const override {
     next = a_ * states + b_ * inputs;
   }
@@ -40,7 +44,7 @@ class LinearSystem final : public Dynamics {
  private:
   Eigen::MatrixXd a_;
   Eigen::MatrixXd b_;
-  SystemDescription description_;
+  models::SystemDescription description_;
 };
 
 struct LinearProblem {
@@ -173,4 +177,4 @@ TEST(Policy, nominal_states_follow_the_noise_free_steps) {
 }
 
 }  // namespace policy_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller

@@ -14,8 +14,10 @@
 #include "controller/prediction/moment_matching.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
-namespace qsmpc::testing {
+namespace qsmpc::controller {
 namespace propagator_test {
+
+using namespace testing;
 
 // Sums of some thousand terms of the order of one.
 constexpr double kRounding = 1e-12;
@@ -347,4 +349,4 @@ TEST(MakePropagator, refuses_unknown_names_and_senseless_settings) {
 }
 
 }  // namespace propagator_test
-}  // namespace qsmpc::testing
+}  // namespace qsmpc::controller
