@@ -28,6 +28,12 @@ Eigen::VectorXd smallest_solution(const Eigen::MatrixXd& matrix, const Eigen::Ve
   return matrix.completeOrthogonalDecomposition().solve(values);
 }
 
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {
+  return matrix.completeOrthogonalDecomposition().pseudoInverse();
+}
+
+Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix) { return matrix.llt().matrixL(); }
+
 Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& values) {
   return matrix.ldlt().solve(values);
 }

@@ -26,6 +26,13 @@ struct SymmetricEigen {
 [[nodiscard]] Eigen::VectorXd smallest_solution(const Eigen::MatrixXd& matrix,
                                                 const Eigen::VectorXd& values);
 
+/// The Moore-Penrose inverse (complete orthogonal decomposition).
+[[nodiscard]] Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
+
+/// The lower Cholesky factor L of a symmetric positive definite matrix = L Lᵀ, of which the lower
+/// triangle is read.
+[[nodiscard]] Eigen::MatrixXd cholesky_factor(const Eigen::MatrixXd& matrix);
+
 /// The solution of a symmetric semidefinite system `matrix` · x = `values` (LDLᵀ, pivoted).
 [[nodiscard]] Eigen::VectorXd solve_symmetric(const Eigen::MatrixXd& matrix,
                                               const Eigen::VectorXd& values);

@@ -18,7 +18,7 @@ namespace {
 // 4φ(1); rounded up.
 constexpr double kCurvature = 0.24198;
 // Octaves over which t is searched, from the error's root mean square on; every t gives a bound.
-constexpr int kOctaves = 24;
+constexpr int kPartOctaves = 24;
 // Steps to an octave about the best of these, and to a step about the best of those: 1 % in t.
 constexpr int kFineSteps = 8;
 constexpr int kFinestSteps = 56;
@@ -238,7 +238,7 @@ class ReachSearch {
   [[nodiscard]] double best() {
     const double least = 1.02 * std::sqrt(square_);
     constexpr int kCount = kSoftReaches;
-    for (int octave = 0; octave < kOctaves; octave += kCount) {
+    for (int octave = 0; octave < kPartOctaves; octave += kCount) {
       // What is near grows with t, so that no larger t can be better.
       if (try_about(std::ldexp(least, octave), 1.0, 0.0) >= least_value_) break;
     }

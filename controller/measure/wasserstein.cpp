@@ -49,7 +49,7 @@ Supply make_supply(const DiscreteMeasure& measure) {
 }
 
 /// Squared distances of all pairs, one point of `from` after the other.
-std::vector<double> squared_distances(const Points& from, const Points& to) {
+std::vector<double> pairwise_squared_distances(const Points& from, const Points& to) {
   std::vector<double> distances(from.cols() * to.cols());
   for (Eigen::Index i = 0; i < from.cols(); ++i) {
     Eigen::Map<Eigen::RowVectorXd>(&distances[i * to.cols()], to.cols()) =
@@ -71,7 +71,7 @@ struct FixedPointCosts {
 double transport_cost(const Supply& from, const Supply& to) {
   const auto rows = static_cast<int>(from.masses.size());
   const auto columns = static_cast<int>(to.masses.size());
-  const std::vector<double> distances = squared_distances(from.locations, to.locations);
+  const std::vector<double> distances = pairwise_squared_distances(from.locations, to.locations);
   const double largest = *std::max_element(distances.begin(), distances.end());
   if (largest == 0.0) return 0.0;
 

@@ -17,10 +17,10 @@ namespace {
 // Units of the view box; the page scales it to the width that there is.
 constexpr double kWidth = kChartWidth;
 constexpr double kHeight = kChartHeight;
-constexpr double kLeft = 78.0;
-constexpr double kRight = 14.0;
-constexpr double kTop = 10.0;
-constexpr double kBottom = 46.0;
+constexpr double kChartLeft = 78.0;
+constexpr double kChartRight = 14.0;
+constexpr double kChartTop = 10.0;
+constexpr double kChartBottom = 46.0;
 constexpr const char* kAreaClass = "area";
 constexpr int kTicksAcross = 6;
 constexpr int kTicksUp = 5;
@@ -33,10 +33,10 @@ struct PlotFrame {
   Axis y;
 
   [[nodiscard]] double across(double value) const {
-    return kLeft + position_on(x, value) * (kWidth - kLeft - kRight);
+    return kChartLeft + position_on(x, value) * (kWidth - kChartLeft - kChartRight);
   }
   [[nodiscard]] double up(double value) const {
-    return kHeight - kBottom - position_on(y, value) * (kHeight - kTop - kBottom);
+    return kHeight - kChartBottom - position_on(y, value) * (kHeight - kChartTop - kChartBottom);
   }
 };
 
@@ -188,13 +188,14 @@ std::vector<Tick> ticks_across(const Chart& chart, const PlotFrame& frame) {
 }
 
 std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
-  const double right = kWidth - kRight;
-  const double foot = kHeight - kBottom;
+  const double right = kWidth - kChartRight;
+  const double foot = kHeight - kChartBottom;
   std::string svg;
   for (const Tick& tick : ticks_of(frame.y, kTicksUp)) {
     const double y = frame.up(tick.value);
-    svg += fmt::format("<path class=\"grid-line\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kLeft, y, right);
-    svg += fmt::format("<text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", kLeft - 7.0,
+    svg += fmt::format("<path class=\"grid-line\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kChartLeft, y,
+                       right);
+    svg += fmt::format("<text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", kChartLeft - 7.0,
                        y + 4.0, escape_html(tick.label));
   }
   for (const Tick& tick : ticks_across(chart, frame)) {
@@ -203,13 +204,13 @@ std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
     svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, foot + 18.0,
                        escape_html(tick.label));
   }
-  svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\"/>", kLeft, kTop, foot,
-                     right);
+  svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\"/>", kChartLeft,
+                     kChartTop, foot, right);
   svg += fmt::format("<text class=\"middle label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
-                     (kLeft + right) / 2.0, kHeight - 8.0, escape_html(chart.x_label));
+                     (kChartLeft + right) / 2.0, kHeight - 8.0, escape_html(chart.x_label));
   svg += fmt::format(
       "<text class=\"middle label\" transform=\"translate(14 {:.1f}) rotate(-90)\">{}</text>",
-      (kTop + foot) / 2.0, escape_html(chart.y_label));
+      (kChartTop + foot) / 2.0, escape_html(chart.y_label));
   return svg;
 }
 
@@ -291,8 +292,8 @@ std::string chart_drawing(const Chart& chart, double x, double y) {
   svg += areas_svg(chart, frame) + axes_svg(chart, frame);
   for (const Rule& rule : chart.rules) {
     if (!is_drawable(rule.value)) continue;
-    svg += fmt::format("<path class=\"rule\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kLeft,
-                       frame.up(rule.value), kWidth - kRight);
+    svg += fmt::format("<path class=\"rule\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kChartLeft,
+                       frame.up(rule.value), kWidth - kChartRight);
   }
   for (const Series& series : chart.series) {
     const PathData data = path_data(series, frame);

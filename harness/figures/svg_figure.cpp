@@ -18,7 +18,7 @@ constexpr double kMargin = 14.0;
 constexpr double kTitleHeight = 26.0;
 constexpr double kLineHeight = 17.0;  // of a note or an entry of the legend
 constexpr double kGap = 22.0;         // between rows of panels
-constexpr double kTextSize = 12.5;
+constexpr double kLegendTextSize = 12.5;
 constexpr double kSwatchGap = 8.0;  // between a sign of the legend and its name
 constexpr double kEntryGap = 18.0;  // between entries of the legend
 // A letter on average, of small print and of the legend.
@@ -113,7 +113,7 @@ Head legend_svg(const std::vector<LegendEntry>& entries, double width) {
     const std::vector<std::string> lines = wrapped(entry.name, columns);
     double needed = 0.0;
     for (const std::string& line : lines) {
-      needed = std::max(needed, estimated_width(line, kTextSize));
+      needed = std::max(needed, estimated_width(line, kLegendTextSize));
     }
     needed += kSwatchWidth + kSwatchGap;
     if (y == 0.0 || x + needed > width) {

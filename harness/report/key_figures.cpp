@@ -13,7 +13,7 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kNone = "–";
-constexpr double kMillisecondsPerSecond = 1e3;
+constexpr double kMilliseconds = 1e3;
 
 enum class Verdict { kPlain, kGood, kWarn, kBad };
 
@@ -105,7 +105,7 @@ Tile thesis_tile(const Summary& summary) {
 }
 
 Tile solve_tile(const Trace& trace, const Summary& summary) {
-  const double period = kMillisecondsPerSecond * trace.scenario.time_step;
+  const double period = kMilliseconds * trace.scenario.time_step;
   Tile tile{.name = "Solve time, median / 99th percentile",
             .value = kNone,
             .hint = fmt::format("control period {} ms", format_short(period, 4))};

@@ -20,7 +20,7 @@ namespace certificate_soundness_test {
 
 using namespace testing;
 
-const int kPaths = by_effort(20000, 100000, 100000);
+const int kPaths = by_effort(20000, 50000, 100000);
 constexpr int kShards = 8;  // so that the test runner can use several cores
 // Paths whose states are compared with the particles: each coordinate's are sorted.
 constexpr int kSorted = 10000;

@@ -23,7 +23,7 @@ namespace qsmpc::controller {
 namespace model_error_soundness_test {
 
 using namespace testing;
-const int kPaths = by_effort(10000, 50000, 50000);
+const int kPaths = by_effort(10000, 25000, 50000);
 // Paths whose states are compared with the particles: each coordinate's are sorted.
 constexpr int kSorted = 10000;
 constexpr int kShards = 8;  // so that the test runner can use several cores

@@ -6,9 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
-#include <Eigen/Eigenvalues>
-
 #include "models/constants.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc::testing {
 namespace {
@@ -68,9 +67,9 @@ class PlainSplit {
   PlainSplit(const Eigen::MatrixXd& covariance, int cells, int parts,
              const controller::Points& sources, const Eigen::VectorXd& weights)
       : limit_(cells), least_share_(1.0 / parts), weights_(weights) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-    axes_ = eigen.eigenvectors();
-    deviations_ = eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+    const models::SymmetricEigen eigen = models::symmetric_eigen(covariance);
+    axes_ = eigen.vectors;
+    deviations_ = eigen.values.cwiseMax(0.0).cwiseSqrt();
     centre_ = sources * weights;
     positions_ = axes_.transpose() * (sources.colwise() - centre_);
     second_moment_ = (positions_.array().square().matrix() * weights).sum() +

@@ -8,8 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
+#include "models/linear_algebra.hpp"
 #include "tests/support/slsqp_search.hpp"
 
 namespace qsmpc::testing {
@@ -24,7 +23,7 @@ models::StateBatch normal_draws(const Eigen::MatrixXd& covariance, int count,
   std::normal_distribution<double> normal;
   const models::StateBatch standard =
       models::StateBatch::NullaryExpr(covariance.rows(), count, [&] { return normal(generator); });
-  return covariance.llt().matrixL() * standard;
+  return models::cholesky_factor(covariance) * standard;
 }
 
 /// h(s) of docs/theory/planning.md, and its slope.

@@ -2,26 +2,25 @@
 
 #include <memory>
 
-#include <Eigen/Cholesky>
-
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/measure/wasserstein.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc::testing {
 namespace {
 
-constexpr double kSpeed = 1.5;             // m/s
+constexpr double kCarSpeed = 1.5;          // m/s
 constexpr double kYawRate = 0.3;           // rad/s
-constexpr double kTimeStep = 0.1;          // s
+constexpr double kCarTimeStep = 0.1;       // s
 constexpr double kInitialVariance = 0.01;  // m², m², rad²
 constexpr int kDim = 3;
 
 std::unique_ptr<const models::Dynamics> make_car() {
-  return models::make_dynamics("dubins", {{"speed", kSpeed}}, kTimeStep);
+  return models::make_dynamics("dubins", {{"speed", kCarSpeed}}, kCarTimeStep);
 }
 
 controller::Points normal_points(int count, std::mt19937_64& generator) {
@@ -73,7 +72,7 @@ std::vector<controller::DiscreteMeasure> simulated_states(const QualityProblem& 
   std::seed_seq sequence{seed, stream};
   std::mt19937_64 generator(sequence);
   const std::unique_ptr<const models::Dynamics> car = make_car();
-  const Eigen::MatrixXd root = problem.noise_covariance.llt().matrixL();
+  const Eigen::MatrixXd root = models::cholesky_factor(problem.noise_covariance);
   const models::StateBatch inputs = models::StateBatch::Constant(1, count, kYawRate);
   models::StateBatch states = std::sqrt(kInitialVariance) * normal_points(count, generator);
   models::StateBatch next(kDim, count);

@@ -2,9 +2,8 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
 #include "controller/prediction/policy.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc::testing {
 namespace {
@@ -27,8 +26,8 @@ bool unsafe(const controller::SafeSet& safe_set, const controller::Points& state
 class NormalDraws {
  public:
   explicit NormalDraws(const Eigen::MatrixXd& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-    root_ = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    const models::SymmetricEigen eigen = models::symmetric_eigen(covariance);
+    root_ = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   }
   [[nodiscard]] controller::Points operator()(Eigen::Index count, Generator& generator) {
     return root_ *

@@ -363,8 +363,8 @@ Eigen::VectorXd Simulation::placement(double heading) {
 
 Eigen::MatrixXd Simulation::rates_by_velocities() {
   mj_forward(model_.get(), data_.get());
-  const Eigen::MatrixXd rows = states_.velocity_jacobian(*data_);
-  return states_.position_jacobian(*data_) * rows.completeOrthogonalDecomposition().pseudoInverse();
+  return states_.position_jacobian(*data_) *
+         models::pseudo_inverse(states_.velocity_jacobian(*data_));
 }
 
 Eigen::VectorXd Simulation::apparent_masses() {

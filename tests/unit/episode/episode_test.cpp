@@ -385,7 +385,7 @@ TEST(Episode, an_xml_file_that_mujoco_refuses_is_a_fault_in_its_own_words) {
   std::filesystem::remove(file);
   EXPECT_EQ(trace.outcome, Outcome::kFault);
   EXPECT_TRUE(trace.steps.empty());
-  EXPECT_THAT(trace.fault, testing::HasSubstr("no_such_element"));
+  EXPECT_THAT(trace.fault, ::testing::HasSubstr("no_such_element"));
 }
 
 }  // namespace episode_test

@@ -21,8 +21,8 @@
 namespace qsmpc::render {
 namespace gl_library_test {
 
-using testing::HasSubstr;
-using testing::StartsWith;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 Frame example_frame() {
   Frame frame = frame_with_particle({1.2, 0.4});
@@ -184,7 +184,7 @@ int child_main(const std::string& what, const std::string& first, const std::str
 }  // namespace qsmpc::render
 
 int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
+  ::testing::InitGoogleTest(&argc, argv);
   if (argc > 1) {
     const auto argument = [&](int i) -> std::string { return i < argc ? argv[i] : ""; };
     return qsmpc::render::gl_library_test::child_main(argument(1), argument(2), argument(3));

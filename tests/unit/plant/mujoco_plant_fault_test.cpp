@@ -11,6 +11,7 @@
 #include "harness/plant/mujoco/mujoco_errors.hpp"
 #include "harness/plant/mujoco/mujoco_model.hpp"
 #include "models/constants.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
 namespace qsmpc::harness {
@@ -41,7 +42,7 @@ class MujocoPlantFault : public ::testing::Test {
   }
 
   std::filesystem::path before_ = std::filesystem::current_path();
-  TemporaryFolder folder_;
+  testing::TemporaryFolder folder_;
 };
 
 TEST_F(MujocoPlantFault, input_or_disturbance_that_is_not_finite) {
@@ -79,7 +80,7 @@ TEST_F(MujocoPlantFault, a_simulation_that_explodes_stops_at_its_last_good_state
   const std::string text = altered_car(
       "<position class=\"steering\" name=\"steer_left\" joint=\"front_left_steering\"/>",
       "<motor name=\"steer_left\" joint=\"front_left_steering\" gear=\"1e13\"/>");
-  const auto car = make_car(folder_.write("car.xml", text));
+  const auto car = make_car(folder_.file("car.xml", text));
   car->reset(pose(0.0, 0.0, 0.0));
   const PlantStep straight = car->advance(yaw_rate(0.0), no_disturbance());
   ASSERT_FALSE(straight.fault.has_value()) << *straight.fault;
@@ -104,7 +105,7 @@ TEST_F(MujocoPlantFault, a_kick_out_of_the_simulators_range) {
 TEST_F(MujocoPlantFault, refuses_a_model_whose_buffers_are_too_small) {
   // Four wheels touch and there is room for three: refused at settling.
   const auto where =
-      refusal(folder_.write("car.xml", altered_car("nconmax=\"50\"", "nconmax=\"3\"")));
+      refusal(folder_.file("car.xml", altered_car("nconmax=\"50\"", "nconmax=\"3\"")));
   EXPECT_THAT(where.found, HasSubstr("contact"));
 }
 
@@ -123,38 +124,38 @@ TEST_F(MujocoPlantFault, refuses_a_missing_file) {
 }
 
 TEST_F(MujocoPlantFault, refuses_xml_that_is_malformed_or_no_model_and_says_the_line) {
-  const std::string malformed = folder_.write("a.xml", "<mujoco>\n<worldbody>\n</mujoco>\n");
+  const std::string malformed = folder_.file("a.xml", "<mujoco>\n<worldbody>\n</mujoco>\n");
   EXPECT_EQ(refusal(malformed).file, malformed);
   EXPECT_EQ(refusal(malformed).line, 2);
-  const auto unknown = refusal(folder_.write("b.xml", "<mujoco>\n\n<wordlbody/>\n</mujoco>\n"));
+  const auto unknown = refusal(folder_.file("b.xml", "<mujoco>\n\n<wordlbody/>\n</mujoco>\n"));
   EXPECT_EQ(unknown.line, 3);
   EXPECT_THAT(unknown.found, HasSubstr("unrecognized element"));
-  const auto massless = refusal(folder_.write(
+  const auto massless = refusal(folder_.file(
       "c.xml", "<mujoco><worldbody>\n<body><freejoint/></body>\n</worldbody></mujoco>"));
   EXPECT_EQ(massless.line, 2);
   EXPECT_THAT(massless.found, HasSubstr("mass and inertia"));
-  EXPECT_FALSE(refusal(folder_.write("d.xml", "")).found.empty());
+  EXPECT_FALSE(refusal(folder_.file("d.xml", "")).found.empty());
 }
 
 TEST_F(MujocoPlantFault, refuses_a_model_that_loads_with_a_warning) {
   const std::string file =
-      folder_.write("car.xml", altered_car("pos=\"0 0.11 0\"", "pos=\"0 0.11 nan\""));
+      folder_.file("car.xml", altered_car("pos=\"0 0.11 0\"", "pos=\"0 0.11 nan\""));
   EXPECT_THAT(refusal(file).found, HasSubstr("NaN"));
 }
 
 TEST_F(MujocoPlantFault, refuses_a_model_without_the_names_that_the_mapping_needs) {
   const auto body =
-      refusal(folder_.write("a.xml", altered_car("<body name=\"car\"", "<body name=\"cra\"")));
+      refusal(folder_.file("a.xml", altered_car("<body name=\"car\"", "<body name=\"cra\"")));
   EXPECT_EQ(body.key, "body car");
   EXPECT_THAT(body.expected, AllOf(HasSubstr("cra"), HasSubstr("front_left")));
   const auto actuator =
-      refusal(folder_.write("b.xml", altered_car("name=\"steer_right\"", "name=\"steer_rihgt\"")));
+      refusal(folder_.file("b.xml", altered_car("name=\"steer_right\"", "name=\"steer_rihgt\"")));
   EXPECT_EQ(actuator.key, "actuator steer_right");
   EXPECT_THAT(actuator.expected, AllOf(HasSubstr("steer_left"), HasSubstr("steer_rihgt")));
 }
 
 TEST_F(MujocoPlantFault, refuses_a_vehicle_that_cannot_hold_its_speed) {
-  const auto where = refusal(folder_.write(
+  const auto where = refusal(folder_.file(
       "car.xml", altered_car("tendon=\"drive\" kv=\"3\"", "tendon=\"drive\" kv=\"0.0001\"")));
   EXPECT_THAT(where.found, HasSubstr("m/s after settling"));
 }
@@ -167,7 +168,7 @@ TEST_F(MujocoPlantFault, refuses_a_period_that_is_no_multiple_of_the_timestep) {
 
 TEST_F(MujocoPlantFault, a_warning_goes_to_the_innermost_trap_of_its_own_thread) {
   const std::string nan_model =
-      folder_.write("car.xml", altered_car("pos=\"0 0.11 0\"", "pos=\"0 0.11 nan\""));
+      folder_.file("car.xml", altered_car("pos=\"0 0.11 0\"", "pos=\"0 0.11 nan\""));
   const MujocoTrap outer;
   EXPECT_THROW((void)load_mujoco_model(nan_model), InputError);
   std::thread([&] { EXPECT_THROW((void)load_mujoco_model(nan_model), InputError); }).join();

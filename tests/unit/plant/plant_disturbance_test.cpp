@@ -18,7 +18,7 @@ namespace plant_disturbance_test {
 /// Periods driven: a disturbance by force shoots for its effect, several simulations a period. The
 /// limits below follow the number.
 int periods_of(bool force) {
-  return force ? testing::by_effort(100, 500, 2000) : testing::by_effort(500, 2000, 2000);
+  return force ? testing::by_effort(100, 300, 2000) : testing::by_effort(500, 1500, 2000);
 }
 
 struct Disturbed {

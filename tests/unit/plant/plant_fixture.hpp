@@ -1,7 +1,6 @@
 // What the tests of plants share: the shipped car, altered copies of it, and its numbers.
 #pragma once
 
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <sstream>
@@ -47,33 +46,6 @@ inline Eigen::Vector3d turned(const Eigen::Vector3d& vector, double angle) {
   return {std::cos(angle) * vector.x() - std::sin(angle) * vector.y(),
           std::sin(angle) * vector.x() + std::cos(angle) * vector.y(), vector.z()};
 }
-
-/// A folder of its own for the running test, empty at first and gone afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(::testing::TempDir()) /
-            (std::string("qsmpc_") + test->test_suite_name() + "_" + test->name());
-    std::filesystem::remove_all(path_);
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  [[nodiscard]] std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return path_ / name;
-  }
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// The shipped car's XML with every `from` replaced by `to`; throws unless there is one.
 inline std::string altered_car(const std::string& from, const std::string& to) {

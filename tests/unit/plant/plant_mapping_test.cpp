@@ -9,6 +9,7 @@
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
@@ -60,8 +61,8 @@ class PlantMappingTest : public ::testing::Test {
     return {};
   }
 
-  TemporaryFolder folder_;
-  std::string file_ = folder_.write("rail.xml", kRail);
+  testing::TemporaryFolder folder_;
+  std::string file_ = folder_.file("rail.xml", kRail);
 };
 
 TEST_F(PlantMappingTest, gain_and_offset_turn_units_both_ways) {

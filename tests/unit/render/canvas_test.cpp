@@ -147,7 +147,7 @@ TEST(canvas, text_is_drawn_where_no_font_is_installed) {
                        Font(20.0).width("letters") > 0.0;
     std::_Exit(drawn ? EXIT_SUCCESS : EXIT_FAILURE);
   };
-  EXPECT_EXIT(draw(), testing::ExitedWithCode(EXIT_SUCCESS), "");
+  EXPECT_EXIT(draw(), ::testing::ExitedWithCode(EXIT_SUCCESS), "");
 }
 
 TEST(canvas, fitting_text_is_cut_between_letters) {
@@ -157,8 +157,8 @@ TEST(canvas, fitting_text_is_cut_between_letters) {
   const std::string cut = fitting(font, text, 0.5 * font.width(text));
   EXPECT_LE(font.width(cut), 0.5 * font.width(text));
   EXPECT_GT(font.width(cut), 0.3 * font.width(text));
-  ASSERT_THAT(cut, testing::EndsWith("…"));
-  EXPECT_THAT(text, testing::StartsWith(cut.substr(0, cut.size() - 3)));
+  ASSERT_THAT(cut, ::testing::EndsWith("…"));
+  EXPECT_THAT(text, ::testing::StartsWith(cut.substr(0, cut.size() - 3)));
   EXPECT_EQ((cut.size() - 3) % 2, 0U);  // each letter is two bytes
   EXPECT_EQ(fitting(font, "wide", 0.0), "…");
 }

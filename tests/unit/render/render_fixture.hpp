@@ -65,7 +65,7 @@ inline int colour_difference(const Pixel& pixel, const Colour& colour) {
 
 /// An empty folder of the running test's own.
 inline std::filesystem::path fresh_folder() {
-  const auto* test = testing::UnitTest::GetInstance()->current_test_info();
+  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
   std::string name = std::string(test->test_suite_name()) + "." + test->name();
   for (char& character : name) {
     character = character == '/' ? '_' : character;

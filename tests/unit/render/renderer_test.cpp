@@ -19,13 +19,13 @@ constexpr int kOtherColour = 70;
 
 bool is_red(const Pixel& pixel) { return pixel.red > 180 && pixel.green < 70 && pixel.blue < 70; }
 
-class EveryCamera : public testing::TestWithParam<const char*> {
+class EveryCamera : public ::testing::TestWithParam<const char*> {
  protected:
   Renderer renderer_{small_picture(GetParam()), small_world(), kRedBox};
   Image image_;
 };
 
-INSTANTIATE_TEST_SUITE_P(Cameras, EveryCamera, testing::Values("chase", "top", "fixed"));
+INSTANTIATE_TEST_SUITE_P(Cameras, EveryCamera, ::testing::Values("chase", "top", "fixed"));
 
 TEST_P(EveryCamera, vehicle_is_drawn_where_its_pose_projects) {
   Frame frame;

@@ -18,7 +18,7 @@
 namespace qsmpc::render {
 namespace video_formats_test {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr int kWidth = 160;
 constexpr int kHeight = 96;
@@ -222,7 +222,7 @@ TEST(video_formats, qualities_out_of_range_and_gifs_too_fast_are_refused) {
   EXPECT_EQ(files_in(folder), 0);
 }
 
-class EveryFormat : public testing::TestWithParam<std::string> {};
+class EveryFormat : public ::testing::TestWithParam<std::string> {};
 
 // Smooth noise, which is what costs space.
 Image noisy_image(int index) {
@@ -249,7 +249,7 @@ TEST_P(EveryFormat, lower_quality_is_a_smaller_file) {
   EXPECT_LT(sizes[0], 0.9 * static_cast<double>(sizes[1]));
 }
 
-INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, testing::ValuesIn(video_format_names()));
+INSTANTIATE_TEST_SUITE_P(Formats, EveryFormat, ::testing::ValuesIn(video_format_names()));
 
 TEST(gif_palette, holds_no_more_colours_than_asked_for_and_the_frequent_ones) {
   ColourCount count;

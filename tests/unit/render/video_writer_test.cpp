@@ -25,7 +25,7 @@
 namespace qsmpc::render {
 namespace video_writer_test {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr int kWidth = 160;
 constexpr int kHeight = 96;
@@ -216,7 +216,7 @@ class MemoryFile final : public ByteFile {
   std::vector<std::uint8_t> bytes_;
 };
 
-class EveryKeptFormat : public testing::TestWithParam<VideoFormat> {};
+class EveryKeptFormat : public ::testing::TestWithParam<VideoFormat> {};
 
 TEST_P(EveryKeptFormat, needs_no_file_system) {
   MemoryFile partial;
@@ -257,8 +257,8 @@ TEST_P(EveryKeptFormat, what_a_file_throws_reaches_the_caller) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, EveryKeptFormat,
-                         testing::Values(VideoFormat::kMp4, VideoFormat::kWebm, VideoFormat::kGif,
-                                         VideoFormat::kWebp));
+                         ::testing::Values(VideoFormat::kMp4, VideoFormat::kWebm, VideoFormat::kGif,
+                                           VideoFormat::kWebp));
 
 TEST(png_image, keeps_every_pixel) {
   const std::string path = fresh_folder() / "picture.png";

@@ -58,7 +58,7 @@ TEST(Executor, of_one_thread_runs_in_turn_in_the_calling_thread) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
     order.push_back(n);
   });
-  EXPECT_THAT(order, testing::ElementsAre(0, 1, 2, 3, 4));
+  EXPECT_THAT(order, ::testing::ElementsAre(0, 1, 2, 3, 4));
 }
 
 TEST(Executor, a_copy_outlives_the_original) {

@@ -15,7 +15,7 @@
 namespace qsmpc::harness {
 namespace episode_frames_test {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 std::string row_of(const render::Frame& frame, const std::string& name) {
   for (const render::HudRow& row : frame.hud) {
@@ -66,11 +66,11 @@ TEST(episode_frames, qpos_comes_from_the_recorded_motion) {
                   {0.1, {2.0, 20.0}},  {0.1, {2.5, 20.0}},  // the same instant after the kick
                   {0.12, {2.7, 22.0}}, {0.15, {3.0, 25.0}}};
   const EpisodeFrames frames(trace);
-  EXPECT_THAT(frames.at(0.025).qpos, testing::ElementsAre(0.5, 5.0));
-  EXPECT_THAT(frames.at(0.1).qpos, testing::ElementsAre(2.0, 20.0));
-  EXPECT_THAT(frames.at(0.125).qpos, testing::ElementsAre(testing::DoubleNear(2.5, 1e-9),
-                                                          testing::DoubleNear(22.5, 1e-9)));
-  EXPECT_THAT(frames.at(9.0).qpos, testing::ElementsAre(3.0, 25.0));
+  EXPECT_THAT(frames.at(0.025).qpos, ::testing::ElementsAre(0.5, 5.0));
+  EXPECT_THAT(frames.at(0.1).qpos, ::testing::ElementsAre(2.0, 20.0));
+  EXPECT_THAT(frames.at(0.125).qpos, ::testing::ElementsAre(::testing::DoubleNear(2.5, 1e-9),
+                                                            ::testing::DoubleNear(22.5, 1e-9)));
+  EXPECT_THAT(frames.at(9.0).qpos, ::testing::ElementsAre(3.0, 25.0));
 }
 
 TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
@@ -85,7 +85,7 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   EXPECT_EQ(frame.charts[0].value, "3.0e-03");
   EXPECT_THAT(row_of(frame, "P(unsafe) whole plan"), HasSubstr("2.5e-01"));
   EXPECT_THAT(row_of(frame, "speed"), HasSubstr("1.50"));
-  EXPECT_THAT(frame.charts[1].values, testing::ElementsAre(0.0, 0.1, 0.2));
+  EXPECT_THAT(frame.charts[1].values, ::testing::ElementsAre(0.0, 0.1, 0.2));
   EXPECT_EQ(frame.charts[0].values.size(), 3U);
   EXPECT_TRUE(frame.banner.empty());
   EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));

@@ -69,7 +69,7 @@ TEST(episode_painter, the_shorter_episode_stands_on_its_last_frame) {
   const std::vector<render::Frame> frames = pictures.at(0.5);
   ASSERT_EQ(frames.size(), 2U);
   EXPECT_TRUE(frames[0].banner.empty());
-  EXPECT_THAT(frames[1].banner, testing::HasSubstr("target reached after 0.3 s"));
+  EXPECT_THAT(frames[1].banner, ::testing::HasSubstr("target reached after 0.3 s"));
   EXPECT_NEAR(frames[1].pose.x, 3 * kStride, 1e-12);
   // One time axis and one range for both.
   EXPECT_EQ(frames[0].charts[2].slots, frames[1].charts[2].slots);

@@ -14,7 +14,7 @@
 namespace qsmpc::harness {
 namespace episode_video_test {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr EpisodeVideoOptions kSmallVideo{.width = 320, .height = 180, .fps = 10};
 

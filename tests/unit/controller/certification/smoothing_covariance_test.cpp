@@ -1,9 +1,9 @@
 #include <cmath>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "models/linear_algebra.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
 
 namespace qsmpc::controller {
@@ -23,7 +23,7 @@ TEST(Smoothing, is_a_part_of_the_surrogate) {
         const Eigen::MatrixXd smoothing = smoothing_covariance(motion, k, axes);
         const Eigen::MatrixXd& covariance = stages[k].law.covariance;
         const auto least = [](const Eigen::MatrixXd& matrix) {
-          return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix).eigenvalues()[0];
+          return models::symmetric_eigenvalues(matrix)[0];
         };
         EXPECT_GE(least(smoothing), -1e-15) << one.name;
         // n is independent of the rest in the coordinates of `axes`, and only there.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "models/linear_algebra.hpp"
 #include "tests/unit/controller/measure/nearest_point.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
@@ -60,7 +61,7 @@ Case random_case(Generator& generator, int most_dimensions, double most_points) 
 }
 
 Eigen::MatrixXd lower_root(const Gaussian& gaussian) {
-  return Eigen::LLT<Eigen::MatrixXd>(gaussian.covariance).matrixL();
+  return models::cholesky_factor(gaussian.covariance);
 }
 
 TEST(QuantiserSampling, w2_of_a_product_is_the_root_mean_square_distance_to_the_nearest_point) {

@@ -4,11 +4,10 @@
 #include <cmath>
 #include <random>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
-#include <Eigen/Eigenvalues>
 
 #include "controller/measure/measures.hpp"
+#include "models/linear_algebra.hpp"
 
 namespace qsmpc::testing {
 
@@ -43,8 +42,8 @@ inline controller::DiscreteMeasure random_measure(Generator& generator, Eigen::I
 class NormalSampler {
  public:
   explicit NormalSampler(const Eigen::MatrixXd& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(covariance);
-    root_ = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal();
+    const models::SymmetricEigen eigen = models::symmetric_eigen(covariance);
+    root_ = eigen.vectors * eigen.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
   }
   [[nodiscard]] Eigen::VectorXd operator()(Generator& generator) {
     Eigen::VectorXd standard(root_.cols());

@@ -11,6 +11,7 @@
 
 #include "controller/measure/compression/compression.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "models/linear_algebra.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::controller {
@@ -144,8 +145,7 @@ TEST(Wasserstein, is_no_more_than_the_cost_of_a_compression_and_equals_it_on_vor
 
 TEST(Wasserstein, of_gaussians_with_a_common_eigenbasis_adds_the_differences_of_deviations) {
   Generator generator(37);
-  const Eigen::Matrix3d basis =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(random_spd(generator, 3)).eigenvectors();
+  const Eigen::Matrix3d basis = models::symmetric_eigen(random_spd(generator, 3)).vectors;
   const Eigen::Vector3d deviations(0.5, 0.9, 2.0);
   const Eigen::Vector3d others(0.4, 1.5, 2.0);
   const Gaussian first{
@@ -175,12 +175,12 @@ TEST(Wasserstein, of_gaussians_is_the_formula_of_bures) {
                          .covariance = random_spd(generator, dim)};
     const Gaussian second{.mean = random_matrix(generator, dim, 1),
                           .covariance = random_spd(generator, dim)};
-    // The eigenvalues of Σ₁Σ₂ are those of Σ₁^½ Σ₂ Σ₁^½.
-    const double overlap = Eigen::EigenSolver<Eigen::MatrixXd>(first.covariance * second.covariance)
-                               .eigenvalues()
-                               .real()
-                               .cwiseSqrt()
-                               .sum();
+    // The eigenvalues of Σ₁^½ Σ₂ Σ₁^½ are those of Σ₁Σ₂, and with Σ₁ = L Lᵀ those of Lᵀ Σ₂ L.
+    const Eigen::MatrixXd root = models::cholesky_factor(first.covariance);
+    const double overlap =
+        models::symmetric_eigenvalues(root.transpose() * second.covariance * root)
+            .cwiseSqrt()
+            .sum();
     const double squared = (first.mean - second.mean).squaredNorm() + first.covariance.trace() +
                            second.covariance.trace() - 2.0 * overlap;
     EXPECT_NEAR(wasserstein2(first, second), std::sqrt(squared), 1e-10);  // eigenvalues, a root

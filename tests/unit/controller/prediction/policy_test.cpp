@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/linear_algebra.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
 
@@ -135,7 +136,7 @@ TEST(LqrGains, reach_the_minimum_of_the_quadratic_programme) {
       hessian(i, j) = cost_of(unit(i) + unit(j)) - cost_of(unit(i)) - cost_of(unit(j)) + at_zero;
     }
   }
-  const double least = cost_of(-hessian.ldlt().solve(gradient));
+  const double least = cost_of(-models::solve_symmetric(hessian, gradient));
   EXPECT_NEAR(problem.cost(problem.gains(), start), least, 1e-10 * least);  // rounding of the solve
 }
 
