@@ -7,12 +7,14 @@
 #include "models/constants.hpp"
 
 namespace qsmpc::testing {
-namespace {
-constexpr double kTimeStep = 0.1;  // s
 
 double uniform(Generator& generator, double lower, double upper) {
   return std::uniform_real_distribution<double>(lower, upper)(generator);
 }
+
+namespace {
+
+constexpr double kTimeStep = 0.1;  // s
 
 int uniform_int(Generator& generator, int lower, int upper) {
   return std::uniform_int_distribution<int>(lower, upper)(generator);

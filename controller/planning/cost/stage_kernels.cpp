@@ -351,19 +351,6 @@ HWY_EXPORT(quadratic);
 HWY_EXPORT(add_rows);
 HWY_EXPORT(penalty_loops);
 
-namespace {
-
-std::vector<PenaltyTable::Face> bounded_axes(const Box& box) {
-  std::vector<PenaltyTable::Face> faces;
-  for (Eigen::Index axis = 0; axis < box.lower.size(); ++axis) {
-    if (std::isinf(box.lower[axis]) && std::isinf(box.upper[axis])) continue;
-    faces.push_back({static_cast<int>(axis), box.lower[axis], box.upper[axis]});
-  }
-  return faces;
-}
-
-}  // namespace
-
 void apply_policy(const StagePolicy& policy, const Points& states, ParticleRange range,
                   Points& inputs) {
   HWY_DYNAMIC_DISPATCH(policy_forward)(policy, states, range, inputs);
@@ -386,11 +373,6 @@ double weighted_quadratic(const QuadraticForm& form, double factor, const Points
 
 void add_points(const Points& b, ParticleRange range, Points& a) {
   HWY_DYNAMIC_DISPATCH(add_rows)(b, range, a);
-}
-
-PenaltyTable::PenaltyTable(const SafeSet& safe_set, const Penalty& chosen)
-    : penalty(chosen), bounds(bounded_axes(safe_set.bounds)) {
-  for (const Box& obstacle : safe_set.obstacles) obstacles.push_back(bounded_axes(obstacle));
 }
 
 PenaltyValue penalise(const PenaltyTable& table, const Points& locations,

@@ -3,14 +3,11 @@
 // particles begin … end − 1 only, so that several threads can share a stage.
 #pragma once
 
-#include <vector>
-
 #include <Eigen/Core>
 
 #include "controller/measure/measures.hpp"
 #include "controller/parallel.hpp"
-#include "controller/planning/cost/penalty.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/planning/cost/penalty_table.hpp"
 
 namespace qsmpc::controller {
 
@@ -51,22 +48,6 @@ double weighted_quadratic(const QuadraticForm& form, double factor, const Points
 
 /// a += b in the range.
 void add_points(const Points& b, ParticleRange range, Points& a);
-
-/// A penalty with the faces that it acts on.
-class PenaltyTable {
- public:
-  PenaltyTable(const SafeSet& safe_set, const Penalty& penalty);
-
-  struct Face {
-    int axis;
-    double lower;
-    double upper;
-  };
-
-  Penalty penalty;
-  std::vector<Face> bounds;                  ///< axes that are bounded
-  std::vector<std::vector<Face>> obstacles;  ///< the axes that each is bounded in
-};
 
 /// As add_penalty (penalty.hpp), but the gradient overwrites `adjoint` in the range.
 PenaltyValue penalise(const PenaltyTable& table, const Points& locations,

@@ -23,6 +23,11 @@ inline const std::string minimal_text =
     "initial_state: {mean: [0, 0, 0]}\n"
     "target: {state: [5, 0, 0]}\n";
 
+/// It, as `--set` changes it.
+inline Scenario minimal_with(const std::vector<std::string>& overrides) {
+  return parse_scenario(minimal_text, {.file = "t.yaml", .overrides = overrides});
+}
+
 /// What `parse_scenario` says is wrong; fails the test if it says nothing.
 inline InputError::Where refusal_of(const std::string& text,
                                     const std::vector<std::string>& overrides = {}) {

@@ -1,0 +1,38 @@
+// The penalties of planning (penalty.hpp, expected_bounds.hpp), particle by particle in scalar
+// code.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/safe_set.hpp"
+
+namespace qsmpc::testing {
+
+/// Refers to both arguments.
+class PlainPenalty {
+ public:
+  PlainPenalty(const controller::SafeSet& safe_set, const controller::Penalty& penalty)
+      : safe_set_(safe_set), penalty_(penalty) {}
+
+  /// Of one particle, without its weight; adds the gradient to `slope`.
+  controller::PenaltyValue operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const;
+
+  /// Of the bounds, for particles (d x n) that stand for normal laws of these deviations; 0 for the
+  /// printed shape, which has them above. Overwrites the slopes by the particles (d x n) and by the
+  /// deviations (d) with those of the weighted sum.
+  double of_bounds(const Eigen::MatrixXd& x, const Eigen::VectorXd& weights,
+                   const Eigen::VectorXd& deviations, Eigen::MatrixXd& slopes,
+                   Eigen::VectorXd& deviation_slopes) const;
+
+ private:
+  [[nodiscard]] controller::PenaltyValue smooth(const Eigen::VectorXd& x,
+                                                Eigen::VectorXd& slope) const;
+  [[nodiscard]] controller::PenaltyValue thesis(const Eigen::VectorXd& x,
+                                                Eigen::VectorXd& slope) const;
+
+  const controller::SafeSet& safe_set_;
+  const controller::Penalty& penalty_;
+};
+
+}  // namespace qsmpc::testing
