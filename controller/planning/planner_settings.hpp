@@ -24,7 +24,8 @@ struct PlannerSettings {
   /// the inputs.
   bool optimise_gain = false;
   std::string solver = "lbfgs";
-  std::string input_bounding = "bounded";  ///< how "lbfgs" keeps the bounds: `input_boundings()`
+  std::string input_bounding =
+      "bounded";  ///< a name of `input_boundings`, for solvers that let it be chosen
   std::string propagator = "mixture";
   QuantiserKind quantiser = QuantiserKind::kProduct;  ///< of the belief
   int state_points = 100;
@@ -35,7 +36,8 @@ struct PlannerSettings {
   double deadline = std::numeric_limits<double>::infinity();
   Eigen::MatrixXd noise_covariance;  ///< state_dim x state_dim
   QuadraticCost cost;
-  /// With "slsqp", which keeps every particle within the bounds as a constraint, `box` is not used.
+  /// Where the solver takes constraints, it keeps every particle within the bounds, and `box` is
+  /// not used.
   Penalty penalty;
   SafeSet safe_set;
   InputBounds bounds;

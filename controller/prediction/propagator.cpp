@@ -12,12 +12,6 @@
 namespace qsmpc::controller {
 namespace {
 
-constexpr const char* kMixture = "mixture";
-constexpr const char* kCompressed = "compressed";
-constexpr const char* kMomentMatched = "moment_matched";
-constexpr const char* kSoft = "soft";
-constexpr const char* kNoiseFree = "noise_free";
-
 /// Products with the noise quantiser, brought to a number of clusters.
 class ProductPropagator : public Propagator {
  public:
@@ -173,6 +167,11 @@ class NoiseFreePropagator final : public Propagator {
   double noise_w2_;
 };
 
+template <class Kind>
+std::unique_ptr<Propagator> make(const PropagatorSettings& settings) {
+  return std::make_unique<Kind>(settings);
+}
+
 }  // namespace
 
 StageMap Propagator::stage_map(const Points& stepped, const Eigen::VectorXd& weights) {
@@ -183,14 +182,28 @@ StageMap Propagator::stage_map(const Points& stepped, const Eigen::VectorXd& wei
 
 const std::vector<PropagatorEntry>& propagators() {
   static const std::vector<PropagatorEntry> table = {
-      {kMixture, "the noise kept Gaussian, cut into cells with the points after every step; fast"},
-      {kCompressed, "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)"},
-      {kMomentMatched,
-       "the same with Lloyd's quantiser and refined compression, spread to the covariance due"},
-      {kSoft, "as \"compressed\", but with the soft assignments of Algorithm 1; slow"},
-      {kNoiseFree, "the belief's points only; the noise counts as error of the certificate"},
+      {"mixture", "the noise kept Gaussian, cut into cells with the points after every step; fast",
+       make<MixturePropagator>},
+      {"compressed", "product with the noise quantiser, compressed after every step (Eq. 4-5, 4-6)",
+       make<CompressedPropagator>},
+      {"moment_matched",
+       "the same with Lloyd's quantiser and refined compression, spread to the covariance due",
+       make<MomentMatchedPropagator>},
+      {"soft", "as \"compressed\", but with the soft assignments of Algorithm 1; slow",
+       make<SoftPropagator>},
+      {"noise_free", "the belief's points only; the noise counts as error of the certificate",
+       make<NoiseFreePropagator>, false},
   };
   return table;
+}
+
+const PropagatorEntry& propagator_entry(std::string_view name) {
+  std::string known;
+  for (const PropagatorEntry& entry : propagators()) {
+    if (entry.name == name) return entry;
+    known += (known.empty() ? "" : ", ") + entry.name;
+  }
+  throw std::invalid_argument("no propagator '" + std::string(name) + "'; known are: " + known);
 }
 
 std::unique_ptr<Propagator> make_propagator(std::string_view name,
@@ -199,16 +212,7 @@ std::unique_ptr<Propagator> make_propagator(std::string_view name,
   if (!settings.noise.mean.isZero(0.0)) {
     throw std::invalid_argument("propagator: the noise must have zero mean");
   }
-  if (name == kMixture) return std::make_unique<MixturePropagator>(settings);
-  if (name == kCompressed) return std::make_unique<CompressedPropagator>(settings);
-  if (name == kMomentMatched) return std::make_unique<MomentMatchedPropagator>(settings);
-  if (name == kSoft) return std::make_unique<SoftPropagator>(settings);
-  if (name == kNoiseFree) return std::make_unique<NoiseFreePropagator>(settings);
-  std::string known;
-  for (const PropagatorEntry& entry : propagators()) {
-    known += (known.empty() ? "" : ", ") + entry.name;
-  }
-  throw std::invalid_argument("no propagator '" + std::string(name) + "'; known are: " + known);
+  return propagator_entry(name).make(settings);
 }
 
 }  // namespace qsmpc::controller

@@ -44,9 +44,12 @@ struct PropagatorSettings {
   double sharpness = 20.0;      ///< β of Algorithm 1, in one over the state's unit; "soft" only
 };
 
+/// One propagator; a new one is a class, and a line in the table.
 struct PropagatorEntry {
   std::string name;
   std::string summary;
+  std::unique_ptr<Propagator> (*make)(const PropagatorSettings& settings) = nullptr;
+  bool carries_noise = true;  ///< whether what it propagates has the noise in it
 };
 
 /// The table of propagators: "mixture" (the noise stays Gaussian and is cut into cells with the
@@ -56,6 +59,9 @@ struct PropagatorEntry {
 /// that of the noise), "soft" (as "compressed", with the soft assignments of Algorithm 1) and
 /// "noise_free" (only the belief is propagated; the noise counts fully as error).
 [[nodiscard]] const std::vector<PropagatorEntry>& propagators();
+
+/// Throws std::invalid_argument on an unknown name.
+[[nodiscard]] const PropagatorEntry& propagator_entry(std::string_view name);
 
 /// Throws std::invalid_argument on an unknown name or senseless settings.
 [[nodiscard]] std::unique_ptr<Propagator> make_propagator(std::string_view name,

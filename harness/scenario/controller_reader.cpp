@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/section_values.hpp"
 #include "harness/scenario/value_checks.hpp"
@@ -65,7 +66,8 @@ void ControllerReader::read_solver() {
   controller_.solver = section_.name("solver", controller_.solver, solver_names());
   const std::string fallback = controller_.input_bounding;
   controller_.input_bounding = section_.name("input_bounding", fallback, input_bounding_names());
-  if (controller_.solver != "lbfgs" && controller_.input_bounding != fallback) {
+  if (!controller::solver_entry(controller_.solver).chooses_bounding &&
+      controller_.input_bounding != fallback) {
     section_.note("input_bounding", fallback + ", or controller.solver: lbfgs");
   }
   controller_.max_iterations =

@@ -44,9 +44,11 @@ const std::vector<std::string>& input_bounding_names() {
 
 const std::vector<std::string>& propagator_names() {
   static const std::vector<std::string> names = [] {
-    std::vector<std::string> all = names_of(controller::propagators());
-    std::erase(all, "noise_free");
-    return all;
+    std::vector<std::string> carrying;
+    for (const controller::PropagatorEntry& entry : controller::propagators()) {
+      if (entry.carries_noise) carrying.push_back(entry.name);
+    }
+    return carrying;
   }();
   return names;
 }

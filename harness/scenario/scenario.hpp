@@ -74,7 +74,7 @@ struct Scenario {
     /// inputs.
     bool optimise_gain = false;
     std::string solver = "lbfgs";            ///< a name from `qsmpc list solvers`
-    std::string input_bounding = "bounded";  ///< a name from `qsmpc list boundings`; "lbfgs"
+    std::string input_bounding = "bounded";  ///< a name from `qsmpc list boundings`
     Quantisation quantisation;
     bool propagate_noise = true;
     /// How, in the prediction; a name from `qsmpc list propagators`. The default without noise.

@@ -28,7 +28,7 @@ constexpr double kMostFineCells = 1e6;
 // A grid is left when a round lowers W2² by less than this part of it.
 constexpr double kCoarseGain = 1e-4;
 constexpr double kFineGain = 1e-3;
-constexpr int kRoundLimit = 1000;
+constexpr int kLongestDescent = 1000;
 constexpr double kRootAllowance = 1e-9;  // for the rounding of 1e6^(1/3)
 
 /// A product grid of optimal one-dimensional quantisers: cell i has level (i / levels^axis) %
@@ -120,7 +120,7 @@ Eigen::MatrixXd lost_covariance(const Clusters& clusters) {
 void descend(const Grid& grid, double least_gain, Clusters& clusters) {
   NearestCentre nearest(grid.points);
   double before = std::numeric_limits<double>::infinity();
-  for (int round = 0; round < kRoundLimit; ++round) {
+  for (int round = 0; round < kLongestDescent; ++round) {
     if (nearest.assign(clusters.centres, clusters.assignment) == 0 && round > 0) return;
     update(grid, clusters);
     const double cost = lost_covariance(clusters).trace();

@@ -13,13 +13,15 @@ void require(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("solver: ") + message);
 }
 
-std::string known_names(const std::vector<SolverEntry>& table) {
+template <class Entry>
+std::string known_names(const std::vector<Entry>& table) {
   std::string known;
-  for (const SolverEntry& entry : table) known += (known.empty() ? "" : ", ") + entry.name;
+  for (const Entry& entry : table) known += (known.empty() ? "" : ", ") + entry.name;
   return known;
 }
 
-std::unique_ptr<OcpSolver> make_lbfgs(const std::string& bounding) {
+std::unique_ptr<OcpSolver> make_lbfgs(const SolverSettings& settings) {
+  const std::string& bounding = settings.bounding;
   if (bounding == "bounded") return std::make_unique<ProjectedBfgsSolver>();
   if (bounding == "sigmoid") return std::make_unique<LbfgsSolver>(InputBounding::kSigmoid);
   if (bounding == "tanh") return std::make_unique<LbfgsSolver>(InputBounding::kTanh);
@@ -50,14 +52,30 @@ const char* solver_status_name(SolverStatus status) {
 
 const std::vector<SolverEntry>& solvers() {
   static const std::vector<SolverEntry> table = {
-      {"lbfgs", "quasi-Newton; bounds of the inputs kept as its bounding says"},
-      {"slsqp", "NLopt's sequential quadratic programming; takes inequality constraints"},
+      {.name = "lbfgs",
+       .summary = "quasi-Newton; bounds of the inputs kept as its bounding says",
+       .make = make_lbfgs,
+       .chooses_bounding = true},
+      {.name = "slsqp",
+       .summary = "NLopt's sequential quadratic programming; takes inequality constraints",
+       .make = [](const SolverSettings&) -> std::unique_ptr<OcpSolver> {
+         return std::make_unique<SlsqpSolver>();
+       },
+       .takes_constraints = true},
   };
   return table;
 }
 
-const std::vector<SolverEntry>& input_boundings() {
-  static const std::vector<SolverEntry> table = {
+const SolverEntry& solver_entry(std::string_view name) {
+  for (const SolverEntry& entry : solvers()) {
+    if (entry.name == name) return entry;
+  }
+  throw std::invalid_argument("no solver '" + std::string(name) +
+                              "'; known are: " + known_names(solvers()));
+}
+
+const std::vector<InputBoundingEntry>& input_boundings() {
+  static const std::vector<InputBoundingEntry> table = {
       {"bounded", "inputs held at their bounds: dense BFGS whose steps keep the box (own)"},
       {"sigmoid", "inputs through a sigmoid (Eq. 5-3), NLopt's limited-memory BFGS"},
       {"tanh", "inputs through a hyperbolic tangent, NLopt's limited-memory BFGS"},
@@ -68,10 +86,7 @@ const std::vector<SolverEntry>& input_boundings() {
 }
 
 std::unique_ptr<OcpSolver> make_solver(std::string_view name, const SolverSettings& settings) {
-  if (name == "lbfgs") return make_lbfgs(settings.bounding);
-  if (name == "slsqp") return std::make_unique<SlsqpSolver>();
-  throw std::invalid_argument("no solver '" + std::string(name) +
-                              "'; known are: " + known_names(solvers()));
+  return solver_entry(name).make(settings);
 }
 
 void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,

@@ -97,20 +97,32 @@ class OcpSolver {
   virtual void shift(const StageLayout& /*layout*/) {}
 };
 
+struct SolverSettings {
+  std::string bounding = "bounded";  ///< a name of `input_boundings`
+};
+
+/// One solver; a new one is a file with a class, and a line in the table.
 struct SolverEntry {
   std::string name;
   std::string summary;
+  std::unique_ptr<OcpSolver> (*make)(const SolverSettings& settings) = nullptr;
+  bool takes_constraints = false;  ///< whether it can be given inequality constraints
+  bool chooses_bounding = false;   ///< whether `SolverSettings::bounding` says how it keeps bounds
 };
 
 /// The table of solvers.
 [[nodiscard]] const std::vector<SolverEntry>& solvers();
 
-/// The table of ways in which "lbfgs" keeps the bounds.
-[[nodiscard]] const std::vector<SolverEntry>& input_boundings();
+/// Throws std::invalid_argument on an unknown name.
+[[nodiscard]] const SolverEntry& solver_entry(std::string_view name);
 
-struct SolverSettings {
-  std::string bounding = "bounded";  ///< of "lbfgs", a name of `input_boundings`
+struct InputBoundingEntry {
+  std::string name;
+  std::string summary;
 };
+
+/// The table of ways to keep the bounds, for solvers that let this be chosen.
+[[nodiscard]] const std::vector<InputBoundingEntry>& input_boundings();
 
 /// Throws std::invalid_argument on an unknown name.
 [[nodiscard]] std::unique_ptr<OcpSolver> make_solver(std::string_view name,

@@ -47,7 +47,7 @@ TEST(EpisodeDriver, an_episode_does_not_depend_on_those_driven_before) {
                                       "controller.propagator=soft"};
   for (const controller::SolverEntry& entry : controller::solvers())
     choices.push_back("controller.solver=" + entry.name);
-  for (const controller::SolverEntry& entry : controller::input_boundings()) {
+  for (const controller::InputBoundingEntry& entry : controller::input_boundings()) {
     choices.push_back("controller.input_bounding=" + entry.name);
   }
   for (const std::string& choice : choices) {

@@ -278,7 +278,7 @@ TEST(Episode, every_solver_and_bounding_drives_within_the_bounds) {
   std::vector<std::string> choices = {"controller.optimise_gain=true"};
   for (const controller::SolverEntry& entry : controller::solvers())
     choices.push_back("controller.solver=" + entry.name);
-  for (const controller::SolverEntry& entry : controller::input_boundings()) {
+  for (const controller::InputBoundingEntry& entry : controller::input_boundings()) {
     choices.push_back("controller.input_bounding=" + entry.name);
   }
   for (const std::string& choice : choices) {

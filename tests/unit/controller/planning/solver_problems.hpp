@@ -16,15 +16,15 @@ struct SolverChoice {
   [[nodiscard]] std::string label() const { return solver + "_" + bounding; }
 };
 
-/// Every solver; "lbfgs" with every bounding.
+/// Every solver, with every bounding where it can be chosen.
 inline std::vector<SolverChoice> solver_choices() {
   std::vector<SolverChoice> choices;
   for (const controller::SolverEntry& solver : controller::solvers()) {
-    if (solver.name != "lbfgs") {
+    if (!solver.chooses_bounding) {
       choices.push_back({solver.name, controller::input_boundings()[0].name});
       continue;
     }
-    for (const controller::SolverEntry& bounding : controller::input_boundings()) {
+    for (const controller::InputBoundingEntry& bounding : controller::input_boundings()) {
       choices.push_back({solver.name, bounding.name});
     }
   }

@@ -1,0 +1,124 @@
+// Controllers: what turns the knowledge of a period into the input that is applied in it.
+//
+//   const std::unique_ptr<Controller> controller = make_controller("quantised", *car, settings);
+//   const Decision& decision = controller->decide({.period = k, .belief = belief, .observation =
+//   y}); decision.input;   // applied now decision.policy;  // the stages ahead, if it plans any
+//
+// A new controller is one file with a class and its entry, and a line in the table in
+// controllers.cpp. What it does not have, a plan, particles or a cost, it leaves out.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "controller/planning/plan.hpp"
+#include "controller/planning/planner_settings.hpp"
+#include "controller/prediction/policy.hpp"
+#include "controller/prediction/prediction.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::controller {
+
+/// What is known when an input is to be chosen; refers to objects of the caller.
+struct Situation {
+  Eigen::Index period = 0;             ///< of the drive, from 0
+  double time = 0.0;                   ///< s, when the period begins
+  const Gaussian& belief;              ///< law of the state now, before it is observed
+  const Eigen::VectorXd& observation;  ///< what is seen of the state now, state_dim
+  /// When the input should be there; the best so far is wanted then.
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+};
+
+/// Throws std::invalid_argument unless belief and observation are of `state_dim` and finite.
+void check_situation(const Situation& situation, Eigen::Index state_dim);
+
+/// The particles of a plan, with their errors.
+struct PlannedParticles {
+  const GaussianQuantisation& belief;  ///< of the situation's belief
+  const Prediction& prediction;        ///< under the policy
+  double noise_w2 = 0.0;               ///< W2 between the noise and what stands for it, or a bound
+};
+
+/// What a controller decided. Whatever it refers to is its own and valid until its next decision.
+struct Decision {
+  Eigen::VectorXd input;  ///< input_dim, within the bounds
+  /// How the inputs of this and the next periods shall depend on the state, from the situation's
+  /// belief on; null where nothing is planned beyond `input`.
+  const Policy* policy = nullptr;
+  std::optional<PlannedParticles> particles{};  ///< with a policy only
+  std::optional<CostParts> cost{};              ///< of the policy, as far as the controller sees it
+  /// How the optimisation ended; empty where nothing is optimised.
+  std::optional<SolverStatus> status{};
+  int evaluations = 0;    ///< of cost and gradient
+  bool fallback = false;  ///< nothing usable came out; the previous plan goes on
+  PlanTiming timing{};
+};
+
+class Controller {
+ public:
+  Controller() = default;
+  Controller(const Controller&) = delete;
+  Controller& operator=(const Controller&) = delete;
+  Controller(Controller&&) = delete;
+  Controller& operator=(Controller&&) = delete;
+  virtual ~Controller() = default;
+
+  /// The input for this period. Numerical trouble and a deadline that has passed are statuses,
+  /// never exceptions. Throws std::invalid_argument on a situation of the wrong size, or with
+  /// numbers that are not finite.
+  virtual const Decision& decide(const Situation& situation) = 0;
+
+  /// Forgets the periods so far: the next one is the first of another drive.
+  virtual void reset() {}
+};
+
+/// About what "lqr" linearises.
+enum class LqrAbout {
+  kPath,    ///< the noise-free path to the end of the horizon, which it improves itself
+  kTarget,  ///< the target state
+};
+
+/// The problem that every controller is given; which parts of it it uses is its own affair.
+struct ControllerSettings {
+  PlannerSettings problem;  ///< with how the quantised controller solves it
+  LqrAbout lqr_about = LqrAbout::kPath;
+};
+
+/// What a controller's decisions have beside the input, known before it has made any.
+struct DecisionParts {
+  int stages = 0;  ///< of the policy; 0 where there is none
+  bool particles = false;
+  bool cost = false;
+  bool status = false;
+};
+
+struct ControllerEntry {
+  std::string name;
+  std::string summary;
+  DecisionParts (*parts)(const ControllerSettings& settings) = nullptr;
+  /// `dynamics` must outlive the controller. Throws std::invalid_argument on settings that make no
+  /// sense.
+  std::unique_ptr<Controller> (*make)(const models::Dynamics& dynamics,
+                                      const ControllerSettings& settings) = nullptr;
+};
+
+/// The table of controllers; the first is the default.
+[[nodiscard]] const std::vector<ControllerEntry>& controllers();
+
+/// Throws std::invalid_argument on an unknown name.
+[[nodiscard]] const ControllerEntry& controller_entry(std::string_view name);
+
+/// Throws std::invalid_argument on an unknown name, and as the entry's `make`.
+[[nodiscard]] std::unique_ptr<Controller> make_controller(std::string_view name,
+                                                          const models::Dynamics& dynamics,
+                                                          const ControllerSettings& settings);
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,49 @@
+#include <stdexcept>
+
+#include "controller/control/controller.hpp"
+
+namespace qsmpc::controller {
+
+// Each is defined in the file of its name.
+ControllerEntry quantised_controller();
+ControllerEntry nominal_controller();
+ControllerEntry lqr_controller();
+
+void check_situation(const Situation& situation, Eigen::Index state_dim) {
+  const auto require = [](bool holds, const char* message) {
+    if (!holds) throw std::invalid_argument(std::string("controller: ") + message);
+  };
+  const Gaussian& belief = situation.belief;
+  require(belief.mean.size() == state_dim && belief.mean.allFinite(),
+          "the belief's mean must be a finite state");
+  require(belief.covariance.rows() == state_dim && belief.covariance.cols() == state_dim &&
+              belief.covariance.allFinite(),
+          "the belief's covariance must be a finite matrix of states x states");
+  require(situation.observation.size() == state_dim && situation.observation.allFinite(),
+          "the observation must be a finite state");
+}
+
+const std::vector<ControllerEntry>& controllers() {
+  static const std::vector<ControllerEntry> table = {
+      quantised_controller(),
+      nominal_controller(),
+      lqr_controller(),
+  };
+  return table;
+}
+
+const ControllerEntry& controller_entry(std::string_view name) {
+  std::string known;
+  for (const ControllerEntry& entry : controllers()) {
+    if (entry.name == name) return entry;
+    known += (known.empty() ? "" : ", ") + entry.name;
+  }
+  throw std::invalid_argument("no controller '" + std::string(name) + "'; known are: " + known);
+}
+
+std::unique_ptr<Controller> make_controller(std::string_view name, const models::Dynamics& dynamics,
+                                            const ControllerSettings& settings) {
+  return controller_entry(name).make(dynamics, settings);
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,46 @@
+// What a decision leads to, as certificates need it, whoever made it.
+#pragma once
+
+#include <memory>
+
+#include <Eigen/Core>
+
+#include "controller/control/controller.hpp"
+#include "controller/planning/belief_quantiser.hpp"
+#include "controller/planning/planner_settings.hpp"
+#include "controller/prediction/prediction.hpp"
+#include "controller/prediction/propagator.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::controller {
+
+class DecisionMotion {
+ public:
+  /// `dynamics` must outlive it. settings: how beliefs are quantised and propagated for
+  /// controllers that give no particles. Throws std::invalid_argument on senseless ones.
+  DecisionMotion(const models::Dynamics& dynamics, const PlannerSettings& settings);
+
+  /// The motion over the stages of the decision's policy, from the situation's belief, with the
+  /// controller's particles or, where it has none, with particles of our own. Without a policy the
+  /// motion to the next state alone, from `posterior`: the law of the state now that the
+  /// observation is known, on which the input may depend in any way. Refers to all of these and to
+  /// this object, until the next call.
+  [[nodiscard]] PredictedMotion of(const Situation& situation, const Decision& decision,
+                                   const Gaussian& posterior);
+
+ private:
+  [[nodiscard]] PredictedMotion predicted(const Gaussian& belief, const Policy& policy);
+
+  const models::Dynamics& dynamics_;
+  Eigen::MatrixXd noise_covariance_;
+  InputBounds bounds_;
+  Executor run_;
+  BeliefQuantiser quantiser_;
+  std::unique_ptr<Propagator> propagator_;
+  PredictionScratch scratch_;
+  GaussianQuantisation belief_;
+  Prediction prediction_;
+  Policy one_stage_;
+};
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,260 @@
+// The linear-quadratic regulator: quadratic costs and linearised dynamics, inputs clamped to their
+// bounds; it knows neither obstacles nor noise.
+//
+// About the target it is u = sat(K (x − r)) with the gain to which Riccati's recursion settles at
+// (r, 0). About the path it improves the noise-free path over the horizon by sweeps of affine
+// linear-quadratic problems (iterative LQR: Li and Todorov 2004), from the last period's inputs,
+// and regulates about it with the time-varying gains.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "controller/control/controller.hpp"
+#include "controller/planning/cost/angular_target.hpp"
+#include "controller/planning/start/first_guess.hpp"
+#include "models/constants.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// A sweep that gains less than this, relatively, is the last one.
+constexpr double kSweepSettled = 1e-6;
+// How often a step that does not pay is halved.
+constexpr int kHalvings = 8;
+// Riccati's recursion about the target has settled when the gain changes by less, relatively …
+constexpr double kGainSettled = 1e-10;
+// … and is cut off after so many stages where it never does.
+constexpr int kLongestRecursion = 5000;
+
+/// The inputs nearest to none, input_dim.
+Eigen::VectorXd resting_input(const InputBounds& bounds) {
+  return bounds.lower.cwiseMax(Eigen::VectorXd::Zero(bounds.lower.size())).cwiseMin(bounds.upper);
+}
+
+/// ½ xᵀQx + uᵀRu over the stages and xᵀPx at the end have the Hessians Q, 2R and 2P.
+LqrWeights curvature_of(const QuadraticCost& cost) {
+  return {.state = cost.state, .input = 2.0 * cost.input, .terminal = 2.0 * cost.terminal};
+}
+
+/// u = sat(u_0 + K (y − r)).
+class TargetRegulator final : public Controller {
+ public:
+  TargetRegulator(const models::Dynamics& dynamics, const PlannerSettings& problem)
+      : problem_(problem), rest_(resting_input(problem.bounds)), gain_(settled_gain(dynamics)) {
+    if (!gain_.allFinite()) {
+      throw std::invalid_argument("lqr: the model has no finite linearisation at the target");
+    }
+  }
+
+  const Decision& decide(const Situation& situation) override {
+    check_situation(situation, gain_.cols());
+    const Eigen::VectorXd offset =
+        target_offset(problem_.cost.target, problem_.cost.angles, situation.observation);
+    decision_.input =
+        (rest_ + gain_ * offset).cwiseMax(problem_.bounds.lower).cwiseMin(problem_.bounds.upper);
+    return decision_;
+  }
+
+ private:
+  /// The first gain of a horizon that is doubled until it no longer changes.
+  [[nodiscard]] Eigen::MatrixXd settled_gain(const models::Dynamics& dynamics) const {
+    Eigen::MatrixXd gain;
+    for (int stages = std::max(problem_.horizon, 2); stages <= kLongestRecursion; stages *= 2) {
+      const Eigen::MatrixXd next =
+          lqr_gains(dynamics, problem_.cost.target.replicate(1, stages + 1),
+                    rest_.replicate(1, stages), curvature_of(problem_.cost))
+              .front();
+      const bool settled =
+          gain.size() != 0 && (next - gain).norm() <= kGainSettled * (1.0 + next.norm());
+      gain = next;
+      if (settled || !gain.allFinite()) break;
+    }
+    return gain;
+  }
+
+  PlannerSettings problem_;
+  Eigen::VectorXd rest_;
+  Eigen::MatrixXd gain_;
+  Decision decision_;
+};
+
+/// Regulates about a path that it improves in every period.
+class PathRegulator final : public Controller {
+ public:
+  PathRegulator(const models::Dynamics& dynamics, const PlannerSettings& problem)
+      : dynamics_(dynamics),
+        problem_(problem),
+        weights_(curvature_of(problem.cost)),
+        target_(problem.cost.target) {
+    policy_.bounds = problem.bounds;
+    trial_.bounds = problem.bounds;
+    reset();
+  }
+
+  const Decision& decide(const Situation& situation) override;
+
+  void reset() override {
+    policy_.inputs = resting_input(problem_.bounds).replicate(1, problem_.horizon);
+    under_way_ = false;
+  }
+
+ private:
+  [[nodiscard]] CostParts cost_of(const Policy& path) const;
+  void linearise();
+  [[nodiscard]] bool improve(int& evaluations);
+
+  const models::Dynamics& dynamics_;
+  PlannerSettings problem_;
+  LqrWeights weights_;
+  Eigen::VectorXd target_;  // what means the target, nearest to the belief
+  bool under_way_ = false;  // whether the inputs are those of the period before
+  Policy policy_;
+  CostParts cost_;
+  Policy trial_;
+  Eigen::MatrixXd steps_;  // input_dim x horizon: what a sweep adds to the inputs
+  LqrScratch scratch_;
+  Decision decision_;
+};
+
+CostParts PathRegulator::cost_of(const Policy& path) const {
+  CostParts cost;
+  for (Eigen::Index k = 0; k <= path.horizon(); ++k) {
+    const Eigen::VectorXd away = path.states.col(k) - target_;
+    if (k == path.horizon()) {
+      cost.terminal = away.dot(problem_.cost.terminal * away);
+    } else {
+      cost.state += 0.5 * away.dot(problem_.cost.state * away);
+      cost.input += path.inputs.col(k).dot(problem_.cost.input * path.inputs.col(k));
+    }
+  }
+  return cost;
+}
+
+/// The backward sweep about the path: gains, and the steps of the affine problem's inputs.
+void PathRegulator::linearise() {
+  const Eigen::Index dim = policy_.states.rows();
+  const Eigen::Index inputs = policy_.inputs.rows();
+  Eigen::MatrixXd a(dim, dim);
+  Eigen::MatrixXd b(dim, inputs);
+  Eigen::MatrixXd value = weights_.terminal;
+  Eigen::VectorXd slope = weights_.terminal * (policy_.states.rightCols<1>() - target_);
+  policy_.gains.resize(static_cast<std::size_t>(policy_.horizon()));
+  steps_.resize(inputs, policy_.horizon());
+  for (Eigen::Index k = policy_.horizon() - 1; k >= 0; --k) {
+    dynamics_.jacobians(policy_.states.col(k), policy_.inputs.col(k), a, b);
+    const Eigen::MatrixXd curvature = weights_.input + b.transpose() * value * b;
+    const Eigen::LDLT<Eigen::MatrixXd> solver(curvature);
+    const Eigen::VectorXd by_input = weights_.input * policy_.inputs.col(k) + b.transpose() * slope;
+    Eigen::MatrixXd& gain = policy_.gains[static_cast<std::size_t>(k)];
+    gain = -solver.solve(b.transpose() * value * a);
+    steps_.col(k) = -solver.solve(by_input);
+    const Eigen::MatrixXd closed = a + b * gain;
+    slope = weights_.state * (policy_.states.col(k) - target_) + a.transpose() * slope +
+            gain.transpose() * by_input +
+            (a.transpose() * value * b + gain.transpose() * curvature) * steps_.col(k);
+    value = (weights_.state + closed.transpose() * value * closed +
+             gain.transpose() * weights_.input * gain)
+                .eval();
+  }
+}
+
+/// Takes the longest of the halved steps that pays. Returns whether there is one.
+bool PathRegulator::improve(int& evaluations) {
+  double share = 1.0;
+  for (int n = 0; n <= kHalvings; ++n, share *= 0.5) {
+    trial_.inputs.resizeLike(policy_.inputs);
+    trial_.states.resizeLike(policy_.states);
+    trial_.states.col(0) = policy_.states.col(0);
+    for (Eigen::Index k = 0; k < policy_.horizon(); ++k) {
+      trial_.inputs.col(k) = (policy_.inputs.col(k) + share * steps_.col(k) +
+                              policy_.gains[static_cast<std::size_t>(k)] *
+                                  (trial_.states.col(k) - policy_.states.col(k)))
+                                 .cwiseMax(problem_.bounds.lower)
+                                 .cwiseMin(problem_.bounds.upper);
+      models::StateBatch next(trial_.states.rows(), 1);
+      dynamics_.step(models::StateBatch(trial_.states.col(k)),
+                     models::StateBatch(trial_.inputs.col(k)), next);
+      trial_.states.col(k + 1) = next.col(0);
+    }
+    ++evaluations;
+    const CostParts cost = cost_of(trial_);
+    if (!(cost.total() < cost_.total())) continue;
+    std::swap(policy_.inputs, trial_.inputs);
+    std::swap(policy_.states, trial_.states);
+    cost_ = cost;
+    return true;
+  }
+  return false;
+}
+
+const Decision& PathRegulator::decide(const Situation& situation) {
+  using Clock = std::chrono::steady_clock;
+  const auto start = Clock::now();
+  check_situation(situation, target_.size());
+  nearest_target(problem_.cost.target, problem_.cost.angles, situation.belief.mean, target_);
+  if (under_way_) {
+    shift_inputs(policy_.inputs, trial_.inputs);
+    std::swap(policy_.inputs, trial_.inputs);
+  } else {
+    reset();
+  }
+  nominal_states(dynamics_, situation.belief.mean, policy_.inputs, policy_.states);
+  cost_ = cost_of(policy_);
+  int evaluations = 1;
+  SolverStatus status = SolverStatus::kIterationLimit;
+  while (evaluations < problem_.max_evaluations) {
+    if (Clock::now() >= situation.deadline) {
+      status = SolverStatus::kDeadline;
+      break;
+    }
+    const double before = cost_.total();
+    linearise();
+    if (!std::isfinite(before) || !steps_.allFinite()) {
+      status = SolverStatus::kNumericalTrouble;
+      break;
+    }
+    if (!improve(evaluations) || before - cost_.total() <= kSweepSettled * std::abs(before)) {
+      status = SolverStatus::kConverged;
+      break;
+    }
+  }
+  // Inputs whose path is not finite are no start for the next period.
+  under_way_ = status != SolverStatus::kNumericalTrouble;
+  lqr_gains(dynamics_, policy_.states, policy_.inputs, weights_, scratch_, policy_.gains);
+  for (Eigen::MatrixXd& gain : policy_.gains) {
+    if (!gain.allFinite()) gain.setZero();
+  }
+  decision_.input = policy_input(policy_, 0, situation.observation);
+  decision_.policy = &policy_;
+  decision_.cost = cost_;
+  decision_.status = status;
+  decision_.evaluations = evaluations;
+  decision_.timing = {.optimise =
+                          std::chrono::duration<double, std::milli>(Clock::now() - start).count()};
+  return decision_;
+}
+
+std::unique_ptr<Controller> make_lqr(const models::Dynamics& dynamics,
+                                     const ControllerSettings& settings) {
+  check_planner_settings(settings.problem, dynamics.state_dim(), dynamics.input_dim());
+  if (settings.lqr_about == LqrAbout::kTarget) {
+    return std::make_unique<TargetRegulator>(dynamics, settings.problem);
+  }
+  return std::make_unique<PathRegulator>(dynamics, settings.problem);
+}
+
+DecisionParts lqr_parts(const ControllerSettings& settings) {
+  if (settings.lqr_about == LqrAbout::kTarget) return {};
+  return {.stages = settings.problem.horizon, .cost = true, .status = true};
+}
+
+}  // namespace
+
+ControllerEntry lqr_controller() {
+  return {.name = "lqr",
+          .summary = "linear-quadratic regulator about the path or the target; knows no obstacles",
+          .parts = lqr_parts,
+          .make = make_lqr};
+}
+
+}  // namespace qsmpc::controller

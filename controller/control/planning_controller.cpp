@@ -1,0 +1,20 @@
+#include "controller/control/planning_controller.hpp"
+
+namespace qsmpc::controller {
+
+const Decision& PlanningController::decide(const Situation& situation) {
+  const Plan& plan = planner_.plan(situation.belief, situation.deadline);
+  decision_.input = policy_input(plan.policy, 0, situation.observation);
+  decision_.policy = &plan.policy;
+  decision_.particles.emplace(PlannedParticles{.belief = plan.belief,
+                                               .prediction = plan.prediction,
+                                               .noise_w2 = planner_.propagator().noise_w2()});
+  decision_.cost = plan.cost;
+  decision_.status = plan.status;
+  decision_.evaluations = plan.evaluations;
+  decision_.fallback = plan.fallback;
+  decision_.timing = plan.timing;
+  return decision_;
+}
+
+}  // namespace qsmpc::controller

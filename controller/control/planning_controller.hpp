@@ -1,0 +1,28 @@
+// A controller that makes a plan for the belief in every period, and applies the first stage of its
+// policy to what it observes.
+#pragma once
+
+#include "controller/control/controller.hpp"
+#include "controller/planning/planner.hpp"
+
+namespace qsmpc::controller {
+
+class PlanningController final : public Controller {
+ public:
+  /// `dynamics` must outlive it. Throws std::invalid_argument as Planner.
+  PlanningController(const models::Dynamics& dynamics, const PlannerSettings& settings)
+      : planner_(dynamics, settings) {}
+
+  [[nodiscard]] static DecisionParts parts(const ControllerSettings& settings) {
+    return {.stages = settings.problem.horizon, .particles = true, .cost = true, .status = true};
+  }
+
+  const Decision& decide(const Situation& situation) override;
+  void reset() override { planner_.reset(); }
+
+ private:
+  Planner planner_;
+  Decision decision_;
+};
+
+}  // namespace qsmpc::controller

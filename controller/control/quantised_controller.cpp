@@ -1,0 +1,16 @@
+// The receding-horizon planner on the quantised belief (Algorithm 5).
+#include "controller/control/planning_controller.hpp"
+
+namespace qsmpc::controller {
+
+ControllerEntry quantised_controller() {
+  return {.name = "quantised",
+          .summary = "plans on the quantised belief with the noise, open or closed loop",
+          .parts = PlanningController::parts,
+          .make = [](const models::Dynamics& dynamics,
+                     const ControllerSettings& settings) -> std::unique_ptr<Controller> {
+            return std::make_unique<PlanningController>(dynamics, settings.problem);
+          }};
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,113 @@
+#include "controller/planning/plan_evaluator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "controller/planning/cost/angular_target.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+PropagatorSettings propagation(const PlannerSettings& settings) {
+  return {.noise = {.mean = Eigen::VectorXd::Zero(settings.noise_covariance.rows()),
+                    .covariance = settings.noise_covariance},
+          .noise_points = settings.noise_points,
+          .compressed_points = settings.compressed_points};
+}
+
+/// Of the bounds, nothing where the solver takes them as constraints.
+Penalty penalty_in_cost(const PlannerSettings& settings) {
+  Penalty penalty = settings.penalty;
+  if (solver_entry(settings.solver).takes_constraints) penalty.box = 0.0;
+  return penalty;
+}
+
+Eigen::MatrixXd noise_in_prediction(const PlannerSettings& settings) {
+  Eigen::MatrixXd noise = settings.noise_covariance;
+  if (!propagator_entry(settings.propagator).carries_noise) noise.setZero();
+  return noise;
+}
+
+}  // namespace
+
+bool better(const Plan& plan, const Plan& other) {
+  const bool feasible = plan.violation <= kConstraintTolerance;
+  const bool other_feasible = other.violation <= kConstraintTolerance;
+  if (feasible != other_feasible) return feasible;
+  if (!feasible && plan.violation != other.violation) return plan.violation < other.violation;
+  return plan.cost.total() < other.cost.total() || !std::isfinite(other.cost.total());
+}
+
+PlanEvaluator::PlanEvaluator(const models::Dynamics& dynamics, const PlannerSettings& settings)
+    : dynamics_(dynamics),
+      settings_(settings),
+      weights_(settings.cost),
+      penalty_(penalty_in_cost(settings)),
+      predicted_noise_(noise_in_prediction(settings)),
+      within_(Eigen::MatrixXd::Zero(dynamics.state_dim(), dynamics.state_dim())),
+      quantiser_(dynamics.state_dim(), settings.state_points, settings.quantiser),
+      propagator_(make_propagator(settings.propagator, propagation(settings))),
+      policies_(dynamics, settings),
+      cost_({.dynamics = dynamics,
+             .safe_set = settings.safe_set,
+             .cost = weights_,
+             .penalty = penalty_,
+             .noise_covariance = predicted_noise_,
+             .within_covariance = within_},
+            settings.run),
+      constraints_(cost_, settings.safe_set),
+      z_(Eigen::Index{dynamics.input_dim()} * settings.horizon) {
+  if (solver_entry(settings.solver).takes_constraints) constraint_set_.emplace();
+}
+
+void PlanEvaluator::take_belief(const Gaussian& belief) {
+  quantiser_.quantise(belief, belief_);
+  mean_ = belief.mean;
+  within_ = belief_.within_covariance;
+  nearest_target(settings_.cost.target, settings_.cost.angles, belief.mean, weights_.target);
+}
+
+void PlanEvaluator::set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                               const Eigen::MatrixXd& gain_change, Plan& plan) {
+  plan.gain_change = gain_change;
+  policies_.make(mean_, inputs, gain_change, plan.policy);
+}
+
+void PlanEvaluator::predict_and_evaluate(Plan& plan) {
+  const auto start = std::chrono::steady_clock::now();
+  predict(dynamics_, *propagator_, belief_.measure, plan.policy, settings_.run, scratch_,
+          plan.prediction);
+  freeze_assignments(plan.prediction, plan.policy);
+  flatten(plan.policy);
+  cost_.evaluate(z_);
+  plan.cost = cost_.parts();
+  plan.violation = 0.0;
+  if (constraint_set_) {
+    constraint_values_.resize(constraint_set_->count);
+    constraint_set_->values(z_, constraint_values_);
+    plan.violation = std::max(0.0, constraint_values_.maxCoeff() - constraints_.margin());
+  }
+  prediction_time_ = std::chrono::steady_clock::now() - start;
+}
+
+void PlanEvaluator::freeze_assignments(const Prediction& prediction, const Policy& policy) {
+  cost_.freeze_assignments(prediction, policy);
+  if (constraint_set_) constraints_.describe(prediction, *constraint_set_);
+}
+
+bool PlanEvaluator::can_freeze(const Plan& plan) const {
+  const Prediction& prediction = plan.prediction;
+  return prediction.stages[0].weights.size() == belief_.measure.weights.size() &&
+         prediction.stages[0].weights == belief_.measure.weights &&
+         std::all_of(prediction.maps.begin(), prediction.maps.end(),
+                     [](const StageMap& map) { return std::isfinite(map.compression_w2); });
+}
+
+double PlanEvaluator::evaluate_frozen(const Plan& plan) {
+  flatten(plan.policy);
+  return cost_.evaluate(z_);
+}
+
+void PlanEvaluator::flatten(const Policy& policy) { z_ = policy.inputs.reshaped(); }
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,94 @@
+// What a policy leads to from the belief at hand: the prediction, its cost, and the assignments
+// that are held while a solver works.
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/planning/belief_quantiser.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/cost/particle_constraints.hpp"
+#include "controller/planning/plan.hpp"
+#include "controller/planning/planner_settings.hpp"
+#include "controller/planning/policy_maker.hpp"
+#include "controller/prediction/propagator.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::controller {
+
+class PlanEvaluator {
+ public:
+  /// Refers to both, which must be checked (check_planner_settings). Throws std::invalid_argument
+  /// on an unknown name.
+  PlanEvaluator(const models::Dynamics& dynamics, const PlannerSettings& settings);
+  PlanEvaluator(const PlanEvaluator&) = delete;
+  PlanEvaluator& operator=(const PlanEvaluator&) = delete;
+  PlanEvaluator(PlanEvaluator&&) = delete;
+  PlanEvaluator& operator=(PlanEvaluator&&) = delete;
+  ~PlanEvaluator() = default;
+
+  /// Everything that follows is for this belief. Places the target that the cost is about: the same
+  /// one for the whole plan, so that there is no kink between particles. Throws
+  /// std::invalid_argument as BeliefQuantiser.
+  void take_belief(const Gaussian& belief);
+
+  /// Makes the plan's policy the one about `inputs` (input_dim x horizon), with the gains that
+  /// belong to them, changed by `gain_change` (input_dim x state_dim).
+  void set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                  const Eigen::MatrixXd& gain_change, Plan& plan);
+
+  /// Predicts under plan.policy with assignments of its own, freezes them, and evaluates the cost.
+  void predict_and_evaluate(Plan& plan);
+
+  /// Holds these assignments from now on; `prediction` must stay alive and unchanged.
+  void freeze_assignments(const Prediction& prediction, const Policy& policy);
+  /// Whether the plan's assignments can be held for the belief at hand.
+  [[nodiscard]] bool can_freeze(const Plan& plan) const;
+  /// What the assignments that are held say of the plan's cost.
+  [[nodiscard]] double evaluate_frozen(const Plan& plan);
+
+  [[nodiscard]] HorizonCost& cost() { return cost_; }
+  [[nodiscard]] PolicyMaker& policies() { return policies_; }
+  [[nodiscard]] BeliefQuantiser& quantiser() { return quantiser_; }
+  /// The belief at hand as particles.
+  [[nodiscard]] const GaussianQuantisation& belief() const { return belief_; }
+  /// The cost's weights, about the target that is nearest to the belief.
+  [[nodiscard]] const QuadraticCost& weights() const { return weights_; }
+  [[nodiscard]] const Propagator& propagator() const { return *propagator_; }
+  /// Those that particles be within the bounds, at the assignments held; empty unless the solver
+  /// takes constraints.
+  [[nodiscard]] const std::optional<ConstraintSet>& constraints() const { return constraint_set_; }
+  /// How far within the bounds particles are asked to stay.
+  [[nodiscard]] double margin() const { return constraints_.margin(); }
+  void set_margin(double margin) { constraints_.set_margin(margin); }
+  /// How long the last prediction took, with its evaluation.
+  [[nodiscard]] std::chrono::duration<double> prediction_time() const { return prediction_time_; }
+
+ private:
+  void flatten(const Policy& policy);
+
+  const models::Dynamics& dynamics_;
+  const PlannerSettings& settings_;
+  QuadraticCost weights_;
+  Penalty penalty_;                  // what of the penalties is left to the cost
+  Eigen::MatrixXd predicted_noise_;  // what of the noise the prediction carries
+  Eigen::MatrixXd within_;           // covariance that the belief's quantiser loses
+  BeliefQuantiser quantiser_;
+  std::unique_ptr<Propagator> propagator_;
+  PolicyMaker policies_;
+  HorizonCost cost_;
+  ParticleConstraints constraints_;
+  std::optional<ConstraintSet> constraint_set_;
+  PredictionScratch scratch_;
+  Eigen::VectorXd constraint_values_;
+  Eigen::VectorXd z_;  // input_dim * horizon
+  Eigen::VectorXd mean_;
+  GaussianQuantisation belief_;
+  std::chrono::duration<double> prediction_time_{0.0};
+};
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,98 @@
+#include "controller/planning/start/start_choice.hpp"
+
+namespace qsmpc::controller {
+
+StartChoice::StartChoice(const models::Dynamics& dynamics, const PlannerSettings& settings,
+                         PlanEvaluator& evaluator)
+    : evaluator_(evaluator),
+      no_noise_(Eigen::MatrixXd::Zero(dynamics.state_dim(), dynamics.state_dim())),
+      noise_free_(settings.horizon, {.dynamics = dynamics,
+                                     .safe_set = settings.safe_set,
+                                     .cost = evaluator.weights(),
+                                     .penalty = settings.penalty,
+                                     .noise_covariance = no_noise_,
+                                     .within_covariance = no_noise_}),
+      guess_(settings),
+      gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
+  if (!settings.safe_set.obstacles.empty()) minima_.emplace(settings, noise_free_);
+}
+
+void StartChoice::choose(const Gaussian& belief, Plan* previous, PlanInProgress& plan) {
+  if (previous != nullptr) {
+    gain_change_ = previous->gain_change;
+  } else {
+    gain_change_.setZero();
+  }
+  noise_free_.place(belief);
+  plan.warm = guess_.compare(previous != nullptr ? &previous->policy.inputs : nullptr, gain_change_,
+                             noise_free_, evaluator_.policies());
+  if (plan.warm) {
+    evaluator_.set_policy(guess_.shifted(), gain_change_, *plan.current);
+    if (evaluator_.can_freeze(*previous)) {
+      previous->prediction.stages[0] = evaluator_.belief().measure;
+      evaluator_.freeze_assignments(previous->prediction, plan.current->policy);
+    } else {
+      evaluator_.predict_and_evaluate(*plan.current);
+      plan.evaluated = true;
+    }
+    plan.warm = !constant_is_clearly_cheaper(*previous, plan);
+  }
+  if (plan.warm) return;
+  if (minima_) {
+    take_best_minimum(plan);
+  } else if (plan.evaluated) {
+    plan.accept_candidate();  // the constant inputs, which won
+    evaluator_.freeze_assignments(plan.current->prediction, plan.current->policy);
+  } else {
+    evaluator_.set_policy(guess_.constant(), gain_change_, *plan.current);
+    evaluator_.predict_and_evaluate(*plan.current);
+    plan.evaluated = true;
+  }
+}
+
+/// Whether the best constant inputs are clearly cheaper than the shifted previous plan, which is
+/// the current one, with the noise, too. Where the assignments that are held do not rule it out,
+/// both are predicted. Leaves the assignments for the current plan held.
+bool StartChoice::constant_is_clearly_cheaper(const Plan& previous, PlanInProgress& plan) {
+  // Without noise many a constant looks better than a plan that is careful because of it.
+  if (!(guess_.advantage() > 0.0)) return false;
+  Plan& current = *plan.current;
+  Plan& constant = *plan.candidate;
+  evaluator_.set_policy(guess_.constant(), gain_change_, constant);
+  if (!plan.evaluated) {
+    const double shifted = evaluator_.evaluate_frozen(current);
+    evaluator_.freeze_assignments(previous.prediction, constant.policy);
+    const bool possible = clearly_cheaper(evaluator_.evaluate_frozen(constant), shifted);
+    if (!possible || plan.late()) {
+      evaluator_.freeze_assignments(previous.prediction, current.policy);
+      return false;
+    }
+  }
+  evaluator_.predict_and_evaluate(constant);
+  if (plan.evaluated) {
+    evaluator_.freeze_assignments(current.prediction, current.policy);
+  } else {
+    evaluator_.predict_and_evaluate(current);
+    plan.evaluated = true;
+  }
+  return clearly_cheaper(constant.cost.total(), current.cost.total());
+}
+
+/// Makes the current plan the cheapest, as predicted with noise, of the search's minima and of
+/// itself if it has been evaluated, and freezes its assignments.
+void StartChoice::take_best_minimum(PlanInProgress& plan) {
+  bool held = plan.evaluated;
+  for (const Eigen::MatrixXd* const inputs :
+       minima_->search(evaluator_.policies(), plan.deadline)) {
+    if (plan.evaluated && plan.late()) break;
+    Plan& one = plan.evaluated ? *plan.candidate : *plan.current;
+    evaluator_.set_policy(*inputs, gain_change_, one);
+    evaluator_.predict_and_evaluate(one);
+    held = !plan.evaluated || better(one, *plan.current);
+    if (held && plan.evaluated) plan.accept_candidate();
+    plan.evaluated = true;
+  }
+  if (!held) evaluator_.freeze_assignments(plan.current->prediction, plan.current->policy);
+}
+
+}  // namespace qsmpc::controller
