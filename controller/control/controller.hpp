@@ -96,6 +96,7 @@ struct ControllerSettings {
 struct DecisionParts {
   int stages = 0;  ///< of the policy; 0 where there is none
   bool particles = false;
+  bool noise = false;  ///< whether the particles carry the process noise
   bool cost = false;
   bool status = false;
 };

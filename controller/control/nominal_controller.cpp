@@ -5,13 +5,16 @@
 namespace qsmpc::controller {
 namespace {
 
+ControllerSettings mean_only(ControllerSettings settings) {
+  settings.problem.propagator = "noise_free";
+  settings.problem.state_points = 1;
+  settings.problem.quantiser = QuantiserKind::kProduct;
+  return settings;
+}
+
 std::unique_ptr<Controller> make_nominal(const models::Dynamics& dynamics,
                                          const ControllerSettings& settings) {
-  PlannerSettings mean_only = settings.problem;
-  mean_only.propagator = "noise_free";
-  mean_only.state_points = 1;
-  mean_only.quantiser = QuantiserKind::kProduct;
-  return std::make_unique<PlanningController>(dynamics, mean_only);
+  return std::make_unique<PlanningController>(dynamics, mean_only(settings).problem);
 }
 
 }  // namespace
@@ -19,7 +22,10 @@ std::unique_ptr<Controller> make_nominal(const models::Dynamics& dynamics,
 ControllerEntry nominal_controller() {
   return {.name = "nominal",
           .summary = "plans for the mean of the belief, as if there were no noise",
-          .parts = PlanningController::parts,
+          .parts =
+              [](const ControllerSettings& settings) {
+                return PlanningController::parts(mean_only(settings));
+              },
           .make = make_nominal};
 }
 

@@ -3,6 +3,7 @@
 namespace qsmpc::controller {
 
 const Decision& PlanningController::decide(const Situation& situation) {
+  check_situation(situation, planner_.dynamics().state_dim());
   const Plan& plan = planner_.plan(situation.belief, situation.deadline);
   decision_.input = policy_input(plan.policy, 0, situation.observation);
   decision_.policy = &plan.policy;

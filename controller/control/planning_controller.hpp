@@ -14,7 +14,11 @@ class PlanningController final : public Controller {
       : planner_(dynamics, settings) {}
 
   [[nodiscard]] static DecisionParts parts(const ControllerSettings& settings) {
-    return {.stages = settings.problem.horizon, .particles = true, .cost = true, .status = true};
+    return {.stages = settings.problem.horizon,
+            .particles = true,
+            .noise = propagator_entry(settings.problem.propagator).carries_noise,
+            .cost = true,
+            .status = true};
   }
 
   const Decision& decide(const Situation& situation) override;

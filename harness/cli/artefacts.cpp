@@ -1,5 +1,6 @@
 #include "harness/cli/artefacts.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <stdexcept>
@@ -135,7 +136,9 @@ std::string summary_table(const Trace& trace, const std::string& folder, bool wi
     text += row("P(unsafe at next step) <=",
                 fmt::format("{:.3g} at most, {:.3g} on average", summary.next_step_max,
                             summary.next_step_mean));
-    text += row("P(unsafe over a plan) <=", fmt::format("{:.3g} at most", summary.horizon_max));
+    if (!std::isnan(summary.horizon_max)) {
+      text += row("P(unsafe over a plan) <=", fmt::format("{:.3g} at most", summary.horizon_max));
+    }
     text +=
         "  (both hold for the planner's model from its belief; the plant's mismatch is not in "
         "them)\n";

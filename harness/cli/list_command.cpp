@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "controller/control/controller.hpp"
+#include "controller/estimation/estimator.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
@@ -54,6 +56,8 @@ std::vector<Table> tables() {
   }
   return {make_table("systems", models::systems()),
           all_plants,
+          make_table("controllers", controller::controllers()),
+          make_table("estimators", controller::estimators()),
           make_table("solvers", controller::solvers()),
           make_table("boundings", controller::input_boundings()),
           make_table("propagators", controller::propagators()),
@@ -103,9 +107,10 @@ void add_list_command(CLI::App& app, int& exit_code) {
   command
       ->add_option(
           "kind", *kind,
-          "systems, plants, solvers, boundings, propagators, quantisers, scenarios or campaigns")
-      ->check(CLI::IsMember({"systems", "plants", "solvers", "boundings", "propagators",
-                             "quantisers", "scenarios", "campaigns"}));
+          "systems, plants, controllers, estimators, solvers, boundings, propagators, quantisers, "
+          "scenarios or campaigns")
+      ->check(CLI::IsMember({"systems", "plants", "controllers", "estimators", "solvers",
+                             "boundings", "propagators", "quantisers", "scenarios", "campaigns"}));
   command->add_flag("--json", *json, "as JSON");
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }

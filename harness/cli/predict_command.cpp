@@ -8,13 +8,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "harness/assembly/assembly.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
 #include "harness/cli/scenario_arguments.hpp"
-#include "harness/episode/assembly.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/prediction/input_table.hpp"
 #include "harness/prediction/prediction_file.hpp"

@@ -8,15 +8,19 @@
 #include <utility>
 
 #include "controller/certification/certificate.hpp"
+#include "controller/certification/error_budget.hpp"
+#include "controller/control/controller.hpp"
+#include "controller/control/decision_motion.hpp"
+#include "controller/estimation/estimator.hpp"
 #include "controller/planning/cost/angular_target.hpp"
-#include "controller/planning/planner.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/random/random_numbers.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/version.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -28,6 +32,12 @@ constexpr int kRehearsals = 2;
 // A period of which the belief is predicted, as of all but the first.
 constexpr int kRehearsedPeriod = 1;
 constexpr double kMilliseconds = 1000.0;  // in a second
+// Of a controller that expects none.
+constexpr controller::CostParts kNoCost{.state = kNotANumber,
+                                        .input = kNotANumber,
+                                        .terminal = kNotANumber,
+                                        .box = kNotANumber,
+                                        .obstacle = kNotANumber};
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -51,7 +61,13 @@ class EpisodeDriver::Loop {
   explicit Loop(const Scenario& scenario)
       : scenario_(scenario),
         model_(model_of(scenario)),
-        planner_(*model_, planner_settings(scenario)),
+        settings_(controller_settings(scenario)),
+        controller_(controller::make_controller(scenario.controller.kind, *model_, settings_)),
+        estimator_(controller::make_estimator(scenario.estimator.kind,
+                                              {.dynamics = *model_,
+                                               .noise_covariance = scenario.disturbance.covariance,
+                                               .sensor_covariance = scenario.disturbance.sensor})),
+        motions_(*model_, settings_.problem),
         disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.covariance),
         sensor_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.sensor),
         belief_(first_belief()) {
@@ -60,7 +76,7 @@ class EpisodeDriver::Loop {
 
   Trace run(const EpisodeOptions& options) {
     options_ = options;
-    planner_.reset();
+    controller_->reset();
     belief_ = first_belief();
     Trace trace = trace_header(scenario_, options_.seed);
     const GaussianSampler initial(belief_.mean, belief_.covariance);
@@ -124,42 +140,23 @@ class EpisodeDriver::Loop {
     return outcome_now();
   }
 
-  /// Plans and certifies for beliefs like those that will come, and forgets the plans: what is slow
-  /// the first time, tables and memory, is then over before the loop begins.
+  /// Decides and certifies for beliefs like those that will come, and forgets the decisions: what
+  /// is slow the first time, tables and memory, is then over before the loop begins.
   void rehearse() {
-    const controller::InputBounds& bounds = planner_.settings().bounds;
-    const controller::Gaussian later = predicted(belief_.mean, 0.5 * (bounds.lower + bounds.upper));
+    const controller::InputBounds& bounds = settings_.problem.bounds;
+    const controller::Gaussian later = estimator_->predict(
+        estimator_->correct(belief_, belief_.mean), 0.5 * (bounds.lower + bounds.upper));
     for (const Eigen::MatrixXd& covariance : {later.covariance, belief_.covariance}) {
       const controller::Gaussian belief{.mean = belief_.mean, .covariance = covariance};
       for (int n = 0; n < kRehearsals; ++n) {
-        const StepRecord record = certified(belief, kRehearsedPeriod, planner_.plan(belief));
+        const StepRecord record = decide(belief, belief.mean, kRehearsedPeriod);
         // What takes longer than a period anyway is not to be waited for twice.
         if (record.timing.total > kMilliseconds * scenario_.time_step) break;
       }
     }
   }
 
-  /// The certificates of `plan`, made for `belief` in `period`, and how long both took.
-  [[nodiscard]] StepRecord certified(const controller::Gaussian& belief, int period,
-                                     const controller::Plan& plan) const {
-    const auto start = Clock::now();
-    StepRecord record;
-    const controller::PredictedMotion motion =
-        of_plant(controller::motion_of(planner_, belief, plan), scenario_, period);
-    record.budgets = controller::error_budget(motion);
-    const controller::PlannerSettings& settings = planner_.settings();
-    record.certificates = controller::certify(motion, settings.safe_set, record.budgets,
-                                              controller::CertificateEffort::kLeast, settings.run);
-    record.timing.certify = milliseconds_since(start);
-    record.timing.quantise = plan.timing.quantise;
-    record.timing.propagate = plan.timing.propagate;
-    record.timing.optimise = plan.timing.optimise;
-    record.timing.total = record.timing.quantise + record.timing.propagate +
-                          record.timing.optimise + record.timing.certify;
-    return record;
-  }
-
-  /// What the planner sees of the state in period k.
+  /// What is seen of the state in period k.
   [[nodiscard]] Eigen::VectorXd observation(int k) const {
     if (scenario_.disturbance.sensor.isZero(0.0)) return state_;
     return state_ + sensor_.sample({.seed = options_.seed,
@@ -167,61 +164,85 @@ class EpisodeDriver::Loop {
                                     .step = static_cast<std::uint64_t>(k)});
   }
 
-  /// Plans for the belief, certifies the plan, and evaluates its first stage at the observed state.
+  /// What the controller does in period k, with the disturbance that the plant will have in it.
   [[nodiscard]] StepRecord decide(int k) {
-    const controller::Plan& plan = planner_.plan(belief_);
-    StepRecord record = certified(belief_, k, plan);
-    record.time = k * scenario_.time_step;
+    StepRecord record = decide(belief_, observation(k), k);
     record.state = state_;
-    record.observation = observation(k);
-    record.input = controller::policy_input(plan.policy, 0, record.observation);
     const RandomKey key{.seed = options_.plant_seed.value_or(options_.seed),
                         .stream = RandomStream::kDisturbance,
                         .step = static_cast<std::uint64_t>(k)};
     record.disturbance = disturbance_.sample(key);
-    record.belief_mean = belief_.mean;
-    record.belief_covariance = belief_.covariance;
-    record.plan_inputs = plan.policy.inputs;
-    record.plan_states = plan.policy.states;
-    record.cost = plan.cost;
-    record.solver_status = controller::solver_status_name(plan.status);
-    record.fallback = plan.fallback;
-    record.iterations = plan.evaluations;
-    record.particles = plan.prediction.stages;
     return record;
+  }
+
+  /// The controller's decision, its certificates, and how long both took.
+  [[nodiscard]] StepRecord decide(const controller::Gaussian& belief,
+                                  const Eigen::VectorXd& observation, int k) {
+    StepRecord record;
+    record.time = k * scenario_.time_step;
+    record.observation = observation;
+    record.belief_mean = belief.mean;
+    record.belief_covariance = belief.covariance;
+    const controller::Situation situation{.period = k,
+                                          .time = record.time,
+                                          .belief = belief,
+                                          .observation = record.observation,
+                                          .deadline = deadline()};
+    const controller::Decision& decision = controller_->decide(situation);
+    certify(situation, decision, record);
+    record.input = decision.input;
+    if (decision.policy != nullptr) {
+      record.plan_inputs = decision.policy->inputs;
+      record.plan_states = decision.policy->states;
+      record.plan_gains = decision.policy->gains;
+    }
+    if (decision.particles) record.particles = decision.particles->prediction.stages;
+    record.cost = decision.cost.value_or(kNoCost);
+    if (decision.status) record.solver_status = controller::solver_status_name(*decision.status);
+    record.fallback = decision.fallback;
+    record.iterations = decision.evaluations;
+    record.timing.quantise = decision.timing.quantise;
+    record.timing.propagate = decision.timing.propagate;
+    record.timing.optimise = decision.timing.optimise;
+    record.timing.total = record.timing.quantise + record.timing.propagate +
+                          record.timing.optimise + record.timing.certify;
+    return record;
+  }
+
+  void certify(const controller::Situation& situation, const controller::Decision& decision,
+               StepRecord& record) {
+    const auto start = Clock::now();
+    const controller::Gaussian posterior =
+        estimator_->correct(situation.belief, situation.observation);
+    const controller::PredictedMotion motion =
+        of_plant(motions_.of(situation, decision, posterior), scenario_, situation.period,
+                 decision.policy != nullptr ? BeliefOf::kPrediction : BeliefOf::kState);
+    record.budgets = controller::error_budget(motion);
+    record.certificates =
+        controller::certify(motion, scenario_.safe_set, record.budgets,
+                            controller::CertificateEffort::kLeast, settings_.problem.run);
+    record.timing.certify = milliseconds_since(start);
+  }
+
+  [[nodiscard]] Clock::time_point deadline() const {
+    const double seconds = scenario_.controller.deadline;
+    if (!std::isfinite(seconds)) return Clock::time_point::max();
+    return Clock::now() +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
 
   /// What is known of the next state before it is seen, and then the state itself.
   void observe(const StepRecord& record, const Eigen::VectorXd& next_state) {
-    belief_ = predicted(record.observation, record.input);
+    belief_ = estimator_->predict(estimator_->correct(belief_, record.observation), record.input);
     state_ = next_state;
-  }
-
-  /// The law of the next state once y has been seen and u applied: N(f(y, u), A R Aᵀ + Σ_w) with
-  /// A = ∂f/∂x at (y, u) and R the sensor's covariance. This takes the state to be N(y, R), which
-  /// is what y alone says of it, under a flat prior: what was seen before is left out, which a
-  /// filter would weigh in. Of f it is the linearisation; without sensor noise it is exact.
-  [[nodiscard]] controller::Gaussian predicted(const Eigen::VectorXd& seen,
-                                               const Eigen::VectorXd& applied) const {
-    const models::StateBatch state = seen;
-    const models::StateBatch input = applied;
-    models::StateBatch next(state.rows(), 1);
-    model_->step(state, input, next);
-    controller::Gaussian belief{.mean = next.col(0),
-                                .covariance = scenario_.disturbance.covariance};
-    const Eigen::MatrixXd& sensor = scenario_.disturbance.sensor;
-    if (sensor.isZero(0.0)) return belief;
-    Eigen::MatrixXd by_state(seen.size(), seen.size());
-    Eigen::MatrixXd by_input(seen.size(), applied.size());
-    model_->jacobians(seen, applied, by_state, by_input);
-    const Eigen::MatrixXd carried = by_state * sensor * by_state.transpose();
-    belief.covariance += 0.5 * (carried + carried.transpose());  // symmetric to the last bit
-    return belief;
   }
 
   const Scenario& scenario_;
   std::unique_ptr<const models::Dynamics> model_;
-  controller::Planner planner_;
+  controller::ControllerSettings settings_;
+  std::unique_ptr<controller::Controller> controller_;
+  std::unique_ptr<const controller::Estimator> estimator_;
+  controller::DecisionMotion motions_;
   GaussianSampler disturbance_;
   GaussianSampler sensor_;
   // Of the episode at hand.

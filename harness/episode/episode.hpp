@@ -1,14 +1,13 @@
-// One closed loop in receding horizon (Algorithm 5): plan, certify, act on the plant, observe.
+// One closed loop: decide, certify, act on the plant, observe.
 //
-// The plan of a period is made one period ahead, as on a machine that needs the period to compute:
-// having seen x_k and applied u_k, the belief of x_{k+1} is the model's prediction
-// N(f(x_k, u_k), Σ_w). When x_{k+1} is then observed, the first stage of the policy is evaluated at
-// it. The plant's disturbance comes from a random stream of its own; the planner sees nothing of
-// the plant but the states at the ends of the periods.
+// The belief of x_{k+1}, for which the controller of period k + 1 may plan, is the estimator's
+// prediction from what was seen in period k, as on a machine that needs the period to compute. When
+// x_{k+1} is then observed, the controller's input may depend on it, as the first stage of a policy
+// does. The plant's disturbance comes from a random stream of its own; the controller sees nothing
+// of the plant but the states at the ends of the periods.
 //
-// With measurement noise v_k ~ N(0, R), from another stream of its own, the planner sees
-// y_k = x_k + v_k instead: the policy is evaluated at y_k, and the belief of x_{k+1} is
-// N(f(y_k, u_k), A R Aᵀ + Σ_w) with A = ∂f/∂x at (y_k, u_k). The true state decides the outcome.
+// With measurement noise v_k ~ N(0, R), from another stream of its own, it sees y_k = x_k + v_k
+// instead. The true state decides the outcome.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +43,7 @@ struct EpisodeOptions {
 /// episode takes no longer than the others, are those of the first.
 class EpisodeDriver {
  public:
-  /// `scenario` must outlive the driver. Throws std::invalid_argument on settings of the planner
+  /// `scenario` must outlive the driver. Throws std::invalid_argument on settings of the controller
   /// that make no sense.
   explicit EpisodeDriver(const Scenario& scenario);
   EpisodeDriver(EpisodeDriver&&) noexcept;

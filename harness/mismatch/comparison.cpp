@@ -7,7 +7,7 @@
 
 #include "controller/certification/error_budget.hpp"
 #include "controller/planning/planner.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/mismatch/measured_error.hpp"
 #include "harness/plant/plant_registry.hpp"

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/mismatch/comparison_json.hpp"

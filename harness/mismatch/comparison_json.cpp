@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <memory>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 

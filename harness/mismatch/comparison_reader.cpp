@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/scenario/scenario_file.hpp"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <utility>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/prediction/prediction_json.hpp"

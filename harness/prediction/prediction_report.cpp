@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "controller/planning/planner.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/version.hpp"
 

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
 
 namespace qsmpc::harness {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_verdict.hpp"

@@ -10,6 +10,7 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/trace/residuals.hpp"
 #include "models/constants.hpp"
@@ -71,7 +72,7 @@ Series unsafe_periods(const Trace& trace) {
   return series;
 }
 
-Chart certificate_chart(const Trace& trace) {
+Chart certificate_chart(const Trace& trace, const controller::DecisionParts& parts) {
   const auto next_step = [](const StepRecord& step) {
     return step.certificates.empty() ? kNotANumber : step.certificates.front().value;
   };
@@ -85,16 +86,18 @@ Chart certificate_chart(const Trace& trace) {
     }
     return largest;
   };
-  Chart chart{
-      .title = "Certificates: bounds of the probability of being unsafe",
-      .note = "What is below the axis, 0 included, is drawn at its foot.",
-      .x_label = kTimeLabel,
-      .y_label = "probability (–)",
-      .y_scale = Scale::kLog,
-      .y_includes = {1.0},
-      .series = {series_of(trace, "next step", kBlue, next_step),
-                 series_of(trace, "plan: sum over its stages", kVermilion, plan),
-                 series_of(trace, "published method, worst stage: not a bound", kPurple, thesis)}};
+  Chart chart{.title = "Certificates: bounds of the probability of being unsafe",
+              .note = "What is below the axis, 0 included, is drawn at its foot.",
+              .x_label = kTimeLabel,
+              .y_label = "probability (–)",
+              .y_scale = Scale::kLog,
+              .y_includes = {1.0},
+              .series = {series_of(trace, "next step", kBlue, next_step)}};
+  if (parts.stages > 0) {
+    chart.series.push_back(series_of(trace, "plan: sum over its stages", kVermilion, plan));
+  }
+  chart.series.push_back(
+      series_of(trace, "published method, worst stage: not a bound", kPurple, thesis));
   chart.series.back().dashed = true;
   Series observed = unsafe_periods(trace);
   chart.note = fmt::format("Observed: {} of {} periods ended unsafe. {}", observed.x.size(),
@@ -121,15 +124,14 @@ Chart clearance_chart(const Trace& trace, const models::SystemDescription& syste
           .rules = {{"edge of the unsafe set", 0.0}}};
 }
 
-Chart budget_chart(const Trace& trace) {
+Chart budget_chart(const Trace& trace, const controller::DecisionParts& parts) {
   const auto last = [](auto part) {
     return [part](const StepRecord& step) {
       return step.budgets.empty() ? kNotANumber : step.budgets.back().*part;
     };
   };
   Chart chart{
-      .title =
-          fmt::format("Error budget at the last stage ({})", trace.scenario.controller.horizon),
+      .title = fmt::format("Error budget at the last stage ({})", certified_stages(parts)),
       .note =
           "Bound of the 2-Wasserstein distance between the model's law and its particles; what "
           "each source alone would give, and their total.",
@@ -242,15 +244,16 @@ Chart solve_time_histogram(const Trace& trace) {
 }  // namespace
 
 std::vector<Chart> episode_charts(const Trace& trace, const models::SystemDescription& system) {
+  const controller::DecisionParts parts = decision_parts(trace.scenario);
   std::vector<Chart> charts;
-  charts.push_back(certificate_chart(trace));
+  charts.push_back(certificate_chart(trace, parts));
   charts.push_back(clearance_chart(trace, system));
   for (Eigen::Index input = 0; input < std::ssize(system.inputs); ++input) {
     charts.push_back(input_chart(trace, system, input));
   }
   charts.push_back(timing_chart(trace));
-  charts.push_back(cost_chart(trace));
-  charts.push_back(budget_chart(trace));
+  if (parts.cost) charts.push_back(cost_chart(trace));
+  charts.push_back(budget_chart(trace, parts));
   const double end = static_cast<double>(trace.steps.size()) * trace.scenario.time_step;
   for (Chart& chart : charts) chart.x_includes = {0.0, end};
   charts.push_back(solve_time_histogram(trace));

@@ -9,6 +9,7 @@
 
 #include "controller/certification/certificate.hpp"
 #include "controller/planning/safe_set.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
@@ -31,13 +32,18 @@ double entry(const Eigen::VectorXd& values, Eigen::Index index) {
 class EpisodeData {
  public:
   EpisodeData(const Trace& trace, const models::SystemDescription& system)
-      : trace_(trace), system_(system), horizon_(trace.scenario.controller.horizon) {}
+      : trace_(trace),
+        system_(system),
+        parts_(decision_parts(trace.scenario)),
+        horizon_(certified_stages(parts_)) {}
 
   /// What is known of a system whatever its states.
   [[nodiscard]] Json periods() const {
     Json json = {{"period", trace_.scenario.time_step},
                  {"steps", trace_.steps.size()},
                  {"horizon", horizon_},
+                 {"planned", parts_.stages > 0},
+                 {"solved", parts_.status},
                  {"times", of_steps([](const StepRecord& step) { return step.time; })},
                  {"clearance", clearances()},
                  {"solve", of_steps([](const StepRecord& step) { return step.timing.total; })},
@@ -92,6 +98,7 @@ class EpisodeData {
   }
 
   [[nodiscard]] Json cost_parts() const {
+    if (!parts_.cost) return Json::object();
     const auto part = [this](double controller::CostParts::*member) {
       return of_steps([member](const StepRecord& step) { return step.cost.*member; });
     };
@@ -271,7 +278,8 @@ class EpisodeData {
 
   const Trace& trace_;
   const models::SystemDescription& system_;
-  int horizon_;
+  controller::DecisionParts parts_;
+  int horizon_;  // stages with a certificate
 };
 
 /// Nothing in it can end the element that it stands in.

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/ground_map.hpp"
 #include "harness/figures/plane_map.hpp"
 #include "harness/figures/svg_chart.hpp"
@@ -37,12 +38,9 @@ constexpr std::string_view kMismatchNote =
 std::string introduction(const Trace& trace) {
   const Scenario& scenario = trace.scenario;
   std::string html = fmt::format(
-      "<p class=\"kicker\"><strong>{}</strong> · model {} · plant {} · {}, horizon {} · seed "
-      "{}</p>\n",
+      "<p class=\"kicker\"><strong>{}</strong> · model {} · plant {} · {} · seed {}</p>\n",
       escape_html(scenario.name), escape_html(scenario.model.system),
-      escape_html(scenario.plant.kind),
-      scenario.controller.policy == "closed_loop" ? "closed-loop policy" : "open-loop policy",
-      scenario.controller.horizon, trace.seed);
+      escape_html(scenario.plant.kind), escape_html(controller_words(scenario)), trace.seed);
   if (!scenario.description.empty()) {
     html += "<p class=\"soft\">" + escape_html(scenario.description) + "</p>\n";
   }
@@ -59,22 +57,32 @@ std::string video(const EpisodePageOptions& options) {
       url, url, escape_html(options.video_file), escape_html(options.video_note));
 }
 
-std::string live_map(const PlaneMap* map) {
+constexpr std::string_view kMapOfPlans =
+    "; the vehicle, and dashed where the model without noise would be; the plan with its belief, "
+    "stage by stage from <span class=\"first\">now</span> to <span class=\"last\">its end</span>";
+constexpr std::string_view kMapOfParticles =
+    ": particles, and ellipses about 50 and (dashed) 95 % of the probability of a normal "
+    "distribution with their mean and covariance";
+
+std::string layer_box(std::string_view layer, std::string_view words) {
+  return fmt::format(
+      "<label><input type=\"checkbox\" checked=\"checked\" data-layer=\"{}\"/>{}</label>", layer,
+      words);
+}
+
+std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts) {
   if (map == nullptr) return {};
   std::string html =
       "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The plane at this moment"
       "</figcaption>\n<p class=\"note\">The way driven, from <span class=\"near\">near</span> the "
-      "unsafe set to <span class=\"far\">1 m and more</span> from it; the vehicle, and dashed "
-      "where "
-      "the model without noise would be; the plan with its belief, stage by stage from "
-      "<span class=\"first\">now</span> to <span class=\"last\">its end</span>: particles, and "
-      "ellipses about 50 and (dashed) 95 % of the probability of a normal distribution with their "
-      "mean and covariance.</p>\n<div class=\"layers\">";
-  for (const char* layer : {"particles", "ellipses", "plan", "ghost"}) {
-    html += fmt::format(
-        "<label><input type=\"checkbox\" checked=\"checked\" data-layer=\"{}\"/>{}</label>", layer,
-        std::string_view(layer) == "ghost" ? "model’s vehicle" : layer);
+      "unsafe set to <span class=\"far\">1 m and more</span> from it";
+  html += parts.stages > 0 ? kMapOfPlans : "; the vehicle";
+  if (parts.particles) html += kMapOfParticles;
+  html += ".</p>\n<div class=\"layers\">";
+  if (parts.particles) {
+    html += layer_box("particles", "particles") + layer_box("ellipses", "ellipses");
   }
+  if (parts.stages > 0) html += layer_box("plan", "plan") + layer_box("ghost", "model’s vehicle");
   html += "<label><input type=\"checkbox\" id=\"near-view\"/>near view</label>";
   return html + "</div>\n" + map_drawing(*map) + "</figure>\n";
 }
@@ -93,9 +101,12 @@ std::string player(const Trace& trace) {
 
 constexpr std::string_view kMoment =
     "<section class=\"card needs-script\" hidden>\n<h3>At this moment</h3>\n"
-    "<dl class=\"now\" id=\"now\"></dl>\n<h3>What the plan pays for</h3>\n"
+    "<dl class=\"now\" id=\"now\"></dl>\n{}<ul class=\"why\" id=\"why\"></ul>\n</section>\n";
+
+constexpr std::string_view kWhy =
+    "<h3>What the plan pays for</h3>\n"
     "<p class=\"note\">Parts of the plan’s expected cost: what is largest, the controller works "
-    "against most.</p>\n<ul class=\"why\" id=\"why\"></ul>\n</section>\n";
+    "against most.</p>\n";
 
 constexpr std::string_view kStageCharts =
     "<figure class=\"card\" id=\"stage-certificates\" hidden>\n<figcaption>Certificates of this "
@@ -108,10 +119,13 @@ constexpr std::string_view kStageCharts =
 
 std::string drive(const Trace& trace, const PlaneMap* map, const EpisodePageOptions& options) {
   if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(kMeaning);
+  const controller::DecisionParts parts = decision_parts(trace.scenario);
+  const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
   return fmt::format(
       "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
       "<div class=\"stack\">\n{}{}</div>\n</div>\n",
-      player(trace), video(options), kMoment, kMeaning, live_map(map), kStageCharts);
+      player(trace), video(options), moment, kMeaning, live_map(map, parts),
+      parts.stages > 0 ? kStageCharts : std::string_view());
 }
 
 std::string charts_html(const std::vector<Chart>& charts, const std::string& map) {

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/pdf_figure.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/report/campaign_charts.hpp"

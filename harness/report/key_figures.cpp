@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/assembly/assembly.hpp"
 #include "harness/report/episode_charts.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
@@ -196,22 +197,25 @@ std::string outcome_html(const Trace& trace, const Summary& summary) {
 
 std::string key_figures_html(const Trace& trace, const Summary& summary,
                              const models::SystemDescription& system) {
-  const std::vector<Tile> tiles = {
-      time_tile(summary),
-      unsafe_tile(trace, summary),
-      clearance_tile(trace, summary, system),
-      bound_tile(summary, "Largest next-step certificate", summary.next_step_max,
-                 "upper bound of a probability"),
-      bound_tile(summary, "Sum of next-step certificates", summary.next_step_sum,
-                 "along the drive"),
-      bound_tile(summary, "Largest plan certificate", summary.horizon_max,
-                 "sum over a plan's stages"),
-      thesis_tile(summary),
-      solve_tile(trace, summary),
-      deadline_tile(summary),
-      fallback_tile(summary),
-      evaluations_tile(summary),
-      cost_tile(summary)};
+  const controller::DecisionParts parts = decision_parts(trace.scenario);
+  std::vector<Tile> tiles = {time_tile(summary), unsafe_tile(trace, summary),
+                             clearance_tile(trace, summary, system),
+                             bound_tile(summary, "Largest next-step certificate",
+                                        summary.next_step_max, "upper bound of a probability"),
+                             bound_tile(summary, "Sum of next-step certificates",
+                                        summary.next_step_sum, "along the drive")};
+  if (parts.stages > 0) {
+    tiles.push_back(bound_tile(summary, "Largest plan certificate", summary.horizon_max,
+                               "sum over a plan's stages"));
+  }
+  tiles.push_back(thesis_tile(summary));
+  tiles.push_back(solve_tile(trace, summary));
+  tiles.push_back(deadline_tile(summary));
+  if (parts.status) {
+    tiles.push_back(fallback_tile(summary));
+    tiles.push_back(evaluations_tile(summary));
+  }
+  tiles.push_back(cost_tile(summary));
   std::string html = "<dl class=\"tiles\">\n";
   for (const Tile& tile : tiles) html += tile_html(tile);
   return html + "</dl>\n";

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/ground_map.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/reproduction/published_way.hpp"

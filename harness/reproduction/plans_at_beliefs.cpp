@@ -7,7 +7,7 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 #include "controller/planning/planner.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/prediction/monte_carlo.hpp"
 #include "harness/statistics/sample_statistics.hpp"
 

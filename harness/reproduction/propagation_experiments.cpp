@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"

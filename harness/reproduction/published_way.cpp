@@ -8,7 +8,7 @@
 #include "controller/certification/worst_case.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/planner.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 
 namespace qsmpc::harness {
 namespace {

@@ -1,6 +1,6 @@
 #include "harness/reproduction/turn_prediction.hpp"
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/mismatch/path_ensemble.hpp"
 #include "harness/scenario/scenario_file.hpp"
 

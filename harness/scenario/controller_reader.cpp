@@ -24,6 +24,7 @@ class ControllerReader {
       : section_(section), system_(system) {}
 
   Scenario::Controller read() {
+    read_kind();
     controller_.horizon = section_.whole("horizon", controller_.horizon, kHorizonRange);
     controller_.policy = section_.name("policy", controller_.policy, policy_names());
     read_gain();
@@ -38,6 +39,7 @@ class ControllerReader {
   }
 
  private:
+  void read_kind();
   void read_gain();
   void read_solver();
   void read_propagation();
@@ -53,6 +55,18 @@ class ControllerReader {
   const models::SystemDescription& system_;
   Scenario::Controller controller_;
 };
+
+// What only one controller reads is refused for the others, unless it says what holds anyway.
+void ControllerReader::read_kind() {
+  controller_.kind = section_.name("kind", controller_.kind, controller_names());
+  Section lqr = section_.section("lqr");
+  const std::string fallback = controller_.lqr_about;
+  controller_.lqr_about = lqr.name("about", fallback, lqr_about_names());
+  if (controller_.kind != "lqr" && controller_.lqr_about != fallback) {
+    lqr.note("about", fallback + ", or controller.kind: lqr");
+  }
+  lqr.refuse_unread();
+}
 
 void ControllerReader::read_gain() {
   controller_.feedback_gain = section_.matrix("feedback_gain", input_dim(), state_dim());

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "controller/control/controller.hpp"
+#include "controller/estimation/estimator.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
@@ -31,6 +33,21 @@ std::vector<std::string> names_of(const Entries& entries) {
 }
 
 }  // namespace
+
+const std::vector<std::string>& controller_names() {
+  static const std::vector<std::string> names = names_of(controller::controllers());
+  return names;
+}
+
+const std::vector<std::string>& estimator_names() {
+  static const std::vector<std::string> names = names_of(controller::estimators());
+  return names;
+}
+
+const std::vector<std::string>& lqr_about_names() {
+  static const std::vector<std::string> names{"path", "target"};
+  return names;
+}
 
 const std::vector<std::string>& solver_names() {
   static const std::vector<std::string> names = names_of(controller::solvers());

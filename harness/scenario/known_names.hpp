@@ -9,6 +9,10 @@
 
 namespace qsmpc::harness {
 
+[[nodiscard]] const std::vector<std::string>& controller_names();
+[[nodiscard]] const std::vector<std::string>& estimator_names();
+/// About what "lqr" linearises.
+[[nodiscard]] const std::vector<std::string>& lqr_about_names();
 [[nodiscard]] const std::vector<std::string>& solver_names();
 [[nodiscard]] const std::vector<std::string>& input_bounding_names();
 /// Those that propagate noise; `propagate_noise: false` stands for the other, "noise_free".

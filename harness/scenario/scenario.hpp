@@ -66,7 +66,14 @@ struct Scenario {
     double obstacle = 400.0;       ///< weight
     double length = 0.5;           ///< m, how far outside the unsafe set the smooth shape begins
   };
+  struct Estimator {
+    /// A name from `qsmpc list estimators`; unless given, "exact" without measurement noise and
+    /// else "last_measurement".
+    std::string kind = "exact";
+  };
   struct Controller {
+    std::string kind = "quantised";  ///< a name from `qsmpc list controllers`
+    std::string lqr_about = "path";  ///< or "target": about what "lqr" linearises
     int horizon = 8;
     std::string policy = "closed_loop";            ///< or "open_loop"
     std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
@@ -107,6 +114,7 @@ struct Scenario {
   std::optional<controller::ModelError> model_error;
   controller::SafeSet safe_set;
   Target target;
+  Estimator estimator;
   Controller controller;
   int step_limit = 200;
   bool stop_when_unsafe = true;  ///< whether the episode ends when the true state is unsafe

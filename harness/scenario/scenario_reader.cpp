@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "controller/estimation/estimator.hpp"
 #include "harness/scenario/controller_reader.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/model_error_reader.hpp"
@@ -91,12 +92,14 @@ class ScenarioReader {
       scenario_.model_error = read_model_error(
           root_, problems_,
           {.system = scenario_.model.system, .dim = state_dim(), .folder = lookup_.folder});
+      read_estimator();
       read_target();
       Section controller = root_.section("controller");
       scenario_.controller = read_controller(controller, system());
     } else {
       // Sizes are not known without a system; what is wrong in here shows once it has one.
-      for (const char* key : {"initial_state", "disturbance", "safe_set", "target", "controller"}) {
+      for (const char* key :
+           {"initial_state", "disturbance", "safe_set", "target", "estimator", "controller"}) {
         (void)root_.section(key);
       }
       if (!root_.holds_text("model_error")) (void)root_.section("model_error");
@@ -114,6 +117,7 @@ class ScenarioReader {
   void read_initial_state();
   void read_disturbance();
   void read_safe_set();
+  void read_estimator();
   void read_target();
   void read_angles(Section& target);
   void read_limit();
@@ -264,6 +268,17 @@ void ScenarioReader::read_safe_set() {
                                  fmt::join(coordinate_names(system().states), ", ")),
                      "an obstacle that fills the whole space");
     }
+  }
+  section.refuse_unread();
+}
+
+void ScenarioReader::read_estimator() {
+  Section section = root_.section("estimator");
+  const bool noisy = !scenario_.disturbance.sensor.isZero(0.0);
+  const std::string fallback = noisy ? "last_measurement" : "exact";
+  scenario_.estimator.kind = section.name("kind", fallback, estimator_names());
+  if (noisy && controller::estimator_entry(scenario_.estimator.kind).needs_exact_sensor) {
+    section.note("kind", fallback + ", since disturbance.sensor is not zero");
   }
   section.refuse_unread();
 }

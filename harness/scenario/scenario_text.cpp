@@ -77,7 +77,8 @@ std::string input_bounds(const Scenario::Controller& controller,
 
 std::string controller_text(const Scenario::Controller& controller,
                             const std::vector<models::Coordinate>& inputs) {
-  std::string out = "controller:\n";
+  std::string out = fmt::format("controller:\n  kind: {}\n", controller.kind);
+  if (controller.kind == "lqr") out += fmt::format("  lqr: {{about: {}}}\n", controller.lqr_about);
   out += fmt::format("  horizon: {}\n  policy: {}\n", controller.horizon, controller.policy);
   if (controller.feedback_gain) {
     out += fmt::format("  feedback_gain: {}\n", yaml_rows(*controller.feedback_gain));
@@ -124,6 +125,7 @@ std::string to_yaml(const Scenario& scenario) {
   if (scenario.model_error) out += "model_error:\n" + model_error_text(*scenario.model_error, "  ");
   out += safe_set_text(scenario.safe_set, system.states);
   out += target_text(scenario.target, system.states);
+  out += fmt::format("estimator: {{kind: {}}}\n", scenario.estimator.kind);
   out += controller_text(scenario.controller, system.inputs);
   out += fmt::format("limit: {{steps: {}, stop_when_unsafe: {}}}\n", scenario.step_limit,
                      scenario.stop_when_unsafe);

@@ -10,9 +10,11 @@
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/safe_set.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 #include "harness/trace/residuals.hpp"
+#include "models/constants.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -87,6 +89,7 @@ void add_certificates(const Trace& trace, Summary& summary) {
       summary.thesis_max = std::max(summary.thesis_max, certificate.thesis);
     }
   }
+  if (decision_parts(trace.scenario).stages == 0) summary.horizon_max = kNotANumber;
   if (summary.steps > 0) summary.next_step_mean = summary.next_step_sum / summary.steps;
 }
 
@@ -127,6 +130,8 @@ Summary summarise(const Trace& trace) {
   summary.scenario = trace.scenario.name;
   summary.seed = trace.seed;
   summary.version = trace.version;
+  summary.controller = trace.scenario.controller.kind;
+  summary.estimator = trace.scenario.estimator.kind;
   summary.outcome = outcome_name(trace.outcome);
   summary.fault = trace.fault;
   summary.steps = static_cast<int>(trace.steps.size());
@@ -147,6 +152,8 @@ std::string summary_json(const Trace& trace, const SummaryOptions& options) {
   json["scenario"] = summary.scenario;
   json["seed"] = summary.seed;
   json["version"] = summary.version;
+  json["controller"] = summary.controller;
+  json["estimator"] = summary.estimator;
   json["outcome"] = summary.outcome;
   if (!summary.fault.empty()) json["fault"] = summary.fault;
   json["steps"] = summary.steps;

@@ -16,6 +16,8 @@ struct Summary {
   std::string scenario;
   std::uint64_t seed = 0;
   std::string version;
+  std::string controller;  ///< its kind
+  std::string estimator;   ///< its kind
   std::string outcome;
   std::string fault;  ///< the simulator's words; empty without a fault
   int steps = 0;
@@ -32,7 +34,7 @@ struct Summary {
   double next_step_max = 0.0;  ///< of the certificates of stage 1
   double next_step_mean = 0.0;
   double next_step_sum = 0.0;  ///< along the drive
-  double horizon_max = 0.0;    ///< of the plans' sums over their stages
+  double horizon_max = 0.0;    ///< of the plans' sums over their stages; not a number without plans
   double thesis_max = 0.0;     ///< of the published value; not a bound
   /// One-step residual x_{k+1} − w_k − f(x_k, u_k) of the plant against the model, by state.
   Eigen::VectorXd mismatch_rmse;

@@ -40,15 +40,19 @@ struct StepRecord {
   Eigen::VectorXd disturbance;  ///< added at the end of the period, state_dim
   Eigen::VectorXd belief_mean;  ///< what the plan was made for, state_dim
   Eigen::MatrixXd belief_covariance;
-  Eigen::MatrixXd plan_inputs;  ///< input_dim x horizon
-  Eigen::MatrixXd plan_states;  ///< nominal states, state_dim x (horizon + 1)
-  controller::CostParts cost;
-  std::string solver_status;                     ///< name of the solver's status
-  bool fallback = false;                         ///< the shifted previous plan was applied instead
-  int iterations = 0;                            ///< cost-and-gradient evaluations
-  std::vector<StageParticles> particles;         ///< horizon + 1
-  std::vector<controller::StageBudget> budgets;  ///< horizon + 1
-  std::vector<controller::StageCertificate> certificates;  ///< stages 1 … horizon
+  // Of the plan; empty where the controller makes none.
+  Eigen::MatrixXd plan_inputs;              ///< input_dim x horizon
+  Eigen::MatrixXd plan_states;              ///< nominal states, state_dim x (horizon + 1)
+  std::vector<Eigen::MatrixXd> plan_gains;  ///< horizon of input_dim x state_dim; empty also in
+                                            ///< traces of earlier versions
+  controller::CostParts cost;               ///< not a number where the controller has none
+  std::string solver_status;                ///< name of the solver's status; empty without a solver
+  bool fallback = false;                    ///< the shifted previous plan was applied instead
+  int iterations = 0;                       ///< cost-and-gradient evaluations
+  std::vector<StageParticles> particles;    ///< horizon + 1; empty where the controller has none
+  /// Stages 0 … horizon, or 0 and 1 where nothing is planned.
+  std::vector<controller::StageBudget> budgets;
+  std::vector<controller::StageCertificate> certificates;  ///< the same without stage 0
   StepTiming timing;
 };
 

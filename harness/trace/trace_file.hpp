@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 
+#include "controller/control/controller.hpp"
 #include "harness/trace/hdf5_file.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -43,17 +44,20 @@ class TraceWriter {
  private:
   void append_motion(std::span<const MotionSample> motion);
   void append_vectors(const StepRecord& record);
+  void append_plan(const StepRecord& record);
   void append_particles(const StepRecord& record);
   void append_timing(const StepTiming& timing);
   void check_sizes(const StepRecord& record) const;
+  void check_plan(const StepRecord& record) const;
 
   std::string path_;
   Hdf5File file_;
   Eigen::Index state_dim_;
   Eigen::Index input_dim_;
-  Eigen::Index horizon_;
-  std::int64_t points_ = 0;    ///< particles written so far
-  std::size_t qpos_size_ = 0;  ///< coordinates of a motion sample
+  controller::DecisionParts parts_;  ///< that the records have
+  Eigen::Index stages_;              ///< with a certificate
+  std::int64_t points_ = 0;          ///< particles written so far
+  std::size_t qpos_size_ = 0;        ///< coordinates of a motion sample
   bool motion_begun_ = false;
   bool broken_ = false;  ///< a step was written in part; what follows would not line up
 };

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "harness/assembly/assembly.hpp"
 #include "harness/trace/certificate_datasets.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/coordinate_labels.hpp"
@@ -21,7 +22,9 @@ constexpr std::size_t kMotionChunk = 256;
 
 /// The sizes and names that shapes and attributes are made from.
 struct TraceSizes {
-  std::size_t horizon;
+  controller::DecisionParts parts;
+  std::size_t horizon;    // of plans; 0 without any
+  std::size_t certified;  // stages with a certificate
   CoordinateLabels states;
   CoordinateLabels inputs;
 };
@@ -29,7 +32,10 @@ struct TraceSizes {
 TraceSizes trace_sizes(const Scenario& scenario) {
   const auto dynamics =
       models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  return {.horizon = static_cast<std::size_t>(scenario.controller.horizon),
+  const controller::DecisionParts parts = decision_parts(scenario);
+  return {.parts = parts,
+          .horizon = static_cast<std::size_t>(parts.stages),
+          .certified = static_cast<std::size_t>(certified_stages(parts)),
           .states = labels_of(dynamics->description().states),
           .inputs = labels_of(dynamics->description().inputs)};
 }
@@ -81,7 +87,7 @@ void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .chunk_rows = kMotionChunk});
 }
 
-void add_belief_and_plan(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
+void add_belief(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   layout.push_back({.path = "/belief/mean",
                     .row_shape = {n.states.names.size()},
                     .axes = {"step", "state"},
@@ -93,6 +99,9 @@ void add_belief_and_plan(std::vector<DatasetSpec>& layout, const TraceSizes& n) 
                     .units = n.states.units,
                     .columns = n.states.names,
                     .comment = "an entry has the unit of its row times that of its column"});
+}
+
+void add_policy(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   layout.push_back({.path = "/plan/inputs",
                     .row_shape = {n.horizon, n.inputs.names.size()},
                     .axes = {"step", "stage", "input"},
@@ -104,11 +113,23 @@ void add_belief_and_plan(std::vector<DatasetSpec>& layout, const TraceSizes& n) 
                     .units = n.states.units,
                     .columns = n.states.names,
                     .comment = "nominal states, the present one first"});
-  layout.push_back({.path = "/plan/cost",
-                    .row_shape = {cost_part_names().size()},
-                    .axes = {"step", "part"},
-                    .units = {"1"},
-                    .columns = cost_part_names()});
+  layout.push_back({.path = kGainsPath,
+                    .row_shape = {n.horizon, n.inputs.names.size(), n.states.names.size()},
+                    .axes = {"step", "stage", "input", "state"},
+                    .units = {"unit of the input by that of the state"},
+                    .columns = n.states.names,
+                    .comment = "how inputs answer to the state's distance from the nominal one"});
+}
+
+void add_solution(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
+  if (n.parts.cost) {
+    layout.push_back({.path = "/plan/cost",
+                      .row_shape = {cost_part_names().size()},
+                      .axes = {"step", "part"},
+                      .units = {"1"},
+                      .columns = cost_part_names()});
+  }
+  if (!n.parts.status) return;
   layout.push_back({.path = "/plan/status",
                     .type = Type::kText,
                     .axes = {"step"},
@@ -169,16 +190,18 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
   const TraceSizes sizes = trace_sizes(scenario);
   std::vector<DatasetSpec> layout;
   add_plant(layout, sizes);
-  add_belief_and_plan(layout, sizes);
-  add_particles(layout, sizes);
-  for (DatasetSpec& spec : certificate_layout(sizes.horizon)) layout.push_back(std::move(spec));
+  add_belief(layout, sizes);
+  if (sizes.parts.stages > 0) add_policy(layout, sizes);
+  add_solution(layout, sizes);
+  if (sizes.parts.particles) add_particles(layout, sizes);
+  for (DatasetSpec& spec : certificate_layout(sizes.certified)) layout.push_back(std::move(spec));
   add_timing(layout);
   return layout;
 }
 
 bool may_be_missing(std::string_view path) {
-  return path == kObservationPath || path == kDynamicsPath || path == kModelErrorPath ||
-         path == "/certificate/smoothed";
+  return path == kObservationPath || path == kGainsPath || path == kDynamicsPath ||
+         path == kModelErrorPath || path == "/certificate/smoothed";
 }
 
 }  // namespace qsmpc::harness

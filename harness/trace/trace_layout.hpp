@@ -17,8 +17,12 @@ inline constexpr std::int64_t kTraceSchema = 1;
 /// Of what the planner saw. Traces without it are of planners that saw the state itself.
 inline constexpr const char* kObservationPath = "/plant/observation";
 
+/// Of the policies' gains.
+inline constexpr const char* kGainsPath = "/plan/gains";
+
 /// The datasets of a trace of `scenario`. A dataset whose first axis is "step" has one row a
-/// control period. Throws std::invalid_argument on an unknown system.
+/// control period; what the scenario's controller does not have is not among them. Throws
+/// std::invalid_argument on an unknown system.
 [[nodiscard]] std::vector<DatasetSpec> trace_layout(const Scenario& scenario);
 
 /// Whether the dataset came to the schema after the first traces were written: a trace without it

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/certificate_fields.hpp"
@@ -17,8 +18,6 @@ namespace qsmpc::harness {
 namespace {
 
 using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-
-/// Of what an older trace does not say.
 
 /// Reads one file's groups into `trace`; a step is believed once it has a time.
 class TraceReader {
@@ -37,7 +36,8 @@ class TraceReader {
   void read_motion();
   void read_final_state();
   void read_plant_and_belief();
-  void read_plan();
+  void read_policy();
+  void read_solution();
   void read_particles();
   void read_budgets();
   void read_certificates();
@@ -57,7 +57,8 @@ class TraceReader {
   Trace trace_;
   Eigen::Index state_dim_ = 0;
   Eigen::Index input_dim_ = 0;
-  Eigen::Index horizon_ = 0;
+  controller::DecisionParts parts_;
+  std::size_t stages_ = 0;  // with a certificate
 };
 
 Trace TraceReader::read() {
@@ -66,8 +67,9 @@ Trace TraceReader::read() {
   read_motion();
   read_final_state();
   read_plant_and_belief();
-  read_plan();
-  read_particles();
+  if (parts_.stages > 0) read_policy();
+  read_solution();
+  if (parts_.particles) read_particles();
   read_budgets();
   read_certificates();
   read_timing();
@@ -98,7 +100,8 @@ void TraceReader::read_header() {
       {.file = path, .folder = path.substr(0, path.rfind('/') + 1), .files_must_exist = false});
   state_dim_ = trace_.scenario.initial_state.mean.size();
   input_dim_ = trace_.scenario.controller.input_lower.size();
-  horizon_ = trace_.scenario.controller.horizon;
+  parts_ = decision_parts(trace_.scenario);
+  stages_ = static_cast<std::size_t>(certified_stages(parts_));
 }
 
 void TraceReader::check_shapes() {
@@ -172,22 +175,43 @@ void TraceReader::read_plant_and_belief() {
   }
 }
 
-void TraceReader::read_plan() {
+void TraceReader::read_policy() {
+  const Eigen::Index horizon = parts_.stages;
   const auto inputs = file_.doubles("/plan/inputs");
   const auto states = file_.doubles("/plan/states");
-  const auto costs = file_.doubles("/plan/cost");
-  const auto statuses = file_.texts("/plan/status");
-  const auto fallbacks = file_.integers("/plan/fallback");
-  const auto iterations = file_.integers("/plan/iterations");
+  const auto gains = doubles_if_there(kGainsPath);
   // A stage is a row in the file and a column in memory.
   using Columns = Eigen::Map<const Eigen::MatrixXd>;
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
     StepRecord& step = trace_.steps[k];
-    step.plan_inputs = Columns(row_of(inputs, k, input_dim_ * horizon_), input_dim_, horizon_);
+    step.plan_inputs = Columns(row_of(inputs, k, input_dim_ * horizon), input_dim_, horizon);
     step.plan_states =
-        Columns(row_of(states, k, state_dim_ * (horizon_ + 1)), state_dim_, horizon_ + 1);
-    const double* const cost = row_of(costs, k, std::ssize(kCostFields));
-    for (std::size_t n = 0; n < kCostFields.size(); ++n) step.cost.*kCostFields[n].member = cost[n];
+        Columns(row_of(states, k, state_dim_ * (horizon + 1)), state_dim_, horizon + 1);
+    if (gains.empty()) continue;
+    const double* gain = row_of(gains, k, horizon * input_dim_ * state_dim_);
+    for (Eigen::Index s = 0; s < horizon; ++s, gain += input_dim_ * state_dim_) {
+      step.plan_gains.emplace_back(Eigen::Map<const RowMajor>(gain, input_dim_, state_dim_));
+    }
+  }
+}
+
+void TraceReader::read_solution() {
+  for (StepRecord& step : trace_.steps) {
+    for (const CostField& field : kCostFields) step.cost.*field.member = kNotANumber;
+  }
+  if (parts_.cost) {
+    const auto costs = file_.doubles("/plan/cost");
+    for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+      const double* cost = row_of(costs, k, std::ssize(kCostFields));
+      for (const CostField& field : kCostFields) trace_.steps[k].cost.*field.member = *cost++;
+    }
+  }
+  if (!parts_.status) return;
+  const auto statuses = file_.texts("/plan/status");
+  const auto fallbacks = file_.integers("/plan/fallback");
+  const auto iterations = file_.integers("/plan/iterations");
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    StepRecord& step = trace_.steps[k];
     step.solver_status = statuses[k];
     step.fallback = fallbacks[k] != 0;
     step.iterations = static_cast<int>(iterations[k]);
@@ -200,7 +224,7 @@ void TraceReader::read_particles() {
   const auto offsets = file_.integers("/particles/offsets");
   const auto points = static_cast<std::int64_t>(
       std::min(weights.size(), locations.size() / static_cast<std::size_t>(state_dim_)));
-  const auto boundaries = static_cast<std::size_t>(horizon_) + 2;
+  const auto boundaries = static_cast<std::size_t>(parts_.stages) + 2;
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
     const std::int64_t* const bounds = offsets.data() + k * boundaries;
     for (std::size_t s = 0; s + 1 < boundaries; ++s) {
@@ -224,7 +248,7 @@ void TraceReader::read_budgets() {
   const auto lipschitz = file_.doubles("/certificate/lipschitz");
   const auto dynamics = doubles_if_there(kDynamicsPath);
   const auto model = doubles_if_there(kModelErrorPath);
-  const auto stages = static_cast<std::size_t>(horizon_) + 1;
+  const std::size_t stages = stages_ + 1;
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
     for (std::size_t i = k * stages; i < (k + 1) * stages; ++i) {
       // Without the dataset no model error was known to the program.
@@ -242,11 +266,10 @@ void TraceReader::read_budgets() {
 
 void TraceReader::read_certificates() {
   const auto kinds = file_.texts("/certificate/kind");
-  const auto horizon = static_cast<std::size_t>(horizon_);
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
-    trace_.steps[k].certificates.resize(horizon);
-    for (std::size_t s = 0; s < horizon; ++s) {
-      trace_.steps[k].certificates[s].kind = kinds[k * horizon + s];
+    trace_.steps[k].certificates.resize(stages_);
+    for (std::size_t s = 0; s < stages_; ++s) {
+      trace_.steps[k].certificates[s].kind = kinds[k * stages_ + s];
     }
   }
   for (const CertificateField& field : kCertificateFields) {
@@ -254,8 +277,8 @@ void TraceReader::read_certificates() {
     const auto values = doubles_if_there(certificate_path(field));
     if (values.empty()) continue;
     for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
-      for (std::size_t s = 0; s < horizon; ++s) {
-        trace_.steps[k].certificates[s].*field.member = values[k * horizon + s];
+      for (std::size_t s = 0; s < stages_; ++s) {
+        trace_.steps[k].certificates[s].*field.member = values[k * stages_ + s];
       }
     }
   }

@@ -1,8 +1,10 @@
 // TraceWriter: the writing side of trace_file.hpp.
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/trace/certificate_datasets.hpp"
@@ -37,7 +39,8 @@ TraceWriter::TraceWriter(std::string path, const Trace& header)
       file_(Hdf5File::create(partial_path_of(path_))),
       state_dim_(header.scenario.initial_state.mean.size()),
       input_dim_(header.scenario.controller.input_lower.size()),
-      horizon_(header.scenario.controller.horizon) {
+      parts_(decision_parts(header.scenario)),
+      stages_(certified_stages(parts_)) {
   write_trace_header(file_, header);
   for (const DatasetSpec& spec : trace_layout(header.scenario)) file_.create_dataset(spec);
   file_.flush();
@@ -50,7 +53,8 @@ void TraceWriter::append(const StepRecord& record, std::span<const MotionSample>
   broken_ = true;
   append_motion(motion);
   append_vectors(record);
-  append_particles(record);
+  append_plan(record);
+  if (parts_.particles) append_particles(record);
   append_certificates(file_, record.budgets, record.certificates);
   append_timing(record.timing);
   // The time is the step's seal: it reaches the file only after everything else of the step, and
@@ -70,14 +74,25 @@ void TraceWriter::check_sizes(const StepRecord& record) const {
   require(record.belief_covariance.rows() == state_dim_ &&
               record.belief_covariance.cols() == state_dim_,
           "belief_covariance is not state_dim x state_dim");
-  require(record.plan_inputs.rows() == input_dim_ && record.plan_inputs.cols() == horizon_,
+  const auto stages = static_cast<std::size_t>(stages_);
+  require(record.budgets.size() == stages + 1, "budgets are not stages + 1");
+  require(record.certificates.size() == stages, "certificates are not stages");
+  if (parts_.stages > 0) check_plan(record);
+}
+
+void TraceWriter::check_plan(const StepRecord& record) const {
+  const Eigen::Index horizon = parts_.stages;
+  require(record.plan_inputs.rows() == input_dim_ && record.plan_inputs.cols() == horizon,
           "plan_inputs are not input_dim x horizon");
-  require(record.plan_states.rows() == state_dim_ && record.plan_states.cols() == horizon_ + 1,
+  require(record.plan_states.rows() == state_dim_ && record.plan_states.cols() == horizon + 1,
           "plan_states are not state_dim x (horizon + 1)");
-  const auto horizon = static_cast<std::size_t>(horizon_);
-  require(record.particles.size() == horizon + 1, "particles are not horizon + 1");
-  require(record.budgets.size() == horizon + 1, "budgets are not horizon + 1");
-  require(record.certificates.size() == horizon, "certificates are not horizon");
+  require(std::ssize(record.plan_gains) == horizon, "plan_gains are not horizon");
+  for (const Eigen::MatrixXd& gain : record.plan_gains) {
+    require(gain.rows() == input_dim_ && gain.cols() == state_dim_,
+            "plan_gains are not input_dim x state_dim");
+  }
+  if (!parts_.particles) return;
+  require(std::ssize(record.particles) == horizon + 1, "particles are not horizon + 1");
   for (const StageParticles& stage : record.particles) {
     require(stage.locations.rows() == state_dim_, "particles are not of state_dim");
     require(stage.locations.cols() == stage.weights.size(), "particles without a weight");
@@ -109,10 +124,19 @@ void TraceWriter::append_vectors(const StepRecord& record) {
   file_.append("/plant/disturbance", by_rows(record.disturbance));
   file_.append("/belief/mean", by_rows(record.belief_mean));
   file_.append("/belief/covariance", by_rows(record.belief_covariance));
-  // A stage is a column in memory and a row in the file.
-  file_.append("/plan/inputs", by_rows(record.plan_inputs.transpose()));
-  file_.append("/plan/states", by_rows(record.plan_states.transpose()));
-  file_.append("/plan/cost", cost_row(record.cost));
+}
+
+void TraceWriter::append_plan(const StepRecord& record) {
+  if (parts_.stages > 0) {
+    // A stage is a column in memory and a row in the file.
+    file_.append("/plan/inputs", by_rows(record.plan_inputs.transpose()));
+    file_.append("/plan/states", by_rows(record.plan_states.transpose()));
+    std::vector<double> gains;
+    for (const Eigen::MatrixXd& gain : record.plan_gains) append_to(gains, by_rows(gain));
+    file_.append(kGainsPath, gains);
+  }
+  if (parts_.cost) file_.append("/plan/cost", cost_row(record.cost));
+  if (!parts_.status) return;
   file_.append("/plan/status", std::vector<std::string>{record.solver_status});
   file_.append("/plan/fallback", std::vector<std::int64_t>{record.fallback ? 1 : 0});
   file_.append("/plan/iterations", std::vector<std::int64_t>{record.iterations});

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "controller/control/controller.hpp"
 #include "harness/video/belief_shape.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/thinning.hpp"
@@ -74,8 +75,11 @@ EpisodeFrames::EpisodeFrames(const Trace& trace, const Overlays& overlays)
 std::string EpisodeFrames::heading() const {
   const Scenario& scenario = trace_.scenario;
   const bool closed = scenario.controller.policy == "closed_loop";
+  const bool planned = scenario.controller.kind == controller::controllers().front().name;
   return fmt::format("{}, {} plant, {}", scenario.name, scenario.plant.kind,
-                     closed ? "closed loop" : "open loop");
+                     !planned ? scenario.controller.kind
+                     : closed ? "closed loop"
+                              : "open loop");
 }
 
 render::World EpisodeFrames::world() const {
@@ -194,7 +198,7 @@ void EpisodeFrames::add_belief(const StepRecord& step, render::Frame& frame) con
     frame.particles = std::move(stages);
     if (every > 1) frame.hud.push_back({"particles drawn", every_nth(every)});
   }
-  if (raw_) add_raw_points(step, frame);
+  if (raw_ && !step.particles.empty()) add_raw_points(step, frame);
 }
 
 // As many as the particles leave room for, but at least a quarter of all: they would be none where

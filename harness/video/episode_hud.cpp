@@ -143,7 +143,7 @@ std::vector<render::StripChart> strip_charts(const Trace& trace,
   if (!system.inputs.empty()) {
     charts.push_back(input_chart(history, scenario.controller, system, 0));
   }
-  charts.push_back(cost_chart(history, ranges));
+  if (std::isfinite(trace.steps[step].cost.total())) charts.push_back(cost_chart(history, ranges));
   charts.push_back(solve_time_chart(history, scenario, ranges));
   if (system.inputs.size() > 1) {
     charts.push_back(input_chart(history, scenario.controller, system, 1));
@@ -154,7 +154,7 @@ std::vector<render::StripChart> strip_charts(const Trace& trace,
 std::vector<render::HudRow> hud_rows(const StepRecord& step, double time, double speed) {
   std::vector<render::HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
                                    {"speed", fmt::format("{:.2f} m/s", speed)}};
-  if (!step.certificates.empty()) {
+  if (!step.certificates.empty() && step.plan_states.cols() > 1) {
     rows.push_back(
         {"P(unsafe) whole plan", bound_text(controller::horizon_bound(step.certificates))});
   }

@@ -2,19 +2,18 @@
 
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/policy_maker.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
 controller::DiscreteMeasure noise_points(const Scenario& scenario) {
   const Eigen::MatrixXd& covariance = scenario.disturbance.covariance;
-  const Scenario::Controller& controller = scenario.controller;
-  if (!controller.propagate_noise) {
+  if (!decision_parts(scenario).noise) {
     return {controller::Points::Zero(covariance.rows(), 1), Eigen::VectorXd::Ones(1)};
   }
   const controller::Gaussian noise{Eigen::VectorXd::Zero(covariance.rows()), covariance};
-  return controller::quantise(noise, controller.quantisation.noise).measure;
+  return controller::quantise(noise, scenario.controller.quantisation.noise).measure;
 }
 
 }  // namespace
@@ -30,14 +29,24 @@ std::size_t RawPoints::count(const StepRecord& step) const {
   return static_cast<std::size_t>(count);
 }
 
-std::vector<controller::DiscreteMeasure> RawPoints::stages(const StepRecord& step) const {
-  std::vector<controller::DiscreteMeasure> stages;
-  if (step.particles.empty()) return stages;
-  controller::Policy policy;
+controller::Policy RawPoints::policy_of(const StepRecord& step) const {
+  controller::Policy policy{.inputs = step.plan_inputs,
+                            .states = step.plan_states,
+                            .gains = step.plan_gains,
+                            .bounds = settings_.bounds};
+  if (!policy.gains.empty()) return policy;
+  // An older trace, whose gains are those that belong to the inputs.
   const Eigen::MatrixXd no_change =
       Eigen::MatrixXd::Zero(dynamics_.input_dim(), dynamics_.state_dim());
   controller::PolicyMaker(dynamics_, settings_)
       .make(step.plan_states.col(0), step.plan_inputs, no_change, policy);
+  return policy;
+}
+
+std::vector<controller::DiscreteMeasure> RawPoints::stages(const StepRecord& step) const {
+  std::vector<controller::DiscreteMeasure> stages;
+  if (step.particles.empty()) return stages;
+  const controller::Policy policy = policy_of(step);
   for (std::size_t k = 0; k + 1 < step.particles.size(); ++k) {
     const controller::DiscreteMeasure& before = step.particles[k];
     controller::Points inputs(dynamics_.input_dim(), before.size());

@@ -6,6 +6,7 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/planning/planner_settings.hpp"
+#include "controller/prediction/policy.hpp"
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -20,13 +21,14 @@ class RawPoints {
   [[nodiscard]] std::size_t count(const StepRecord& step) const;
 
   /// Element k - 1: the stepped points f(c_i, u_i) of stage k - 1 under the plan's policy, each
-  /// with each point of the noise's product quantiser (or with none where the planner does not
-  /// propagate the noise), and the products of their weights. The gains are those that belong to
-  /// the plan's inputs; a change of gain that was optimised with them is not in the trace and is
-  /// left out. Empty for a step without particles. Const, and safe from several threads.
+  /// with each point of the noise's product quantiser (or with none where the controller does not
+  /// propagate the noise), and the products of their weights. Empty for a step without particles.
+  /// Const, and safe from several threads.
   [[nodiscard]] std::vector<controller::DiscreteMeasure> stages(const StepRecord& step) const;
 
  private:
+  [[nodiscard]] controller::Policy policy_of(const StepRecord& step) const;
+
   const models::Dynamics& dynamics_;
   controller::PlannerSettings settings_;
   controller::DiscreteMeasure noise_;

@@ -28,7 +28,7 @@
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
 #include "controller/prediction/prediction.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/executor.hpp"
 

@@ -25,7 +25,7 @@
 #include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/planning/planner.hpp"
 #include "controller/prediction/propagator.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/scenario/scenario_file.hpp"
 
 namespace qsmpc::testing {

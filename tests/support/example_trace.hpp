@@ -99,6 +99,8 @@ inline void add_example_plan(harness::StepRecord& step, const harness::Scenario&
                             .total = bound * 1.2,
                             .lipschitz = 1.0 + bound});
     if (s > 0) {
+      // Every entry another number: a transposed copy would show.
+      step.plan_gains.emplace_back(noise() * Eigen::RowVector3d(1.0, -2.0, 3.0));
       const double value = std::exp(-9.0 + static_cast<double>(s) + 2.0 * noise());
       step.certificates.push_back({.value = value,
                                    .kind = value < 1e-3 ? "c2" : "c1",

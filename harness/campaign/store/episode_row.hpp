@@ -41,8 +41,8 @@ struct EpisodeRow {
   double cost = 0.0;                       ///< Σ ½ |x − r|²_Q + |u|²_R
   double next_step_max = 0.0;              ///< of the certificates of the next step
   double next_step_sum = 0.0;
-  double horizon_max = 0.0;        ///< of the plans' sums over their stages
-  double thesis_max = 0.0;         ///< of the published value; not a bound
+  double horizon_max = 0.0;  ///< of the plans' sums over their stages; not a number without plans
+  double thesis_max = 0.0;   ///< of the published value; not a bound
   double iterations_median = 0.0;  ///< cost-and-gradient evaluations of a plan
   int fallbacks = 0;
   std::string trace{};    ///< folder of its trace, relative to the campaign's; empty: not kept

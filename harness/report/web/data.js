@@ -1,6 +1,6 @@
 // The data of the page: a JSON object of which long rows of numbers are packed as base64.
 //
-//   period, steps, horizon        s; how many periods were driven; stages of a plan
+//   period, steps, horizon        s; how many periods were driven; stages with a certificate
 //   times, solve                  one a period: s, ms
 //   clearance                     one a control instant (steps + 1)
 //   cost                          {part: one a period}

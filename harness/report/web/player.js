@@ -91,10 +91,10 @@ class MomentTable {
       this.set(input.name, `${formatNumber(input.values[k])} ${input.unit}`, "input");
     }
     this.set("P(unsafe) at the next step ≤", formatBound(data.certificates.value[stage]), "next");
-    this.set("P(unsafe) over the plan ≤", formatBound(data.certificates.plan[k]), "plan");
+    if (data.planned) this.set("P(unsafe) over the plan ≤", formatBound(data.certificates.plan[k]), "plan");
     this.set("Clearance", formatNumber(data.clearance[k]), "clearance");
     this.set("Solve time", `${formatNumber(data.solve[k])} ms`, "solve");
-    this.set("Solver", data.status[k] + (data.fallback[k] ? "; the last plan was kept" : ""), "status");
+    if (data.solved) this.set("Solver", data.status[k] + (data.fallback[k] ? "; the last plan was kept" : ""), "status");
     this.showCost(k);
   }
 
@@ -136,8 +136,8 @@ class Player {
     this.charts = data.charts.map((chart, i) => new LiveChart(
       figures[i], chart, alignedRows(chart),
       chart.xLabel.startsWith("time") ? (time) => this.seek(time) : null));
-    this.stages = Object.entries(kStageCharts).map(([id, kind]) =>
-      new StageChart(document.getElementById(id), data, kind));
+    this.stages = data.planned ? Object.entries(kStageCharts).map(([id, kind]) =>
+      new StageChart(document.getElementById(id), data, kind)) : [];
     this.listen();
     for (const part of document.querySelectorAll(".needs-script")) part.hidden = false;
     this.seek(0);

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/planning/planner.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/summary.hpp"
 

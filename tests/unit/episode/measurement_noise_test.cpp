@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/scenario/scenario_file.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/statistics/exceedance.hpp"
 #include "tests/support/executors.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "controller/planning/planner.hpp"
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/mismatch/path_ensemble.hpp"
 #include "harness/mismatch/plant_pool.hpp"
 #include "harness/plant/plant_registry.hpp"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/mismatch/horizon_comparison.hpp"
 #include "harness/prediction/prediction_report.hpp"
 #include "harness/threads/executor.hpp"

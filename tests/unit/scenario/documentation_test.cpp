@@ -33,7 +33,8 @@ TEST(Documentation, describes_every_key_that_a_resolved_scenario_has) {
   const std::string document = content_of(std::string(QSMPC_SOURCE_DIR) + "/docs/scenario.md");
   const Scenario scenario = parse_scenario(
       minimal_text,
-      {.overrides = {"controller.feedback_gain=[1, 2, 3]", "controller.deadline=1",
+      {.overrides = {"controller.kind=lqr", "controller.feedback_gain=[1, 2, 3]",
+                     "controller.deadline=1",
                      "model_error={mean: [0, 0, 0], covariance: [0, 0, 0], rms: [0, 0, 0], "
                      "norm4: [0, 0, 0], norm8: [0, 0, 0], offset: [0, 0, 0], radius: 0, "
                      "first: [{rms: [0, 0, 0]}]}"}});

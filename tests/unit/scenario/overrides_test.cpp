@@ -70,10 +70,23 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"one_too_many", "target.state.3=1", "target.state", "a list of 4", "3 numbers"},
         BadOverride{"indefinite", "initial_state.covariance=[1, 1, -1]", "initial_state.covariance",
                     "eigenvalue -1", "semidefinite"},
+        BadOverride{"controller", "controller.kind=quantized", "controller.kind", "quantized",
+                    "quantised (known: quantised, nominal, lqr)"},
+        BadOverride{"lqr_of_another", "controller.lqr.about=target", "controller.lqr.about",
+                    "target", "path, or controller.kind: lqr"},
+        BadOverride{"estimator", "estimator.kind=kalman", "estimator.kind", "kalman",
+                    "one of exact, last_measurement"},
         BadOverride{"bounding", "controller.input_bounding=sigmod", "controller.input_bounding",
                     "sigmod", "sigmoid (known: bounded, sigmoid"},
         BadOverride{"item", "target.state.0=north", "target.state.0", "north", "a finite number"}),
     [](const auto& test) { return test.param.name; });
+
+TEST(Overrides, an_exact_estimator_is_refused_with_measurement_noise) {
+  const InputError::Where where =
+      refusal_of(minimal_text, {"disturbance.sensor=[1, 1, 1]", "estimator.kind=exact"});
+  EXPECT_EQ(where.key, "estimator.kind");
+  EXPECT_THAT(where.expected, HasSubstr("last_measurement"));
+}
 
 TEST(Overrides, a_hostile_key_is_refused) {
   std::string key = "a";

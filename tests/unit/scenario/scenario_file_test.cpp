@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "controller/control/controller.hpp"
+#include "controller/estimation/estimator.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
@@ -40,6 +42,7 @@ void expect_equal(const Scenario& a, const Scenario& b) {
   EXPECT_EQ(a.target.state, b.target.state);
   EXPECT_EQ(a.target.radius, b.target.radius);
   EXPECT_EQ(a.target.angles, b.target.angles);
+  EXPECT_EQ(a.estimator.kind, b.estimator.kind);
   EXPECT_EQ(a.step_limit, b.step_limit);
   EXPECT_EQ(a.stop_when_unsafe, b.stop_when_unsafe);
   EXPECT_EQ(a.video.camera, b.video.camera);
@@ -50,6 +53,8 @@ void expect_equal(const Scenario& a, const Scenario& b) {
 }
 
 void expect_equal(const Scenario::Controller& a, const Scenario::Controller& b) {
+  EXPECT_EQ(a.kind, b.kind);
+  EXPECT_EQ(a.lqr_about, b.lqr_about);
   EXPECT_EQ(a.horizon, b.horizon);
   EXPECT_EQ(a.policy, b.policy);
   EXPECT_EQ(a.feedback_gain, b.feedback_gain);
@@ -97,6 +102,9 @@ TEST(ScenarioFile, what_is_left_out_gets_its_documented_default) {
   EXPECT_TRUE(scenario.safe_set.obstacles.empty());
   EXPECT_EQ(scenario.target.radius, 0.5);
   EXPECT_TRUE(scenario.target.angles.empty());
+  EXPECT_EQ(scenario.estimator.kind, "exact");
+  EXPECT_EQ(scenario.controller.kind, "quantised");
+  EXPECT_EQ(scenario.controller.lqr_about, "path");
   EXPECT_EQ(scenario.controller.horizon, 8);
   EXPECT_EQ(scenario.controller.quantisation.quantiser, "product");
   EXPECT_EQ(scenario.controller.propagator, "mixture");
@@ -205,6 +213,26 @@ TEST(ScenarioFile, every_controller_key_reaches_its_value) {
   EXPECT_EQ(controller.max_iterations, 31);
   EXPECT_EQ(controller.deadline, 0.075);
   EXPECT_EQ(controller.threads, 3);
+}
+
+TEST(ScenarioFile, every_controller_and_estimator_can_be_named) {
+  for (const controller::ControllerEntry& entry : controller::controllers()) {
+    const Scenario scenario = minimal_with({"controller.kind=" + entry.name});
+    EXPECT_EQ(scenario.controller.kind, entry.name);
+    expect_round_trip(scenario);
+  }
+  const Scenario about_target =
+      minimal_with({"controller.kind=lqr", "controller.lqr.about=target"});
+  EXPECT_EQ(about_target.controller.lqr_about, "target");
+  expect_round_trip(about_target);
+  for (const controller::EstimatorEntry& entry : controller::estimators()) {
+    const Scenario scenario = minimal_with({"estimator.kind=" + entry.name});
+    EXPECT_EQ(scenario.estimator.kind, entry.name);
+    expect_round_trip(scenario);
+  }
+  const Scenario noisy = minimal_with({"disturbance.sensor=[1, 1, 1]"});
+  EXPECT_EQ(noisy.estimator.kind, "last_measurement");
+  expect_round_trip(noisy);
 }
 
 // These do not go with an open loop, or with another solver, as the text above has them.

@@ -24,6 +24,10 @@ template <class Matrix>
 }
 
 inline void expect_same_stages(const harness::StepRecord& a, const harness::StepRecord& b) {
+  ASSERT_EQ(a.plan_gains.size(), b.plan_gains.size());
+  for (std::size_t s = 0; s < a.plan_gains.size(); ++s) {
+    EXPECT_TRUE(same_bits(a.plan_gains[s], b.plan_gains[s]));
+  }
   ASSERT_EQ(a.particles.size(), b.particles.size());
   for (std::size_t s = 0; s < a.particles.size(); ++s) {
     EXPECT_TRUE(same_bits(a.particles[s].locations, b.particles[s].locations));

@@ -1,4 +1,6 @@
-#include "harness/episode/assembly.hpp"
+#include "harness/assembly/assembly.hpp"
+
+#include <algorithm>
 
 #include "harness/threads/executor.hpp"
 
@@ -10,11 +12,13 @@ std::unique_ptr<const models::Dynamics> model_of(const Scenario& scenario) {
 }
 
 controller::PredictedMotion of_plant(controller::PredictedMotion motion, const Scenario& scenario,
-                                     Eigen::Index period) {
+                                     Eigen::Index period, BeliefOf belief) {
   if (!scenario.model_error) return motion;
   motion.model_error = &*scenario.model_error;
   motion.first_period = period;
-  if (period > 0) motion.belief_error = &scenario.model_error->of_period(period - 1);
+  if (period > 0 && belief == BeliefOf::kPrediction) {
+    motion.belief_error = &scenario.model_error->of_period(period - 1);
+  }
   return motion;
 }
 
@@ -51,5 +55,31 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
   settings.bounds = {.lower = controller.input_lower, .upper = controller.input_upper};
   return settings;
 }
+
+controller::ControllerSettings controller_settings(const Scenario& scenario) {
+  return {.problem = planner_settings(scenario),
+          .lqr_about = scenario.controller.lqr_about == "target" ? controller::LqrAbout::kTarget
+                                                                 : controller::LqrAbout::kPath};
+}
+
+controller::DecisionParts decision_parts(const Scenario& scenario) {
+  return controller::controller_entry(scenario.controller.kind)
+      .parts(controller_settings(scenario));
+}
+
+std::string controller_words(const Scenario& scenario) {
+  const Scenario::Controller& controller = scenario.controller;
+  std::string words;
+  if (controller.kind == "lqr") {
+    words = "lqr about the " + controller.lqr_about;
+  } else {
+    if (controller.kind != controller::controllers().front().name) words = controller.kind + ", ";
+    words += controller.policy == "closed_loop" ? "closed-loop policy" : "open-loop policy";
+  }
+  const int stages = decision_parts(scenario).stages;
+  return stages > 0 ? words + ", horizon " + std::to_string(stages) : words;
+}
+
+int certified_stages(const controller::DecisionParts& parts) { return std::max(parts.stages, 1); }
 
 }  // namespace qsmpc::harness
