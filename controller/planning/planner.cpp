@@ -38,14 +38,12 @@ const Plan& Planner::plan(const Gaussian& belief, Clock::time_point deadline) {
         std::chrono::duration<double>(settings_.deadline));
     plan.deadline = std::min(deadline, Clock::now() + longest);
   }
-  for (Plan& room : plans_) {
-    if (&room == last_) continue;
-    if (plan.current == nullptr) {
-      plan.current = &room;
-    } else if (plan.candidate == nullptr) {
-      plan.candidate = &room;
-    }
+  std::array<Plan*, 2> spare{};
+  for (std::size_t n = 0, to = 0; n < plans_.size() && to < spare.size(); ++n) {
+    if (&plans_[n] != last_) spare[to++] = &plans_[n];
   }
+  plan.current = spare[0];
+  plan.candidate = spare[1];
   PlanStopwatch stopwatch;
   evaluator_.take_belief(belief);
   stopwatch.add_to(plan.timing.quantise);

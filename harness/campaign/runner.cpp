@@ -131,7 +131,7 @@ class CampaignRun {
     const Trace trace = drivers_.run(campaign_.variants[task.variant].resolved, options);
     // What was cut short says nothing, and will be driven again.
     if (trace.outcome == Outcome::kInterrupted) return;
-    EpisodeRow row = episode_row(trace, store_.variant_ids()[task.variant]);
+    EpisodeRow row = episode_row(EpisodeView(trace), store_.variant_ids()[task.variant]);
     if (keeps_trace(task, row)) keep(trace, row);
     row.timing.wall_ms = 1e3 * seconds_since(start);
     row.timing.finished_at = unix_time();

@@ -97,12 +97,12 @@ void make_still(const Trace& trace, const std::string& path, const EpisodeVideoO
   if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n", render::gl_description());
 }
 
-void write_summary(const Trace& trace, const std::string& folder, bool with_video) {
+void write_summary(const EpisodeView& view, const std::string& folder, bool with_video) {
   write_file(in_folder(folder, kSummaryFile),
-             summary_json(trace, {.video_file = with_video ? kVideoFile : ""}));
+             summary_json(view, {.video_file = with_video ? kVideoFile : ""}));
 }
 
-void write_page(const Trace& trace, const std::string& folder, bool with_video) {
+void write_page(const EpisodeView& view, const std::string& folder, bool with_video) {
   EpisodePageOptions options{.video_file = with_video ? kVideoFile : ""};
   const std::string numbers = in_folder(folder, kVideoNumbersFile);
   std::error_code ignored;
@@ -116,11 +116,12 @@ void write_page(const Trace& trace, const std::string& folder, bool with_video) 
         video.frames, video.frames_per_second(), video.drawing_ms, video.encoding_ms,
         video.simulation_ms);
   }
-  write_file(in_folder(folder, kPageFile), episode_page(trace, options));
+  write_file(in_folder(folder, kPageFile), episode_page(view, options));
 }
 
-std::string summary_table(const Trace& trace, const std::string& folder, bool with_video) {
-  const Summary summary = summarise(trace);
+std::string summary_table(const EpisodeView& view, const std::string& folder, bool with_video) {
+  const Trace& trace = view.trace();
+  const Summary& summary = view.summary();
   std::string text = fmt::format("{} (seed {}): {}\n", printable(trace.scenario.name), trace.seed,
                                  outcome_name(trace.outcome));
   text += row("steps", fmt::format("{}", summary.steps));

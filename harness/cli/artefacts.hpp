@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "harness/trace/episode_view.hpp"
 #include "harness/trace/trace.hpp"
 #include "harness/video/episode_video.hpp"
 
@@ -46,13 +47,13 @@ void make_still(const Trace& trace, const std::string& path, const EpisodeVideoO
                 double time, const VideoTalk& talk);
 
 /// Writes summary.json. Throws IoError.
-void write_summary(const Trace& trace, const std::string& folder, bool with_video);
+void write_summary(const EpisodeView& view, const std::string& folder, bool with_video);
 
 /// Writes report.html. Throws IoError.
-void write_page(const Trace& trace, const std::string& folder, bool with_video);
+void write_page(const EpisodeView& view, const std::string& folder, bool with_video);
 
 /// The summary as a table for a terminal, with the paths of the files.
-[[nodiscard]] std::string summary_table(const Trace& trace, const std::string& folder,
+[[nodiscard]] std::string summary_table(const EpisodeView& view, const std::string& folder,
                                         bool with_video);
 
 /// Reads the trace in `folder`, or its partial file where an episode was killed. Throws InputError.

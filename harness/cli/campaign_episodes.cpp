@@ -105,7 +105,7 @@ ListedEpisode listed(const StoreReader& store, const EpisodeRow& row, const std:
 
 /// Says so where an episode did not end as it did in the campaign.
 void compare_with_store(const Trace& trace, const EpisodeRow& stored) {
-  const EpisodeRow now = episode_row(trace, stored.variant);
+  const EpisodeRow now = episode_row(EpisodeView(trace), stored.variant);
   const auto same = [](double one, double other) {
     return one == other || (std::isnan(one) && std::isnan(other));
   };
@@ -159,8 +159,9 @@ void make_artefacts(const Trace& trace, const std::string& target, bool quiet) {
                video_options(trace.scenario), {.quiet = quiet});
     with_video = true;
   }
-  write_summary(trace, target, with_video);
-  write_page(trace, target, with_video);
+  const EpisodeView view(trace);
+  write_summary(view, target, with_video);
+  write_page(view, target, with_video);
 }
 
 }  // namespace

@@ -58,8 +58,9 @@ int report(const ReportArguments& arguments) {
     write_file(folder + "/" + kPageFile, comparison_page(comparison));
   } else {
     const Trace trace = read_folder(folder);
-    write_page(trace, folder, has(folder, kVideoFile));
-    if (arguments.figures) figures = episode_figures(trace);
+    const EpisodeView view(trace);
+    write_page(view, folder, has(folder, kVideoFile));
+    if (arguments.figures) figures = episode_figures(view);
   }
   std::string paths = folder + "/" + kPageFile + "\n";
   if (arguments.figures) {

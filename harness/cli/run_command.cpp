@@ -83,7 +83,8 @@ int run(const RunArguments& arguments) {
 
   const Trace trace = drive(scenario, seed, folder, arguments.quiet);
   discard_artefacts(folder);  // those of an earlier run, which this trace is not the source of
-  write_summary(trace, folder, /*with_video=*/false);
+  const EpisodeView view(trace);
+  write_summary(view, folder, /*with_video=*/false);
   if (trace.outcome == Outcome::kFault) {
     std::cerr << "qsmpc: the plant broke: " << printable(trace.fault, 1000) << '\n';
   }
@@ -96,14 +97,14 @@ int run(const RunArguments& arguments) {
     make_video(trace,
                {.video = folder + "/" + kVideoFile, .numbers = folder + "/" + kVideoNumbersFile},
                video_options(scenario), {.quiet = arguments.quiet, .verbose = arguments.verbose});
-    write_summary(trace, folder, with_video);
+    write_summary(view, folder, with_video);
   }
-  write_page(trace, folder, with_video);
+  write_page(view, folder, with_video);
 
-  print_result(arguments.json ? summary_json(trace, {.video_file = with_video ? kVideoFile : ""})
-                              : summary_table(trace, folder, with_video));
+  print_result(arguments.json ? summary_json(view, {.video_file = with_video ? kVideoFile : ""})
+                              : summary_table(view, folder, with_video));
   if (trace.outcome == Outcome::kInterrupted) return kInterruptedExit;
-  return asked_to_tell(arguments.fail_on, summarise(trace)) ? kToldFailure : kDone;
+  return asked_to_tell(arguments.fail_on, view.summary()) ? kToldFailure : kDone;
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "harness/mismatch/closed_loop.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <stdexcept>
 
@@ -9,9 +10,7 @@
 #include "harness/mismatch/horizon_comparison.hpp"
 #include "harness/statistics/exceedance.hpp"
 #include "harness/statistics/sample_statistics.hpp"
-#include "harness/trace/residuals.hpp"
 #include "harness/trace/rows.hpp"
-#include "harness/trace/summary.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -32,8 +31,9 @@ PeriodTallies tallies_of(const std::vector<EpisodeResult>& episodes) {
 
 }  // namespace
 
-EpisodeResult episode_result(const Trace& trace, const models::Dynamics& model) {
-  const Summary summary = summarise(trace);
+EpisodeResult episode_result(const EpisodeView& view) {
+  const Trace& trace = view.trace();
+  const Summary& summary = view.summary();
   EpisodeResult result{.seed = trace.seed,
                        .outcome = summary.outcome,
                        .fault = trace.fault,
@@ -41,24 +41,21 @@ EpisodeResult episode_result(const Trace& trace, const models::Dynamics& model) 
                        .unsafe = summary.collision,
                        .min_clearance = summary.min_clearance,
                        .cost = summary.closed_loop_cost,
-                       .residuals = one_step_residuals(trace, model),
-                       .magnitude = Eigen::VectorXd::Zero(model.state_dim())};
-  const Eigen::MatrixXd states = true_states(trace);
+                       .residuals = view.residuals(),
+                       .magnitude = Eigen::VectorXd::Zero(std::ssize(view.system().states))};
+  const Eigen::MatrixXd& states = view.states();
   if (states.cols() > 0) result.magnitude = states.cwiseAbs().rowwise().maxCoeff();
   for (Eigen::Index k = 0; k < result.residuals.cols(); ++k) {
     const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
     if (step.certificates.empty()) continue;
     result.certified.push_back(step.certificates.front().value);
-    result.unsafe_next.push_back(
-        controller::clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0);
+    result.unsafe_next.push_back(view.ended_unsafe(k));
   }
   return result;
 }
 
 std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count,
                                         const controller::Executor& run, SharedWork& work) {
-  const auto model =
-      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   std::vector<EpisodeResult> results(static_cast<std::size_t>(count));
   DriverPool drivers(static_cast<std::size_t>(count));
   run(count, [&](int n) {
@@ -66,7 +63,8 @@ std::vector<EpisodeResult> run_episodes(const Scenario& scenario, int count,
     EpisodeOptions options;
     options.seed = scenario.seed + static_cast<std::uint64_t>(n);
     options.should_stop = [&work] { return work.stopped(); };
-    results[static_cast<std::size_t>(n)] = episode_result(drivers.run(scenario, options), *model);
+    results[static_cast<std::size_t>(n)] =
+        episode_result(EpisodeView(drivers.run(scenario, options)));
     work.advance();
   });
   return results;

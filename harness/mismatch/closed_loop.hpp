@@ -12,7 +12,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/statistics/binomial_interval.hpp"
 #include "harness/threads/shared_work.hpp"
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -34,8 +34,8 @@ struct EpisodeResult {
   std::vector<char> unsafe_next{};
 };
 
-/// `model` is the planner's.
-[[nodiscard]] EpisodeResult episode_result(const Trace& trace, const models::Dynamics& model);
+/// What a comparison keeps of an episode.
+[[nodiscard]] EpisodeResult episode_result(const EpisodeView& view);
 
 /// Episodes of `scenario` with the seeds seed, seed + 1, …, one a unit of `work`, the same for
 /// whatever `run`. Throws as run_episode. Not complete if `work` was stopped.

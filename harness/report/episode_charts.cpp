@@ -12,7 +12,6 @@
 #include "controller/planning/safe_set.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
-#include "harness/trace/residuals.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -60,19 +59,19 @@ Chart input_chart(const Trace& trace, const models::SystemDescription& system, E
 
 /// The periods that ended unsafe, as marks at probability 1, each at its beginning, where the
 /// certificate stands that spoke of it.
-Series unsafe_periods(const Trace& trace) {
+Series unsafe_periods(const EpisodeView& view) {
   Series series{
       .name = "observed: the period ended unsafe", .colour = kOrange, .mark = Mark::kPoints};
-  const Eigen::MatrixXd states = true_states(trace);
-  for (Eigen::Index k = 0; k < completed_periods(trace); ++k) {
-    if (!(controller::clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0)) continue;
-    series.x.push_back(trace.steps[static_cast<std::size_t>(k)].time);
+  for (Eigen::Index k = 0; k < view.periods(); ++k) {
+    if (!view.ended_unsafe(k)) continue;
+    series.x.push_back(view.trace().steps[static_cast<std::size_t>(k)].time);
     series.y.push_back(1.0);
   }
   return series;
 }
 
-Chart certificate_chart(const Trace& trace, const controller::DecisionParts& parts) {
+Chart certificate_chart(const EpisodeView& view) {
+  const Trace& trace = view.trace();
   const auto next_step = [](const StepRecord& step) {
     return step.certificates.empty() ? kNotANumber : step.certificates.front().value;
   };
@@ -93,45 +92,46 @@ Chart certificate_chart(const Trace& trace, const controller::DecisionParts& par
               .y_scale = Scale::kLog,
               .y_includes = {1.0},
               .series = {series_of(trace, "next step", kBlue, next_step)}};
-  if (parts.stages > 0) {
+  if (view.parts().stages > 0) {
     chart.series.push_back(series_of(trace, "plan: sum over its stages", kVermilion, plan));
   }
   chart.series.push_back(
       series_of(trace, "published method, worst stage: not a bound", kPurple, thesis));
   chart.series.back().dashed = true;
-  Series observed = unsafe_periods(trace);
+  Series observed = unsafe_periods(view);
   chart.note = fmt::format("Observed: {} of {} periods ended unsafe. {}", observed.x.size(),
-                           completed_periods(trace), chart.note);
+                           view.periods(), chart.note);
   if (!observed.x.empty()) chart.series.push_back(std::move(observed));
   return chart;
 }
 
-Chart clearance_chart(const Trace& trace, const models::SystemDescription& system) {
-  const controller::SafeSet& safe_set = trace.scenario.safe_set;
-  const auto of = [&safe_set](const Eigen::VectorXd& state) {
-    return state.size() == safe_set.dim() ? controller::clearance(state, safe_set) : kNotANumber;
-  };
-  Series series = series_of(trace, "true state", kBlue,
-                            [&of](const StepRecord& step) { return of(step.state); });
-  if (!trace.steps.empty() && trace.final_state.size() > 0) {
-    series.x.push_back(series.x.back() + trace.scenario.time_step);
-    series.y.push_back(of(trace.final_state));
+Chart clearance_chart(const EpisodeView& view) {
+  const Trace& trace = view.trace();
+  Series series{.name = "true state", .colour = kBlue, .x = times_of(trace)};
+  series.y.assign(view.clearances().begin(), view.clearances().end());
+  if (series.y.size() > series.x.size()) {
+    if (trace.steps.empty()) {
+      series.y.clear();
+    } else {
+      series.x.push_back(series.x.back() + trace.scenario.time_step);
+    }
   }
   return {.title = "Clearance: distance to the unsafe set",
           .x_label = kTimeLabel,
-          .y_label = "clearance (" + clearance_unit(safe_set, system) + ")",
+          .y_label = "clearance (" + clearance_unit(trace.scenario.safe_set, view.system()) + ")",
           .series = {std::move(series)},
           .rules = {{"edge of the unsafe set", 0.0}}};
 }
 
-Chart budget_chart(const Trace& trace, const controller::DecisionParts& parts) {
+Chart budget_chart(const EpisodeView& view) {
+  const Trace& trace = view.trace();
   const auto last = [](auto part) {
     return [part](const StepRecord& step) {
       return step.budgets.empty() ? kNotANumber : step.budgets.back().*part;
     };
   };
   Chart chart{
-      .title = fmt::format("Error budget at the last stage ({})", certified_stages(parts)),
+      .title = fmt::format("Error budget at the last stage ({})", certified_stages(view.parts())),
       .note =
           "Bound of the 2-Wasserstein distance between the model's law and its particles; what "
           "each source alone would give, and their total.",
@@ -243,17 +243,18 @@ Chart solve_time_histogram(const Trace& trace) {
 
 }  // namespace
 
-std::vector<Chart> episode_charts(const Trace& trace, const models::SystemDescription& system) {
-  const controller::DecisionParts parts = decision_parts(trace.scenario);
+std::vector<Chart> episode_charts(const EpisodeView& view) {
+  const Trace& trace = view.trace();
+  const models::SystemDescription& system = view.system();
   std::vector<Chart> charts;
-  charts.push_back(certificate_chart(trace, parts));
-  charts.push_back(clearance_chart(trace, system));
+  charts.push_back(certificate_chart(view));
+  charts.push_back(clearance_chart(view));
   for (Eigen::Index input = 0; input < std::ssize(system.inputs); ++input) {
     charts.push_back(input_chart(trace, system, input));
   }
   charts.push_back(timing_chart(trace));
-  if (parts.cost) charts.push_back(cost_chart(trace));
-  charts.push_back(budget_chart(trace, parts));
+  if (view.parts().cost) charts.push_back(cost_chart(trace));
+  charts.push_back(budget_chart(view));
   const double end = static_cast<double>(trace.steps.size()) * trace.scenario.time_step;
   for (Chart& chart : charts) chart.x_includes = {0.0, end};
   charts.push_back(solve_time_histogram(trace));

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "harness/figures/svg_chart.hpp"
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -13,8 +13,7 @@ namespace qsmpc::harness {
 /// Over time: certificates with what was observed, clearance, each input against its bounds, solve
 /// time, parts of the cost, error budget; and the histogram of the solve times. Of a trace without
 /// steps, they have no points.
-[[nodiscard]] std::vector<Chart> episode_charts(const Trace& trace,
-                                                const models::SystemDescription& system);
+[[nodiscard]] std::vector<Chart> episode_charts(const EpisodeView& view);
 
 /// The unit of distances to the unsafe set: that of the states which the safe set restricts, or
 /// "state units" where they differ.

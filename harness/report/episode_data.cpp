@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 
 #include "controller/certification/certificate.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
@@ -31,10 +30,11 @@ double entry(const Eigen::VectorXd& values, Eigen::Index index) {
 
 class EpisodeData {
  public:
-  EpisodeData(const Trace& trace, const models::SystemDescription& system)
-      : trace_(trace),
-        system_(system),
-        parts_(decision_parts(trace.scenario)),
+  explicit EpisodeData(const EpisodeView& view)
+      : view_(view),
+        trace_(view.trace()),
+        system_(view.system()),
+        parts_(view.parts()),
         horizon_(certified_stages(parts_)) {}
 
   /// What is known of a system whatever its states.
@@ -87,13 +87,10 @@ class EpisodeData {
     return states;
   }
 
+  /// Of the states above.
   [[nodiscard]] std::string clearances() const {
-    const controller::SafeSet& safe_set = trace_.scenario.safe_set;
-    std::vector<double> values;
-    for (const Eigen::VectorXd& state : states()) {
-      values.push_back(state.size() == safe_set.dim() ? controller::clearance(state, safe_set)
-                                                      : kNotANumber);
-    }
+    std::vector<double> values(view_.clearances().begin(), view_.clearances().end());
+    values.resize(trace_.steps.size() + 1, kNotANumber);
     return packed_floats(values);
   }
 
@@ -276,6 +273,7 @@ class EpisodeData {
             {"sizes", packed_bytes(sizes)}};
   }
 
+  const EpisodeView& view_;
   const Trace& trace_;
   const models::SystemDescription& system_;
   controller::DecisionParts parts_;
@@ -303,9 +301,8 @@ std::string for_script(const Json& json) {
 
 }  // namespace
 
-std::string episode_data(const Trace& trace, const models::SystemDescription& system,
-                         const PageScene& scene) {
-  const EpisodeData data(trace, system);
+std::string episode_data(const EpisodeView& view, const PageScene& scene) {
+  const EpisodeData data(view);
   Json json = data.periods();
   json["charts"] = Json::array();
   for (const Chart& chart : scene.charts) json["charts"].push_back(chart_data(chart));

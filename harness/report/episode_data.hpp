@@ -6,7 +6,7 @@
 
 #include "harness/figures/plane_map.hpp"
 #include "harness/figures/svg_chart.hpp"
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -23,7 +23,6 @@ struct PageScene {
 /// packed (packed_numbers.hpp); web/data.js says what each means. Where all periods together have
 /// more particles than a page should hold, every n-th of a stage is left, and "particles.stride"
 /// is n.
-[[nodiscard]] std::string episode_data(const Trace& trace, const models::SystemDescription& system,
-                                       const PageScene& scene);
+[[nodiscard]] std::string episode_data(const EpisodeView& view, const PageScene& scene);
 
 }  // namespace qsmpc::harness

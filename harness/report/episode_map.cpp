@@ -20,8 +20,7 @@ constexpr int kLastStageColour = kOrange;
 
 class EpisodeMap {
  public:
-  EpisodeMap(const Trace& trace, const models::SystemDescription& system)
-      : trace_(trace), system_(system) {}
+  explicit EpisodeMap(const EpisodeView& view) : trace_(view.trace()), system_(view.system()) {}
 
   [[nodiscard]] PlaneMap map() const {
     PlaneMap map = ground();
@@ -130,18 +129,15 @@ class EpisodeMap {
 
 }  // namespace
 
-PlaneMap episode_ground(const Trace& trace, const models::SystemDescription& system) {
-  return EpisodeMap(trace, system).ground_of_drive();
+PlaneMap episode_ground(const EpisodeView& view) { return EpisodeMap(view).ground_of_drive(); }
+
+std::optional<PlaneMap> episode_plane_map(const EpisodeView& view) {
+  if (!has_position(view.system())) return std::nullopt;
+  return EpisodeMap(view).map();
 }
 
-std::optional<PlaneMap> episode_plane_map(const Trace& trace,
-                                          const models::SystemDescription& system) {
-  if (!has_position(system)) return std::nullopt;
-  return EpisodeMap(trace, system).map();
-}
-
-std::string episode_map(const Trace& trace, const models::SystemDescription& system) {
-  const std::optional<PlaneMap> map = episode_plane_map(trace, system);
+std::string episode_map(const EpisodeView& view) {
+  const std::optional<PlaneMap> map = episode_plane_map(view);
   return map ? map_figure(*map) : std::string();
 }
 

@@ -16,8 +16,6 @@
 #include "harness/report/key_figures.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/text/html.hpp"
-#include "harness/trace/summary.hpp"
-#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -117,9 +115,10 @@ constexpr std::string_view kStageCharts =
     "and "
     "its particles, and what each source alone would give.</p>\n</figure>\n";
 
-std::string drive(const Trace& trace, const PlaneMap* map, const EpisodePageOptions& options) {
+std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodePageOptions& options) {
+  const Trace& trace = view.trace();
   if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(kMeaning);
-  const controller::DecisionParts parts = decision_parts(trace.scenario);
+  const controller::DecisionParts& parts = view.parts();
   const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
   return fmt::format(
       "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
@@ -149,34 +148,29 @@ std::string ending(const Trace& trace) {
 
 }  // namespace
 
-std::string episode_page(const Trace& trace, const EpisodePageOptions& options) {
-  const Scenario& scenario = trace.scenario;
-  const auto model =
-      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const models::SystemDescription& system = model->description();
-  const Summary summary = summarise(trace);
+std::string episode_page(const EpisodeView& view, const EpisodePageOptions& options) {
+  const Trace& trace = view.trace();
   const std::vector<Chart> charts =
-      trace.steps.empty() ? std::vector<Chart>{} : episode_charts(trace, system);
+      trace.steps.empty() ? std::vector<Chart>{} : episode_charts(view);
   std::optional<PlaneMap> map;
-  if (has_position(system)) map = episode_ground(trace, system);
+  if (has_position(view.system())) map = episode_ground(view);
   const PlaneMap* const shown = map ? &*map : nullptr;
 
-  std::string html = page_head(scenario.name + ": episode", PageScripts::kEpisode);
+  std::string html = page_head(trace.scenario.name + ": episode", PageScripts::kEpisode);
   html += introduction(trace);
-  html += outcome_html(trace, summary);
-  html += key_figures_html(trace, summary, system);
-  html += drive(trace, shown, options);
-  html += charts_html(charts, episode_map(trace, system));
+  html += outcome_html(view);
+  html += key_figures_html(view);
+  html += drive(view, shown, options);
+  html += charts_html(charts, episode_map(view));
   html += kMismatchNote;
-  html += mismatch_html(summary, system);
+  html += mismatch_html(view);
   html += ending(trace);
   if (!trace.steps.empty()) {
     html += "<script type=\"application/json\" id=\"episode-data\">" +
-            episode_data(trace, system,
-                         {.charts = charts,
-                          .map = shown,
-                          .video_from = options.video_from,
-                          .video_speed = options.video_speed}) +
+            episode_data(view, {.charts = charts,
+                                .map = shown,
+                                .video_from = options.video_from,
+                                .video_speed = options.video_speed}) +
             "</script>\n" + page_scripts();
   }
   return html + page_foot(trace.version);

@@ -9,7 +9,7 @@
 
 #include <string>
 
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 
 namespace qsmpc::harness {
 
@@ -22,6 +22,6 @@ struct EpisodePageOptions {
 
 /// The page as UTF-8 text. A trace without steps gives a page that says why. Throws
 /// std::invalid_argument if the trace's system is unknown.
-[[nodiscard]] std::string episode_page(const Trace& trace, const EpisodePageOptions& options);
+[[nodiscard]] std::string episode_page(const EpisodeView& view, const EpisodePageOptions& options);
 
 }  // namespace qsmpc::harness

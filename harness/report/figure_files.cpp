@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/figures/pdf_figure.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/report/campaign_charts.hpp"
@@ -74,14 +73,12 @@ std::string figure_name(const std::string& title) {
   return name.empty() ? "figure" : name;
 }
 
-std::vector<FigureFile> episode_figures(const Trace& trace) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(trace.scenario);
-  const models::SystemDescription& system = model->description();
+std::vector<FigureFile> episode_figures(const EpisodeView& view) {
   std::vector<FigureFile> figures;
-  if (std::optional<PlaneMap> map = episode_plane_map(trace, system)) {
+  if (std::optional<PlaneMap> map = episode_plane_map(view)) {
     figures.push_back({.name = "map", .panels = {std::move(*map)}});
   }
-  for (Chart& chart : episode_charts(trace, system)) {
+  for (Chart& chart : episode_charts(view)) {
     const std::string name = free_name(figures, figure_name(chart.title));
     figures.push_back({.name = name, .panels = {std::move(chart)}});
   }

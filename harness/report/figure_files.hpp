@@ -9,7 +9,7 @@
 #include "harness/campaign/statistics/statistics.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/mismatch/comparison.hpp"
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 
 namespace qsmpc::harness {
 
@@ -25,7 +25,7 @@ struct FigureFile {
 /// "map", of a system with a position in the plane, and each chart along the drive, named by the
 /// first words of its title: "certificates", "clearance", "input-yaw-rate",
 /// "solve-time", "expected-cost", "error-budget", …
-[[nodiscard]] std::vector<FigureFile> episode_figures(const Trace& trace);
+[[nodiscard]] std::vector<FigureFile> episode_figures(const EpisodeView& view);
 
 /// "residuals", "divergence", "w2", "certificates".
 [[nodiscard]] std::vector<FigureFile> figures_of(const Comparison& comparison);

@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/report/episode_charts.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
@@ -180,7 +179,9 @@ std::string safety_sentence(const Trace& trace, const Summary& summary) {
 
 }  // namespace
 
-std::string outcome_html(const Trace& trace, const Summary& summary) {
+std::string outcome_html(const EpisodeView& view) {
+  const Trace& trace = view.trace();
+  const Summary& summary = view.summary();
   const Ending ending = ending_of(trace, summary);
   const char* sign = ending.verdict == Verdict::kGood  ? "✓"
                      : ending.verdict == Verdict::kBad ? "✕"
@@ -195,11 +196,12 @@ std::string outcome_html(const Trace& trace, const Summary& summary) {
   return html + "</section>\n";
 }
 
-std::string key_figures_html(const Trace& trace, const Summary& summary,
-                             const models::SystemDescription& system) {
-  const controller::DecisionParts parts = decision_parts(trace.scenario);
+std::string key_figures_html(const EpisodeView& view) {
+  const Trace& trace = view.trace();
+  const Summary& summary = view.summary();
+  const controller::DecisionParts& parts = view.parts();
   std::vector<Tile> tiles = {time_tile(summary), unsafe_tile(trace, summary),
-                             clearance_tile(trace, summary, system),
+                             clearance_tile(trace, summary, view.system()),
                              bound_tile(summary, "Largest next-step certificate",
                                         summary.next_step_max, "upper bound of a probability"),
                              bound_tile(summary, "Sum of next-step certificates",
@@ -221,7 +223,9 @@ std::string key_figures_html(const Trace& trace, const Summary& summary,
   return html + "</dl>\n";
 }
 
-std::string mismatch_html(const Summary& summary, const models::SystemDescription& system) {
+std::string mismatch_html(const EpisodeView& view) {
+  const Summary& summary = view.summary();
+  const models::SystemDescription& system = view.system();
   if (summary.steps == 0) return "<p class=\"empty\">No step was made.</p>\n";
   std::string html =
       "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">state</th>"

@@ -15,8 +15,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/executor.hpp"
 #include "harness/threads/workers.hpp"
-#include "harness/trace/residuals.hpp"
-#include "harness/trace/summary.hpp"
+#include "harness/trace/episode_view.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -28,7 +27,8 @@ std::string label_of(const Variant& variant) {
 }
 
 EpisodeDigest digest_of(const Trace& trace) {
-  const Summary summary = summarise(trace);
+  const EpisodeView view(trace);
+  const Summary& summary = view.summary();
   EpisodeDigest digest{.seed = trace.seed,
                        .outcome = summary.outcome,
                        .unsafe = summary.collision,
@@ -36,7 +36,7 @@ EpisodeDigest digest_of(const Trace& trace) {
                        .cost = summary.closed_loop_cost,
                        .min_clearance = summary.min_clearance,
                        .timing = summary.breakdown};
-  digest.states = true_states(trace);
+  digest.states = view.states();
   digest.inputs.resize(trace.scenario.controller.input_lower.size(), std::ssize(trace.steps));
   for (std::size_t k = 0; k < trace.steps.size(); ++k) {
     const StepRecord& step = trace.steps[k];

@@ -1,21 +1,17 @@
 #include "harness/trace/summary.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "controller/planning/cost/angular_target.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
-#include "harness/assembly/assembly.hpp"
 #include "harness/text/json_text.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "harness/trace/json_values.hpp"
-#include "harness/trace/residuals.hpp"
 #include "models/constants.hpp"
-#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -35,12 +31,10 @@ double median_over_steps(const Trace& trace, const Value& value) {
   return over_steps(trace, value).median;
 }
 
-void add_clearance(const Trace& trace, Summary& summary) {
-  summary.min_clearance = std::numeric_limits<double>::infinity();
-  const Eigen::MatrixXd states = true_states(trace);
-  for (const auto& state : states.colwise()) {
-    summary.min_clearance =
-        std::min(summary.min_clearance, controller::clearance(state, trace.scenario.safe_set));
+void add_clearance(const EpisodeView& view, Summary& summary) {
+  summary.min_clearance = kInfinity;
+  for (const double clearance : view.clearances()) {
+    summary.min_clearance = std::min(summary.min_clearance, clearance);
   }
   summary.collision = summary.min_clearance <= 0.0;
 }
@@ -77,7 +71,8 @@ void add_timing(const Trace& trace, Summary& summary) {
       median_over_steps(trace, [](const auto& s) { return static_cast<double>(s.iterations); });
 }
 
-void add_certificates(const Trace& trace, Summary& summary) {
+void add_certificates(const EpisodeView& view, Summary& summary) {
+  const Trace& trace = view.trace();
   for (const StepRecord& step : trace.steps) {
     if (step.certificates.empty()) continue;
     const double next = step.certificates.front().value;
@@ -89,16 +84,13 @@ void add_certificates(const Trace& trace, Summary& summary) {
       summary.thesis_max = std::max(summary.thesis_max, certificate.thesis);
     }
   }
-  if (decision_parts(trace.scenario).stages == 0) summary.horizon_max = kNotANumber;
+  if (view.parts().stages == 0) summary.horizon_max = kNotANumber;
   if (summary.steps > 0) summary.next_step_mean = summary.next_step_sum / summary.steps;
 }
 
-void add_mismatch(const Trace& trace, Summary& summary) {
-  const Scenario& scenario = trace.scenario;
-  const auto model =
-      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const int dim = model->state_dim();
-  const Eigen::MatrixXd residuals = one_step_residuals(trace, *model);
+void add_mismatch(const EpisodeView& view, Summary& summary) {
+  const Eigen::MatrixXd& residuals = view.residuals();
+  const Eigen::Index dim = residuals.rows();
   summary.mismatch_mean = Eigen::VectorXd::Zero(dim);
   summary.mismatch_rmse = Eigen::VectorXd::Zero(dim);
   summary.mismatch_covariance = Eigen::MatrixXd::Zero(dim, dim);
@@ -125,7 +117,8 @@ nlohmann::ordered_json timing_json(const Summary& summary) {
 
 }  // namespace
 
-Summary summarise(const Trace& trace) {
+Summary summarise(const EpisodeView& view) {
+  const Trace& trace = view.trace();
   Summary summary;
   summary.scenario = trace.scenario.name;
   summary.seed = trace.seed;
@@ -138,16 +131,16 @@ Summary summarise(const Trace& trace) {
   if (trace.outcome == Outcome::kReached) {
     summary.time_to_target = summary.steps * trace.scenario.time_step;
   }
-  add_clearance(trace, summary);
+  add_clearance(view, summary);
   add_cost(trace, summary);
   add_timing(trace, summary);
-  add_certificates(trace, summary);
-  add_mismatch(trace, summary);
+  add_certificates(view, summary);
+  add_mismatch(view, summary);
   return summary;
 }
 
-std::string summary_json(const Trace& trace, const SummaryOptions& options) {
-  const Summary summary = summarise(trace);
+std::string summary_json(const EpisodeView& view, const SummaryOptions& options) {
+  const Summary& summary = view.summary();
   nlohmann::ordered_json json;
   json["scenario"] = summary.scenario;
   json["seed"] = summary.seed;

@@ -42,8 +42,10 @@ struct Summary {
   Eigen::MatrixXd mismatch_covariance;
 };
 
-/// Throws std::invalid_argument if the trace's system is unknown.
-[[nodiscard]] Summary summarise(const Trace& trace);
+class EpisodeView;
+
+/// Of all that the view has besides. Pages and files take the view's own.
+[[nodiscard]] Summary summarise(const EpisodeView& view);
 
 struct SummaryOptions {
   std::string video_file{};  ///< beside the summary; empty: none
@@ -51,6 +53,6 @@ struct SummaryOptions {
 
 /// `summary.json`: stable keys, one object, ending in a new line. Numbers that are not finite are
 /// null.
-[[nodiscard]] std::string summary_json(const Trace& trace, const SummaryOptions& options = {});
+[[nodiscard]] std::string summary_json(const EpisodeView& view, const SummaryOptions& options = {});
 
 }  // namespace qsmpc::harness

@@ -13,7 +13,7 @@
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
-#include "harness/trace/summary.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "tests/support/effort.hpp"
 
 namespace qsmpc::harness {
@@ -120,7 +120,7 @@ TEST_P(ThesisExperiments, reach_the_target_without_entering_the_unsafe_set) {
   std::string others;
   for (int seed = 0; seed < seeds; ++seed) {
     const Summary summary =
-        summarise(run_episode(scenario, {.seed = static_cast<std::uint64_t>(seed)}));
+        EpisodeView(run_episode(scenario, {.seed = static_cast<std::uint64_t>(seed)})).summary();
     const bool well = summary.outcome == outcome_name(Outcome::kReached) && !summary.collision;
     if (well) ++reached;
     if (!well) others += ' ' + std::to_string(seed) + ' ' + summary.outcome;

@@ -4,33 +4,28 @@
 
 #include <fmt/format.h>
 
-#include "controller/planning/safe_set.hpp"
-#include "harness/trace/residuals.hpp"
 #include "harness/trace/summary.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
-std::vector<PeriodRow> period_rows(const Trace& trace) {
+std::vector<PeriodRow> period_rows(const EpisodeView& view) {
   std::vector<PeriodRow> rows;
-  const Eigen::MatrixXd states = true_states(trace);
-  const Eigen::Index periods = completed_periods(trace);
-  for (Eigen::Index k = 0; k < periods; ++k) {
-    const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
+  for (Eigen::Index k = 0; k < view.periods(); ++k) {
+    const StepRecord& step = view.trace().steps[static_cast<std::size_t>(k)];
     const controller::StageCertificate& next = step.certificates.front();
-    rows.push_back(
-        {.certified = next.value,
-         .published = next.thesis,
-         .unsafe = controller::clearance(states.col(k + 1), trace.scenario.safe_set) <= 0.0,
-         .ocp_ms = step.timing.total});
+    rows.push_back({.certified = next.value,
+                    .published = next.thesis,
+                    .unsafe = view.ended_unsafe(k),
+                    .ocp_ms = step.timing.total});
   }
   return rows;
 }
 
 }  // namespace
 
-EpisodeRow episode_row(const Trace& trace, std::int64_t variant) {
-  const Summary summary = summarise(trace);
+EpisodeRow episode_row(const EpisodeView& view, std::int64_t variant) {
+  const Summary& summary = view.summary();
   return {.variant = variant,
           .seed = summary.seed,
           .outcome = summary.outcome,
@@ -48,7 +43,7 @@ EpisodeRow episode_row(const Trace& trace, std::int64_t variant) {
           .fallbacks = summary.fallbacks,
           .version = summary.version,
           .timing = {.deadline_misses = summary.deadline_misses},
-          .periods = period_rows(trace)};
+          .periods = period_rows(view)};
 }
 
 std::string episode_folder(std::int64_t variant, std::uint64_t seed) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/trace/episode_view.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace qsmpc::harness {
@@ -53,9 +54,9 @@ struct EpisodeRow {
   friend bool operator==(const EpisodeRow&, const EpisodeRow&) = default;
 };
 
-/// The row of `trace`, of variant `variant`; `trace` is empty and of the timing only
-/// deadline_misses and ocp_ms are set. Throws as summarise.
-[[nodiscard]] EpisodeRow episode_row(const Trace& trace, std::int64_t variant);
+/// The row of an episode of variant `variant`; `trace` is empty and of the timing only
+/// deadline_misses and ocp_ms are set.
+[[nodiscard]] EpisodeRow episode_row(const EpisodeView& view, std::int64_t variant);
 
 /// Where the trace of an episode is kept, within the campaign's folder: "episodes/VARIANT/SEED".
 [[nodiscard]] std::string episode_folder(std::int64_t variant, std::uint64_t seed);

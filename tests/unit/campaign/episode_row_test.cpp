@@ -9,11 +9,11 @@ namespace episode_row_test {
 
 TEST(EpisodeRow, has_a_period_for_every_step_that_the_plant_came_through) {
   Trace trace = testing::example_trace({.steps = 6});
-  EXPECT_EQ(episode_row(trace, 0).periods.size(), 6U);
+  EXPECT_EQ(episode_row(EpisodeView(trace), 0).periods.size(), 6U);
   trace.outcome = Outcome::kFault;
-  EXPECT_EQ(episode_row(trace, 0).periods.size(), 5U);
+  EXPECT_EQ(episode_row(EpisodeView(trace), 0).periods.size(), 5U);
   trace.final_state.resize(0);
-  EXPECT_EQ(episode_row(trace, 0).periods.size(), 5U);
+  EXPECT_EQ(episode_row(EpisodeView(trace), 0).periods.size(), 5U);
 }
 
 TEST(EpisodeRow, says_of_a_period_whether_the_state_at_its_end_was_unsafe) {
@@ -21,7 +21,7 @@ TEST(EpisodeRow, says_of_a_period_whether_the_state_at_its_end_was_unsafe) {
   for (StepRecord& step : trace.steps) step.state << 0.0, 0.0, 0.0;
   trace.final_state = trace.steps.front().state;
   trace.steps[2].state << 3.0, 4.0, 0.0;  // within an obstacle
-  const EpisodeRow row = episode_row(trace, 0);
+  const EpisodeRow row = episode_row(EpisodeView(trace), 0);
   ASSERT_EQ(row.periods.size(), 3U);
   EXPECT_FALSE(row.periods[0].unsafe);
   EXPECT_TRUE(row.periods[1].unsafe);
@@ -31,7 +31,7 @@ TEST(EpisodeRow, says_of_a_period_whether_the_state_at_its_end_was_unsafe) {
 
 TEST(EpisodeRow, takes_the_certificate_of_the_next_step) {
   const Trace trace = testing::example_trace({});
-  const EpisodeRow row = episode_row(trace, 7);
+  const EpisodeRow row = episode_row(EpisodeView(trace), 7);
   EXPECT_EQ(row.variant, 7);
   for (std::size_t k = 0; k < row.periods.size(); ++k) {
     EXPECT_EQ(row.periods[k].certified, trace.steps[k].certificates.front().value);

@@ -131,7 +131,7 @@ TEST(CampaignRunner, keeps_all_traces_when_asked_each_with_its_episode) {
   for (const EpisodeRow& row : rows_in(folder.path())) {
     const Trace trace = read_trace(folder.path() + "/" + row.trace + "/episode.h5");
     EXPECT_EQ(trace.seed, row.seed);
-    EpisodeRow again = episode_row(trace, row.variant);
+    EpisodeRow again = episode_row(EpisodeView(trace), row.variant);
     EXPECT_EQ(again.cost, row.cost);
     EXPECT_EQ(again.min_clearance, row.min_clearance);
   }

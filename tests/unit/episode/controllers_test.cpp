@@ -11,7 +11,7 @@
 #include "harness/episode/episode.hpp"
 #include "harness/report/episode_page.hpp"
 #include "harness/scenario/scenario_file.hpp"
-#include "harness/trace/summary.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/trace/trace_matchers.hpp"
@@ -70,9 +70,9 @@ TEST(EpisodeControllers, have_summaries_and_pages_of_what_they_have) {
     const Scenario scenario = scenario_of(choice);
     const Trace trace = run_episode(scenario, {.seed = 3});
     const controller::DecisionParts parts = decision_parts(scenario);
-    EXPECT_EQ(summarise(trace).controller, scenario.controller.kind);
-    EXPECT_EQ(std::isnan(summarise(trace).horizon_max), parts.stages == 0);
-    const std::string page = episode_page(trace, {});
+    EXPECT_EQ(EpisodeView(trace).summary().controller, scenario.controller.kind);
+    EXPECT_EQ(std::isnan(EpisodeView(trace).summary().horizon_max), parts.stages == 0);
+    const std::string page = episode_page(EpisodeView(trace), {});
     const auto mentions = [&](bool wanted, const std::string& text) {
       EXPECT_EQ(page.find(text) != std::string::npos, wanted) << text;
     };

@@ -13,7 +13,7 @@
 #include "controller/planning/planner.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/scenario/scenario_file.hpp"
-#include "harness/trace/summary.hpp"
+#include "harness/trace/episode_view.hpp"
 
 namespace qsmpc::harness {
 namespace episode_test {
@@ -341,9 +341,9 @@ TEST(Episode, drives_on_when_no_plan_is_done_in_time) {
     EXPECT_TRUE(step.plan_inputs.allFinite());
     EXPECT_EQ(step.certificates.size(), 5U);
   }
-  EXPECT_EQ(summarise(trace).deadline_stops, 12);
+  EXPECT_EQ(EpisodeView(trace).summary().deadline_stops, 12);
   const Trace in_time = run_episode(small_scenario(), {.seed = 2});
-  EXPECT_EQ(summarise(in_time).deadline_stops, 0);
+  EXPECT_EQ(EpisodeView(in_time).summary().deadline_stops, 0);
 }
 
 // A trace is what reports and videos are made from: every stage must be there, and consistent.

@@ -59,9 +59,8 @@ TEST(EpisodeResult, says_of_each_period_what_was_certified_and_what_happened) {
   const Scenario scenario =
       testing::short_scenario({"safe_set.bounds.x=[-1, 0.4]", "target.state=[0.3, 2.5, 0]",
                                "controller.input_bounds.yaw_rate=[-0.2, 0.2]"});
-  const auto model = model_of(scenario);
   const Trace trace = run_episode(scenario, {.seed = 3});
-  const EpisodeResult result = episode_result(trace, *model);
+  const EpisodeResult result = episode_result(EpisodeView(trace));
   ASSERT_EQ(result.outcome, "left_safe_set");
   EXPECT_EQ(result.seed, 3U);
   ASSERT_EQ(result.certified.size(), trace.steps.size());

@@ -46,12 +46,10 @@ std::vector<Number> numbers_of(const nlohmann::json& text) {
 }
 
 nlohmann::json data_of(const Trace& trace) {
-  const auto model = models::make_dynamics(
-      trace.scenario.model.system, trace.scenario.model.parameters, trace.scenario.time_step);
-  const models::SystemDescription& system = model->description();
-  const std::vector<Chart> charts = episode_charts(trace, system);
-  const PlaneMap map = episode_ground(trace, system);
-  return nlohmann::json::parse(episode_data(trace, system, {.charts = charts, .map = &map}));
+  const EpisodeView view(trace);
+  const std::vector<Chart> charts = episode_charts(view);
+  const PlaneMap map = episode_ground(view);
+  return nlohmann::json::parse(episode_data(view, {.charts = charts, .map = &map}));
 }
 
 TEST(EpisodeData, particles_are_where_the_trace_has_them) {

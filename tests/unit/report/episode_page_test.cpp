@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/text/number_format.hpp"
-#include "harness/trace/summary.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
@@ -50,9 +50,11 @@ Trace trace_that_failed_at_the_start() {
 }
 
 TEST(EpisodePage, its_tags_are_balanced) {
-  EXPECT_EQ(testing::tag_problem(markup_of(episode_page(testing::example_trace(), with_video()))),
+  EXPECT_EQ(testing::tag_problem(
+                markup_of(episode_page(EpisodeView(testing::example_trace()), with_video()))),
             "");
-  EXPECT_EQ(testing::tag_problem(markup_of(episode_page(trace_that_failed_at_the_start(), {}))),
+  EXPECT_EQ(testing::tag_problem(
+                markup_of(episode_page(EpisodeView(trace_that_failed_at_the_start()), {}))),
             "");
 }
 
@@ -63,7 +65,7 @@ TEST(EpisodePage, the_tag_check_finds_what_is_wrong) {
 }
 
 TEST(EpisodePage, refers_to_nothing_but_the_video) {
-  const std::string whole = episode_page(testing::example_trace(), with_video());
+  const std::string whole = episode_page(EpisodeView(testing::example_trace()), with_video());
   EXPECT_FALSE(testing::contains(whole, "src=\"http"));
   const std::string page = markup_of(whole);
   EXPECT_FALSE(testing::contains(page, "http:"));
@@ -78,14 +80,14 @@ TEST(EpisodePage, refers_to_nothing_but_the_video) {
 }
 
 TEST(EpisodePage, without_a_video_refers_to_nothing) {
-  const std::string page = markup_of(episode_page(testing::example_trace(), {}));
+  const std::string page = markup_of(episode_page(EpisodeView(testing::example_trace()), {}));
   EXPECT_EQ(testing::occurrences(page, "src="), 0);
   EXPECT_EQ(testing::occurrences(page, "href="), 0);
   EXPECT_FALSE(testing::contains(page, "<video"));
 }
 
 TEST(EpisodePage, its_policy_comes_first_and_forbids_all_but_its_own_and_media) {
-  const std::string page = episode_page(testing::example_trace(), with_video());
+  const std::string page = episode_page(EpisodeView(testing::example_trace()), with_video());
   const std::string policy =
       between(page, "<meta http-equiv=\"Content-Security-Policy\" content=\"", "\"");
   EXPECT_TRUE(policy.starts_with("default-src 'none'; style-src 'sha256-")) << policy;
@@ -105,7 +107,8 @@ TEST(EpisodePage, texts_of_the_scenario_do_nothing) {
   trace.version = attack;
   trace.fault = attack;
   trace.steps[1].solver_status = attack;
-  const std::string whole = episode_page(trace, {.video_file = "\" onerror=\"alert(3)"});
+  const std::string whole =
+      episode_page(EpisodeView(trace), {.video_file = "\" onerror=\"alert(3)"});
   // Two scripts: the data, in which no tag can begin or end, and the page's own.
   EXPECT_EQ(testing::occurrences(whole, "<script"), 2);
   EXPECT_EQ(testing::occurrences(whole, "</script>"), 2);
@@ -123,8 +126,8 @@ TEST(EpisodePage, texts_of_the_scenario_do_nothing) {
 
 TEST(EpisodePage, shows_the_numbers_of_the_summary) {
   const Trace trace = testing::example_trace({.steps = 40});
-  const Summary summary = summarise(trace);
-  const std::string page = episode_page(trace, with_video());
+  const Summary summary = EpisodeView(trace).summary();
+  const std::string page = episode_page(EpisodeView(trace), with_video());
   const auto value = [](const std::string& text) {
     return "<dd class=\"value\">" + text + "</dd>";
   };
@@ -147,21 +150,21 @@ TEST(EpisodePage, shows_the_numbers_of_the_summary) {
 TEST(EpisodePage, entering_the_unsafe_set_is_never_shown_as_success) {
   Trace trace = testing::example_trace();
   trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);  // inside of the first obstacle
-  const std::string page = episode_page(trace, with_video());
+  const std::string page = episode_page(EpisodeView(trace), with_video());
   EXPECT_TRUE(testing::contains(page, "<section class=\"outcome bad\">"));
   EXPECT_TRUE(testing::contains(page, "Target reached after 0.6 s, but through the unsafe set"));
   EXPECT_TRUE(testing::contains(page, "Entered the unsafe set</dt><dd class=\"value\">yes</dd>"));
 }
 
 TEST(EpisodePage, says_what_a_certificate_does_not_cover) {
-  const std::string page = episode_page(testing::example_trace(), with_video());
+  const std::string page = episode_page(EpisodeView(testing::example_trace()), with_video());
   EXPECT_TRUE(testing::contains(page, "plan as planned"));
   EXPECT_TRUE(testing::contains(page, "Neither covers the plant’s mismatch"));
   EXPECT_TRUE(testing::contains(page, "published method, worst stage: not a bound"));
 }
 
 TEST(EpisodePage, has_a_chart_of_each_kind_and_the_map) {
-  const std::string page = episode_page(testing::example_trace(), with_video());
+  const std::string page = episode_page(EpisodeView(testing::example_trace()), with_video());
   for (const char* title : {"Certificates: ", "Clearance", "Input: ", "Solve time against",
                             "Solve times: ", "Expected cost", "Error budget at", "Map: "}) {
     EXPECT_EQ(testing::occurrences(page, "<figcaption>" + std::string(title)), 1) << title;
@@ -172,7 +175,7 @@ TEST(EpisodePage, has_a_chart_of_each_kind_and_the_map) {
 }
 
 TEST(EpisodePage, a_fault_at_the_start_gives_its_words_and_no_charts) {
-  const std::string page = episode_page(trace_that_failed_at_the_start(), {});
+  const std::string page = episode_page(EpisodeView(trace_that_failed_at_the_start()), {});
   EXPECT_TRUE(testing::contains(page, "The simulator failed at the start"));
   EXPECT_TRUE(testing::contains(page, "XML Error: &lt;body&gt; is broken"));
   EXPECT_FALSE(testing::contains(page, "<figcaption>Certificates"));
@@ -184,7 +187,7 @@ TEST(EpisodePage, a_fault_at_the_start_gives_its_words_and_no_charts) {
 TEST(EpisodePage, a_trace_without_any_state_gives_a_page) {
   Trace trace = trace_that_failed_at_the_start();
   trace.final_state.resize(0);
-  const std::string page = episode_page(trace, {});
+  const std::string page = episode_page(EpisodeView(trace), {});
   EXPECT_EQ(testing::tag_problem(markup_of(page)), "");
   EXPECT_TRUE(testing::contains(page, "no state is known"));
 }
@@ -206,7 +209,7 @@ TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {
   trace.steps[0].particles.front().weights[1] = nan;
   trace.steps[10].plan_states.setConstant(-infinity);
   trace.final_state.setConstant(1e300);
-  const std::string page = episode_page(trace, with_video());
+  const std::string page = episode_page(EpisodeView(trace), with_video());
   const std::string own = markup_of(page);
   EXPECT_EQ(testing::tag_problem(own), "");
   for (std::size_t at = own.find(" d=\""); at != std::string::npos;
@@ -223,7 +226,7 @@ TEST(EpisodePage, a_state_far_away_leaves_the_map_readable) {
   Trace trace = testing::example_trace();
   for (const double sign : {-1.0, 1.0}) {
     trace.final_state[0] = sign * 1e9;
-    const std::string page = episode_page(trace, {});
+    const std::string page = episode_page(EpisodeView(trace), {});
     const std::size_t begin = page.find("<figcaption>Map");
     const std::string map = page.substr(begin, page.find("</figure>", begin) - begin);
     // The axis reaches one more length of the bounds, -1 … 12, and not to the state.
@@ -236,12 +239,13 @@ TEST(EpisodePage, a_state_far_away_leaves_the_map_readable) {
 TEST(EpisodePage, the_largest_usual_episode_stays_small) {
   constexpr std::size_t kLargest = 5'000'000;  // bytes, without the video
   const Trace trace = testing::example_trace({.steps = 400, .horizon = 18, .points = 100});
-  EXPECT_LT(episode_page(trace, with_video()).size(), kLargest);
+  EXPECT_LT(episode_page(EpisodeView(trace), with_video()).size(), kLargest);
 }
 
 TEST(EpisodePage, the_same_trace_gives_the_same_page) {
   const Trace trace = testing::example_trace();
-  EXPECT_EQ(episode_page(trace, with_video()), episode_page(trace, with_video()));
+  EXPECT_EQ(episode_page(EpisodeView(trace), with_video()),
+            episode_page(EpisodeView(trace), with_video()));
 }
 
 }  // namespace episode_page_test

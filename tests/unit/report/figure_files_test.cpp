@@ -42,7 +42,7 @@ TEST(FigureName, is_made_of_the_first_words_of_the_title) {
 
 TEST(EpisodeFigures, have_the_promised_names) {
   std::vector<std::string> names;
-  for (const FigureFile& figure : episode_figures(testing::example_trace())) {
+  for (const FigureFile& figure : episode_figures(EpisodeView(testing::example_trace()))) {
     names.push_back(figure.name);
     EXPECT_EQ(figure.panels.size(), 1U);
   }

@@ -1,5 +1,3 @@
-#include "harness/trace/summary.hpp"
-
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -8,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/episode_view.hpp"
 
 namespace qsmpc::harness {
 namespace summary_test {
@@ -47,30 +46,30 @@ TEST(Summary, adds_the_stage_costs_of_the_true_states) {
   trace.steps[1].state = Eigen::Vector3d(4.0, 1.0, 0.3);
   trace.steps[1].input[0] = -2.0;
   // ½ (2·5²) + 0, and ½ (2·1² + 4·1² + 0) + 3·2².
-  EXPECT_DOUBLE_EQ(summarise(trace).closed_loop_cost, 25.0 + 3.0 + 12.0);
+  EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().closed_loop_cost, 25.0 + 3.0 + 12.0);
 }
 
 TEST(Summary, headings_a_turn_apart_cost_the_same_where_the_target_is_meant_modulo_a_turn) {
   Trace trace = straight_trace(1);
   trace.scenario.controller.cost.state(2, 2) = 6.0;
   trace.steps[0].state[2] = 0.1 + 2.0 * std::numbers::pi;
-  EXPECT_GT(summarise(trace).closed_loop_cost, 100.0);
+  EXPECT_GT(EpisodeView(trace).summary().closed_loop_cost, 100.0);
   trace.scenario.target.angles = {2};
   // ½ (2·5² + 6·0.1²), but for the rounding of the heading.
-  EXPECT_NEAR(summarise(trace).closed_loop_cost, 25.03, 1e-13);
+  EXPECT_NEAR(EpisodeView(trace).summary().closed_loop_cost, 25.03, 1e-13);
 }
 
 TEST(Summary, clearance_and_collision_are_those_of_all_true_states) {
   Trace trace = straight_trace(3);
-  EXPECT_DOUBLE_EQ(summarise(trace).min_clearance, 1.0);
-  EXPECT_FALSE(summarise(trace).collision);
+  EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().min_clearance, 1.0);
+  EXPECT_FALSE(EpisodeView(trace).summary().collision);
   trace.final_state[1] = 2.5;  // beyond the bound at 2
-  EXPECT_DOUBLE_EQ(summarise(trace).min_clearance, -0.5);
-  EXPECT_TRUE(summarise(trace).collision);
+  EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().min_clearance, -0.5);
+  EXPECT_TRUE(EpisodeView(trace).summary().collision);
 }
 
 TEST(Summary, quantiles_are_nearest_ranks) {
-  const Summary summary = summarise(straight_trace(200));  // totals 1 … 200 ms
+  const Summary summary = EpisodeView(straight_trace(200)).summary();  // totals 1 … 200 ms
   EXPECT_DOUBLE_EQ(summary.ocp_ms.median, 100.0);
   EXPECT_DOUBLE_EQ(summary.ocp_ms.p95, 190.0);
   EXPECT_DOUBLE_EQ(summary.ocp_ms.p99, 198.0);
@@ -85,13 +84,13 @@ TEST(Summary, counts_the_plans_that_fell_back_and_those_cut_short) {
   for (const std::size_t k : {0U, 2U, 3U}) trace.steps[k].solver_status = "deadline";
   trace.steps[1].solver_status = "iteration_limit";
   trace.steps[1].fallback = true;
-  const auto json = nlohmann::json::parse(summary_json(trace));
+  const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
   EXPECT_EQ(json["ocp"]["deadline_stops"], 3);
   EXPECT_EQ(json["ocp"]["fallbacks"], 1);
 }
 
 TEST(Summary, certificates_are_summed_over_a_plan_and_along_the_drive) {
-  const Summary summary = summarise(straight_trace(3));
+  const Summary summary = EpisodeView(straight_trace(3)).summary();
   EXPECT_DOUBLE_EQ(summary.next_step_max, 0.03);
   EXPECT_DOUBLE_EQ(summary.next_step_sum, 0.06);
   EXPECT_DOUBLE_EQ(summary.next_step_mean, 0.02);
@@ -101,11 +100,11 @@ TEST(Summary, certificates_are_summed_over_a_plan_and_along_the_drive) {
 
 TEST(Summary, mismatch_is_what_the_model_and_the_disturbance_leave) {
   Trace trace = straight_trace(2);
-  EXPECT_TRUE(summarise(trace).mismatch_rmse.isZero(1e-15));  // rounding
+  EXPECT_TRUE(EpisodeView(trace).summary().mismatch_rmse.isZero(1e-15));  // rounding
   // The second period ends 0.02 further in y, of which 0.03 was disturbance.
   trace.final_state[1] = 0.02;
   trace.steps[1].disturbance[1] = 0.03;
-  const Summary summary = summarise(trace);
+  const Summary summary = EpisodeView(trace).summary();
   EXPECT_NEAR(summary.mismatch_mean[1], -0.005, 1e-15);
   EXPECT_NEAR(summary.mismatch_rmse[1], 0.01 / std::sqrt(2.0), 1e-15);
   EXPECT_NEAR(summary.mismatch_covariance(1, 1), 0.005 * 0.005, 1e-15);
@@ -114,7 +113,8 @@ TEST(Summary, mismatch_is_what_the_model_and_the_disturbance_leave) {
 TEST(Summary, json_has_every_documented_key) {
   Trace trace = straight_trace(4);
   trace.outcome = Outcome::kReached;
-  const auto json = nlohmann::json::parse(summary_json(trace, {.video_file = "a.mp4"}));
+  const auto json =
+      nlohmann::json::parse(summary_json(EpisodeView(trace), {.video_file = "a.mp4"}));
   for (const char* pointer : {"/scenario",
                               "/seed",
                               "/version",
@@ -158,7 +158,7 @@ TEST(Summary, an_episode_that_broke_before_it_began_has_one_too) {
   trace.outcome = Outcome::kFault;
   trace.fault = "words \xff of the simulator";  // no UTF-8
   trace.final_state = Eigen::Vector3d::Zero();
-  const auto json = nlohmann::json::parse(summary_json(trace));
+  const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
   EXPECT_EQ(json["steps"], 0);
   EXPECT_EQ(json["outcome"], "fault");
   EXPECT_TRUE(json["time_to_target"].is_null());
