@@ -1,6 +1,7 @@
 #include <stdexcept>
 
 #include "controller/control/controller.hpp"
+#include "controller/named_entry.hpp"
 
 namespace qsmpc::controller {
 
@@ -33,12 +34,7 @@ const std::vector<ControllerEntry>& controllers() {
 }
 
 const ControllerEntry& controller_entry(std::string_view name) {
-  std::string known;
-  for (const ControllerEntry& entry : controllers()) {
-    if (entry.name == name) return entry;
-    known += (known.empty() ? "" : ", ") + entry.name;
-  }
-  throw std::invalid_argument("no controller '" + std::string(name) + "'; known are: " + known);
+  return named_entry(controllers(), name, "controller");
 }
 
 std::unique_ptr<Controller> make_controller(std::string_view name, const models::Dynamics& dynamics,

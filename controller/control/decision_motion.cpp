@@ -1,5 +1,7 @@
 #include "controller/control/decision_motion.hpp"
 
+#include "controller/planning/planner_propagator.hpp"
+
 namespace qsmpc::controller {
 
 DecisionMotion::DecisionMotion(const models::Dynamics& dynamics, const PlannerSettings& settings)
@@ -8,11 +10,7 @@ DecisionMotion::DecisionMotion(const models::Dynamics& dynamics, const PlannerSe
       bounds_(settings.bounds),
       run_(settings.run),
       quantiser_(dynamics.state_dim(), settings.state_points, settings.quantiser),
-      propagator_(make_propagator(settings.propagator,
-                                  {.noise = {.mean = Eigen::VectorXd::Zero(dynamics.state_dim()),
-                                             .covariance = settings.noise_covariance},
-                                   .noise_points = settings.noise_points,
-                                   .compressed_points = settings.compressed_points})) {}
+      propagator_(planner_propagator(settings)) {}
 
 PredictedMotion DecisionMotion::of(const Situation& situation, const Decision& decision,
                                    const Gaussian& posterior) {

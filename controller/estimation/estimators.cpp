@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "controller/estimation/estimator.hpp"
+#include "controller/named_entry.hpp"
 
 namespace qsmpc::controller {
 
@@ -18,12 +19,7 @@ const std::vector<EstimatorEntry>& estimators() {
 }
 
 const EstimatorEntry& estimator_entry(std::string_view name) {
-  std::string known;
-  for (const EstimatorEntry& entry : estimators()) {
-    if (entry.name == name) return entry;
-    known += (known.empty() ? "" : ", ") + entry.name;
-  }
-  throw std::invalid_argument("no estimator '" + std::string(name) + "'; known are: " + known);
+  return named_entry(estimators(), name, "estimator");
 }
 
 std::unique_ptr<Estimator> make_estimator(std::string_view name,

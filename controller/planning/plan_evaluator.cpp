@@ -4,16 +4,10 @@
 #include <cmath>
 
 #include "controller/planning/cost/angular_target.hpp"
+#include "controller/planning/planner_propagator.hpp"
 
 namespace qsmpc::controller {
 namespace {
-
-PropagatorSettings propagation(const PlannerSettings& settings) {
-  return {.noise = {.mean = Eigen::VectorXd::Zero(settings.noise_covariance.rows()),
-                    .covariance = settings.noise_covariance},
-          .noise_points = settings.noise_points,
-          .compressed_points = settings.compressed_points};
-}
 
 /// Of the bounds, nothing where the solver takes them as constraints.
 Penalty penalty_in_cost(const PlannerSettings& settings) {
@@ -46,7 +40,7 @@ PlanEvaluator::PlanEvaluator(const models::Dynamics& dynamics, const PlannerSett
       predicted_noise_(noise_in_prediction(settings)),
       within_(Eigen::MatrixXd::Zero(dynamics.state_dim(), dynamics.state_dim())),
       quantiser_(dynamics.state_dim(), settings.state_points, settings.quantiser),
-      propagator_(make_propagator(settings.propagator, propagation(settings))),
+      propagator_(planner_propagator(settings)),
       policies_(dynamics, settings),
       cost_({.dynamics = dynamics,
              .safe_set = settings.safe_set,

@@ -6,6 +6,7 @@
 #include "controller/measure/compression/compression.hpp"
 #include "controller/measure/compression/mixture_split.hpp"
 #include "controller/measure/compression/soft_compression.hpp"
+#include "controller/named_entry.hpp"
 #include "controller/prediction/moment_matching.hpp"
 #include "controller/prediction/product_map.hpp"
 
@@ -198,12 +199,7 @@ const std::vector<PropagatorEntry>& propagators() {
 }
 
 const PropagatorEntry& propagator_entry(std::string_view name) {
-  std::string known;
-  for (const PropagatorEntry& entry : propagators()) {
-    if (entry.name == name) return entry;
-    known += (known.empty() ? "" : ", ") + entry.name;
-  }
-  throw std::invalid_argument("no propagator '" + std::string(name) + "'; known are: " + known);
+  return named_entry(propagators(), name, "propagator");
 }
 
 std::unique_ptr<Propagator> make_propagator(std::string_view name,

@@ -140,9 +140,11 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
     if (!std::isnan(summary.horizon_max)) {
       text += row("P(unsafe over a plan) <=", fmt::format("{:.3g} at most", summary.horizon_max));
     }
-    text +=
-        "  (both hold for the planner's model from its belief; the plant's mismatch is not in "
-        "them)\n";
+    text += std::isnan(summary.horizon_max)
+                ? "  (it holds for the model from the observed state; the plant's mismatch is not "
+                  "in it)\n"
+                : "  (both hold for the planner's model from its belief; the plant's mismatch is "
+                  "not in them)\n";
   }
   text += row("numbers", in_folder(folder, kSummaryFile));
   text += row("page", in_folder(folder, kPageFile));

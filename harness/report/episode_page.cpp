@@ -28,6 +28,13 @@ constexpr std::string_view kMeaning =
     "every step. Neither covers the plant’s mismatch to the model, which is measured "
     "below.</p>\n</section>\n";
 
+constexpr std::string_view kMeaningWithoutPlan =
+    "<section class=\"card\">\n<h3>What a certificate says</h3>\n"
+    "<p>A certificate is an upper bound of the probability that the <em>model’s</em> state is "
+    "unsafe at the next step, given what was observed when the input was chosen. This controller "
+    "makes no plan, so that nothing is said of later steps. The plant’s mismatch to the model is "
+    "not covered; it is measured below.</p>\n</section>\n";
+
 constexpr std::string_view kMismatchNote =
     "<h2>Mismatch of the plant against the planner’s model</h2>\n"
     "<p class=\"note\">What is left of the plant’s next state after the model’s prediction and the "
@@ -117,13 +124,14 @@ constexpr std::string_view kStageCharts =
 
 std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodePageOptions& options) {
   const Trace& trace = view.trace();
-  if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(kMeaning);
+  const std::string_view meaning = view.parts().stages > 0 ? kMeaning : kMeaningWithoutPlan;
+  if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(meaning);
   const controller::DecisionParts& parts = view.parts();
   const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
   return fmt::format(
       "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
       "<div class=\"stack\">\n{}{}</div>\n</div>\n",
-      player(trace), video(options), moment, kMeaning, live_map(map, parts),
+      player(trace), video(options), moment, meaning, live_map(map, parts),
       parts.stages > 0 ? kStageCharts : std::string_view());
 }
 

@@ -8,6 +8,7 @@
 
 #include "controller/measure/quantisation/normal_lloyd.hpp"
 #include "controller/measure/quantisation/normal_quantiser.hpp"
+#include "controller/named_entry.hpp"
 #include "models/linear_algebra.hpp"
 
 namespace qsmpc::controller {
@@ -241,12 +242,7 @@ const std::vector<QuantiserEntry>& quantisers() {
 }
 
 QuantiserKind quantiser_kind(std::string_view name) {
-  std::string known;
-  for (const QuantiserEntry& entry : quantisers()) {
-    if (entry.name == name) return entry.kind;
-    known += (known.empty() ? "" : ", ") + entry.name;
-  }
-  throw std::invalid_argument("no quantiser '" + std::string(name) + "'; known are: " + known);
+  return named_entry(quantisers(), name, "quantiser").kind;
 }
 
 GaussianQuantisation quantise(const Gaussian& gaussian, int budget, QuantiserKind kind) {

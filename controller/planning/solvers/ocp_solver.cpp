@@ -2,6 +2,7 @@
 
 #include <stdexcept>
 
+#include "controller/named_entry.hpp"
 #include "controller/planning/solvers/lbfgs_solver.hpp"
 #include "controller/planning/solvers/projected_bfgs_solver.hpp"
 #include "controller/planning/solvers/slsqp_solver.hpp"
@@ -67,11 +68,7 @@ const std::vector<SolverEntry>& solvers() {
 }
 
 const SolverEntry& solver_entry(std::string_view name) {
-  for (const SolverEntry& entry : solvers()) {
-    if (entry.name == name) return entry;
-  }
-  throw std::invalid_argument("no solver '" + std::string(name) +
-                              "'; known are: " + known_names(solvers()));
+  return named_entry(solvers(), name, "solver");
 }
 
 const std::vector<InputBoundingEntry>& input_boundings() {
