@@ -12,8 +12,8 @@
 #include "controller/certification/higher_order_norms.hpp"
 #include "controller/certification/statistical_linearisation.hpp"
 #include "controller/measure/measures.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
+#include "controller/regions/safe_set.hpp"
 
 namespace qsmpc::controller {
 

@@ -1,35 +1,22 @@
 // Upper bounds of the probability that the state is unsafe, stage by stage of a plan.
 //
 // Each bound holds for the law of the model under the plan's policy from the plan's belief, and of
-// every plant whose error is within the motion's model error, where it has one:
-//   C1  worst case over the W2 ball about the particles,
-//   C2  the same before the last noise, which stays Gaussian,
-//   C3  a Gaussian surrogate of the state, with a bound of what separates the two,
-//   C4  the same, smoothed by noise that is independent of this error.
-// Proofs: docs/theory/certificates.md and surrogate.md. A bound says nothing of any other plant,
-// and one of a later stage speaks of the plan as planned, not of what is planned anew in between.
+// every plant whose error is within the motion's model error, where it has one. Proofs:
+// docs/theory/certificates.md and surrogate.md. A bound says nothing of any other plant, and one of
+// a later stage speaks of the plan as planned, not of what is planned anew in between.
 #pragma once
 
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "controller/certification/error_budget.hpp"
 #include "controller/parallel.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
+#include "controller/regions/unsafe_set.hpp"
 
 namespace qsmpc::controller {
-
-struct StageCertificate {
-  double value = 1.0;        ///< the least of the bounds
-  std::string kind;          ///< which one it was: "c1", "c2", "c3" or "c4"
-  double particles = 1.0;    ///< C1
-  double mixture = 1.0;      ///< C2
-  double surrogate = 1.0;    ///< C3; 1 where nothing is known of the derivatives
-  double smoothed = 1.0;     ///< C4; never above C3
-  double thesis = 1.0;       ///< Algorithms 3 and 4 as printed: NOT a bound
-  double unsafe_mass = 0.0;  ///< weight of the particles that are unsafe: NOT a bound
-};
 
 /// How far each bound is worked out.
 enum class CertificateEffort {
@@ -38,18 +25,49 @@ enum class CertificateEffort {
   kEvery,  ///< each as good as it gets, for comparisons
 };
 
+class CertificateProblem;
+
+/// A number of stage k + 1. `least` is the least bound of that stage so far: what cannot be less
+/// need not be worked out. Called side by side for several stages.
+using StageFigure = std::function<double(std::size_t k, double least)>;
+
+/// One bound, or a number that is shown beside the bounds; a new one is a file, and a line in the
+/// table.
+struct CertificateEntry {
+  std::string key;      ///< "c1"; what StageCertificate::kind and JSON call it
+  std::string dataset;  ///< "particles"; in a trace's group /certificate
+  std::string meaning;
+  bool is_bound = true;  ///< whether it counts: NOT an upper bound otherwise
+  bool is_last = false;  ///< whether it comes after all others, as it is told the least
+  double without = 1.0;  ///< where it is not known, as in traces from before it was there
+  StageFigure (*prepare)(const CertificateProblem& problem) = nullptr;
+};
+
+/// The table, in which the simplest of equal bounds comes first.
+[[nodiscard]] const std::vector<CertificateEntry>& certificate_entries();
+
+/// The place of `key` in the table. Throws std::invalid_argument if there is none.
+[[nodiscard]] std::size_t certificate_index(std::string_view key);
+
+struct StageCertificate {
+  double value = 1.0;           ///< the least of the bounds
+  std::string kind;             ///< which one it was, the first in the table that is as small
+  std::vector<double> figures;  ///< as certificate_entries(); empty where only the value is known
+
+  /// The figure called `key`, or what stands for it where it is not known. Throws
+  /// std::invalid_argument on an unknown key.
+  [[nodiscard]] double of(std::string_view key) const;
+};
+
+/// One without anything known: 1, and what stands for each figure.
+[[nodiscard]] StageCertificate blank_certificate();
+
 /// Certificates of stages 1 … horizon of `motion`.
 /// budgets: what `error_budget` gives for it. run: what the stages, which do not depend on one
 /// another, are divided among; no result depends on it.
 [[nodiscard]] std::vector<StageCertificate> certify(
-    const PredictedMotion& motion, const SafeSet& safe_set, const std::vector<StageBudget>& budgets,
+    const PredictedMotion& motion, const UnsafeSet& unsafe, const std::vector<StageBudget>& budgets,
     CertificateEffort effort = CertificateEffort::kLeast, const Executor& run = run_in_turn);
-
-/// The radii that the thesis would use at stages 0 … horizon, by Eq. 4-4 and 4-6: without noise and
-/// without the feedback, hence too small. Where no global Lipschitz constant is known, it is that
-/// of the closed loop on its region. budgets: as for `certify`.
-[[nodiscard]] std::vector<double> thesis_radii(const PredictedMotion& motion,
-                                               const std::vector<StageBudget>& budgets);
 
 /// Upper bound of the probability that the state is unsafe at any of the stages: their sum, at
 /// most 1.

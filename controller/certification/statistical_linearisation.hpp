@@ -11,8 +11,8 @@
 #include "controller/certification/saturation.hpp"
 #include "controller/certification/stage_error.hpp"
 #include "controller/measure/measures.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
+#include "controller/regions/safe_set.hpp"
 
 namespace qsmpc::controller {
 

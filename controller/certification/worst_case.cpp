@@ -7,13 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "models/constants.hpp"
-
 namespace qsmpc::controller {
-namespace {
-
-/// Moves mass in the order of its unit cost until `budget` is spent; returns the mass moved.
-double greedy_transport(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
+double transported_mass(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
                         const Eigen::Ref<const Eigen::VectorXd>& weights, double budget) {
   // Where there is enough for all that can be moved, the order does not matter.
   double all_costs = 0.0;
@@ -44,27 +39,6 @@ double greedy_transport(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
   return std::min(1.0, moved);
 }
 
-/// Algorithm 3 with p = 2 for every point; unbounded dimensions have no faces and do not count.
-Eigen::VectorXd thesis_distances(const Points& points, const Box& bounds) {
-  const Eigen::Index count = points.cols();
-  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(count);
-  Eigen::ArrayXd least = Eigen::ArrayXd::Constant(count, kInfinity);
-  for (Eigen::Index axis = 0; axis < points.rows(); ++axis) {
-    const double lower = bounds.lower[axis];
-    const double upper = bounds.upper[axis];
-    if (std::isinf(lower) && std::isinf(upper)) continue;
-    const Eigen::Map<const Eigen::ArrayXd> x(points.data() + axis * count, count);
-    const Eigen::ArrayXd nearest = (x - lower).min(upper - x);
-    squares += nearest.square();
-    least = least.min(nearest);
-  }
-  const bool bounded = least.size() > 0 && !std::isinf(least[0]);
-  if (!bounded) return Eigen::VectorXd::Constant(count, kInfinity);
-  return (least < 0.0).select(0.0, squares.sqrt()).matrix();
-}
-
-}  // namespace
-
 double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances,
                               const Eigen::Ref<const Eigen::VectorXd>& weights, double radius) {
   if (distances.size() != weights.size()) {
@@ -76,24 +50,13 @@ double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances
   if (!(radius >= 0.0)) throw std::invalid_argument("worst case: the radius must not be negative");
   const double budget = radius * radius;
   if (std::isinf(budget)) return 1.0;
-  return greedy_transport(distances.cwiseAbs2(), weights, budget);
+  return transported_mass(distances.cwiseAbs2(), weights, budget);
 }
 
-double worst_case_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
+double worst_case_probability(const DiscreteMeasure& measure, const UnsafeSet& unsafe,
                               double radius) {
-  return worst_case_probability(clearances(measure.locations, safe_set).cwiseMax(0.0),
+  return worst_case_probability(clearances(measure.locations, unsafe).cwiseMax(0.0),
                                 measure.weights, radius);
-}
-
-double linear_transport_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
-                                    double radius) {
-  return greedy_transport(clearances(measure.locations, safe_set).cwiseMax(0.0), measure.weights,
-                          radius);
-}
-
-double thesis_probability(const DiscreteMeasure& measure, const SafeSet& safe_set, double radius) {
-  return greedy_transport(thesis_distances(measure.locations, safe_set.bounds), measure.weights,
-                          radius);
 }
 
 }  // namespace qsmpc::controller

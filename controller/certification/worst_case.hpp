@@ -5,7 +5,7 @@
 #include <Eigen/Core>
 
 #include "controller/measure/measures.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/unsafe_set.hpp"
 
 namespace qsmpc::controller {
 
@@ -19,19 +19,13 @@ namespace qsmpc::controller {
                                             double radius);
 
 /// The same with the distances of the measure's points to the unsafe set (C1).
-[[nodiscard]] double worst_case_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
+[[nodiscard]] double worst_case_probability(const DiscreteMeasure& measure, const UnsafeSet& unsafe,
                                             double radius);
 
-/// Algorithms 3 and 4 of the thesis as printed, for comparison only: NOT an upper bound. The
-/// distance is a norm over the dimensions of the distances to the faces, which overestimates it,
-/// and obstacles do not count. (Spending d·m against the radius, instead of d²·m against its
-/// square, is loose only.)
-[[nodiscard]] double thesis_probability(const DiscreteMeasure& measure, const SafeSet& safe_set,
-                                        double radius);
-
-/// Algorithm 4 with the true distance in place of Algorithm 3's: spends d·m against the radius. The
-/// ball of that radius in W1 contains the one in W2, as W1 ≤ W2, so this is never below C1.
-[[nodiscard]] double linear_transport_probability(const DiscreteMeasure& measure,
-                                                  const SafeSet& safe_set, double radius);
+/// The mass that can be moved at these unit costs (≥ 0) for `budget`, the cheapest first, at
+/// most 1. What costs infinity cannot be moved.
+[[nodiscard]] double transported_mass(const Eigen::Ref<const Eigen::VectorXd>& unit_costs,
+                                      const Eigen::Ref<const Eigen::VectorXd>& weights,
+                                      double budget);
 
 }  // namespace qsmpc::controller

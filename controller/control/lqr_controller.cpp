@@ -117,17 +117,19 @@ class PathRegulator final : public Controller {
 };
 
 CostParts PathRegulator::cost_of(const Policy& path) const {
-  CostParts cost;
+  double state = 0.0;
+  double input = 0.0;
+  double terminal = 0.0;
   for (Eigen::Index k = 0; k <= path.horizon(); ++k) {
     const Eigen::VectorXd away = path.states.col(k) - target_;
     if (k == path.horizon()) {
-      cost.terminal = away.dot(problem_.cost.terminal * away);
+      terminal = away.dot(problem_.cost.terminal * away);
     } else {
-      cost.state += 0.5 * away.dot(problem_.cost.state * away);
-      cost.input += path.inputs.col(k).dot(problem_.cost.input * path.inputs.col(k));
+      state += 0.5 * away.dot(problem_.cost.state * away);
+      input += path.inputs.col(k).dot(problem_.cost.input * path.inputs.col(k));
     }
   }
-  return cost;
+  return {{"state", state}, {"input", input}, {"terminal", terminal}};
 }
 
 /// The backward sweep about the path: gains, and the steps of the affine problem's inputs.

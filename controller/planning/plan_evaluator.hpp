@@ -10,8 +10,8 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/planning/belief_quantiser.hpp"
+#include "controller/planning/constraints/horizon_constraints.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
-#include "controller/planning/cost/particle_constraints.hpp"
 #include "controller/planning/plan.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
@@ -59,10 +59,9 @@ class PlanEvaluator {
   /// The cost's weights, about the target that is nearest to the belief.
   [[nodiscard]] const QuadraticCost& weights() const { return weights_; }
   [[nodiscard]] const Propagator& propagator() const { return *propagator_; }
-  /// Those that particles be within the bounds, at the assignments held; empty unless the solver
-  /// takes constraints.
+  /// Those of stage_constraint.hpp, at the assignments held; empty unless the solver takes any.
   [[nodiscard]] const std::optional<ConstraintSet>& constraints() const { return constraint_set_; }
-  /// How far within the bounds particles are asked to stay.
+  /// How much more than they say is asked of the constraints.
   [[nodiscard]] double margin() const { return constraints_.margin(); }
   void set_margin(double margin) { constraints_.set_margin(margin); }
   /// How long the last prediction took, with its evaluation.
@@ -81,7 +80,7 @@ class PlanEvaluator {
   std::unique_ptr<Propagator> propagator_;
   PolicyMaker policies_;
   HorizonCost cost_;
-  ParticleConstraints constraints_;
+  HorizonConstraints constraints_;
   std::optional<ConstraintSet> constraint_set_;
   PredictionScratch scratch_;
   Eigen::VectorXd constraint_values_;

@@ -11,8 +11,8 @@
 #include "controller/parallel.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/planning/cost/penalty.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "controller/prediction/policy.hpp"
+#include "controller/regions/safe_set.hpp"
 
 namespace qsmpc::controller {
 

@@ -32,12 +32,6 @@ constexpr int kRehearsals = 2;
 // A period of which the belief is predicted, as of all but the first.
 constexpr int kRehearsedPeriod = 1;
 constexpr double kMilliseconds = 1000.0;  // in a second
-// Of a controller that expects none.
-constexpr controller::CostParts kNoCost{.state = kNotANumber,
-                                        .input = kNotANumber,
-                                        .terminal = kNotANumber,
-                                        .box = kNotANumber,
-                                        .obstacle = kNotANumber};
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
@@ -60,6 +54,7 @@ class EpisodeDriver::Loop {
  public:
   explicit Loop(const Scenario& scenario)
       : scenario_(scenario),
+        unsafe_(scenario.safe_set),
         model_(model_of(scenario)),
         settings_(controller_settings(scenario)),
         controller_(controller::make_controller(scenario.controller.kind, *model_, settings_)),
@@ -112,7 +107,7 @@ class EpisodeDriver::Loop {
 
   /// How the episode ends in the present state, if it does.
   [[nodiscard]] std::optional<Outcome> outcome_now() const {
-    if (scenario_.stop_when_unsafe && controller::clearance(state_, scenario_.safe_set) <= 0.0) {
+    if (scenario_.stop_when_unsafe && controller::clearance(state_, unsafe_) <= 0.0) {
       return Outcome::kLeftSafeSet;
     }
     if (at_target(scenario_, model_->description(), state_)) return Outcome::kReached;
@@ -197,7 +192,7 @@ class EpisodeDriver::Loop {
       record.plan_gains = decision.policy->gains;
     }
     if (decision.particles) record.particles = decision.particles->prediction.stages;
-    record.cost = decision.cost.value_or(kNoCost);
+    record.cost = decision.cost.value_or(controller::CostParts::all(kNotANumber));
     if (decision.status) record.solver_status = controller::solver_status_name(*decision.status);
     record.fallback = decision.fallback;
     record.iterations = decision.evaluations;
@@ -219,8 +214,8 @@ class EpisodeDriver::Loop {
                  decision.policy != nullptr ? BeliefOf::kPrediction : BeliefOf::kState);
     record.budgets = controller::error_budget(motion);
     record.certificates =
-        controller::certify(motion, scenario_.safe_set, record.budgets,
-                            controller::CertificateEffort::kLeast, settings_.problem.run);
+        controller::certify(motion, unsafe_, record.budgets, controller::CertificateEffort::kLeast,
+                            settings_.problem.run);
     record.timing.certify = milliseconds_since(start);
   }
 
@@ -238,6 +233,7 @@ class EpisodeDriver::Loop {
   }
 
   const Scenario& scenario_;
+  controller::UnsafeSet unsafe_;
   std::unique_ptr<const models::Dynamics> model_;
   controller::ControllerSettings settings_;
   std::unique_ptr<controller::Controller> controller_;

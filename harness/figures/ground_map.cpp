@@ -1,30 +1,21 @@
 #include "harness/figures/ground_map.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <string>
+
+#include "controller/regions/unsafe_set.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
-MapRectangle rectangle_of(const controller::Box& box, const models::SystemDescription& system) {
-  return {.x_lower = box.lower[system.position_x],
-          .x_upper = box.upper[system.position_x],
-          .y_lower = box.lower[system.position_y],
-          .y_upper = box.upper[system.position_y]};
+MapRectangle rectangle_of(const controller::Outline& outline) {
+  const Eigen::Vector2d lower = outline.corners.rowwise().minCoeff();
+  const Eigen::Vector2d upper = outline.corners.rowwise().maxCoeff();
+  return {.x_lower = lower.x(), .x_upper = upper.x(), .y_lower = lower.y(), .y_upper = upper.y()};
 }
 
 std::string label(const models::Coordinate& state) { return state.name + " (" + state.unit + ")"; }
-
-/// Whether the box restricts nothing but the position, so that it is unsafe as a whole.
-bool is_planar(const controller::Box& box, const models::SystemDescription& system) {
-  for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
-    if (i == system.position_x || i == system.position_y) continue;
-    if (std::isfinite(box.lower[i]) || std::isfinite(box.upper[i])) return false;
-  }
-  return true;
-}
 
 }  // namespace
 
@@ -41,14 +32,19 @@ MapPoint map_point(const Eigen::Ref<const Eigen::VectorXd>& state,
 }
 
 PlaneMap ground_map(const Scenario& scenario, const models::SystemDescription& system) {
+  const controller::UnsafeSet unsafe(scenario.safe_set);
+  const auto outline_of = [&](const controller::UnsafeRegion& region) {
+    return region.outline(0, system.position_x, system.position_y);
+  };
   PlaneMap map{.x_label = label(system.states[static_cast<std::size_t>(system.position_x)]),
                .y_label = label(system.states[static_cast<std::size_t>(system.position_y)]),
-               .bounds = rectangle_of(scenario.safe_set.bounds, system),
+               .bounds = rectangle_of(outline_of(unsafe.walls())),
                .targets = {{.centre = map_point(scenario.target.state, system),
                             .radius = scenario.target.radius}}};
-  for (const controller::Box& obstacle : scenario.safe_set.obstacles) {
-    auto& boxes = is_planar(obstacle, system) ? map.obstacles : map.partial_obstacles;
-    boxes.push_back(rectangle_of(obstacle, system));
+  for (const controller::RegionPointer& obstacle : unsafe.obstacles()) {
+    const controller::Outline outline = outline_of(*obstacle);
+    auto& boxes = outline.depends_on_others ? map.partial_obstacles : map.obstacles;
+    boxes.push_back(rectangle_of(outline));
   }
   return map;
 }

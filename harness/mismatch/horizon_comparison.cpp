@@ -38,10 +38,10 @@ Eigen::VectorXd rms_of_finite(const controller::Points& values) {
   return (squares / count).cwiseSqrt();  // 0/0 without any: not a number
 }
 
-std::int64_t count_unsafe(const controller::Points& states, const controller::SafeSet& safe_set) {
+std::int64_t count_unsafe(const controller::Points& states, const controller::UnsafeSet& unsafe) {
   return std::ranges::count_if(states.colwise(), [&](const auto& column) {
     const Eigen::VectorXd state = column;
-    return !state.allFinite() || controller::distance_to_unsafe(state, safe_set) <= 0.0;
+    return !state.allFinite() || controller::distance_to_unsafe(state, unsafe) <= 0.0;
   });
 }
 
@@ -83,7 +83,7 @@ std::vector<W2Floor> w2_floors(const std::vector<controller::DiscreteMeasure>& s
 
 std::vector<HorizonStage> compare_along_horizon(
     const PlantPaths& plant, const std::vector<controller::Points>& model,
-    const std::vector<controller::DiscreteMeasure>& stages, const controller::SafeSet& safe_set,
+    const std::vector<controller::DiscreteMeasure>& stages, const controller::UnsafeSet& unsafe,
     const HorizonSettings& settings, const controller::Executor& run) {
   std::vector<HorizonStage> compared(stages.size() - 1);
   run(static_cast<int>(compared.size()), [&](int n) {
@@ -93,7 +93,7 @@ std::vector<HorizonStage> compare_along_horizon(
     stage.divergence_rmse = rms_of_finite(plant.states[k] - model[k]);
     stage.residual_rmse = rms_of_finite(plant.residuals[k - 1]);
     stage.w2 = w2_to(stages[k], plant.states[k], settings.w2_paths);
-    stage.unsafe = count_unsafe(plant.states[k], safe_set);
+    stage.unsafe = count_unsafe(plant.states[k], unsafe);
     stage.unsafe_limits = clopper_pearson(stage.unsafe, plant.states[k].cols(), kIntervalTail);
   });
   return compared;

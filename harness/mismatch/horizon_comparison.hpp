@@ -8,7 +8,7 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/parallel.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/unsafe_set.hpp"
 #include "harness/mismatch/path_ensemble.hpp"
 #include "harness/statistics/binomial_interval.hpp"
 
@@ -76,7 +76,7 @@ struct HorizonSettings {
 /// same source.
 [[nodiscard]] std::vector<HorizonStage> compare_along_horizon(
     const PlantPaths& plant, const std::vector<controller::Points>& model,
-    const std::vector<controller::DiscreteMeasure>& stages, const controller::SafeSet& safe_set,
+    const std::vector<controller::DiscreteMeasure>& stages, const controller::UnsafeSet& unsafe,
     const HorizonSettings& settings, const controller::Executor& run);
 
 }  // namespace qsmpc::harness

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "controller/regions/unsafe_set.hpp"
 #include "harness/random/random_numbers.hpp"
 #include "harness/threads/workers.hpp"
 
@@ -22,7 +23,7 @@ class PathSimulation {
   PathSimulation(const controller::PredictedMotion& motion, const controller::SafeSet& safe_set,
                  const MonteCarloOptions& options)
       : motion_(motion),
-        safe_set_(safe_set),
+        unsafe_(safe_set),
         options_(options),
         initial_(motion.belief.mean, motion.belief.covariance),
         noise_(Eigen::VectorXd::Zero(motion.belief.mean.size()), motion.noise_covariance) {}
@@ -77,7 +78,7 @@ class PathSimulation {
     std::int64_t count = 0;
     for (Eigen::Index i = 0; i < states.cols(); ++i) {
       const Eigen::VectorXd state = states.col(i);
-      if (state.allFinite() && controller::distance_to_unsafe(state, safe_set_) > 0.0) continue;
+      if (state.allFinite() && controller::distance_to_unsafe(state, unsafe_) > 0.0) continue;
       was_unsafe[static_cast<std::size_t>(i)] = 1;
       ++count;
     }
@@ -85,7 +86,7 @@ class PathSimulation {
   }
 
   const controller::PredictedMotion& motion_;
-  const controller::SafeSet& safe_set_;
+  controller::UnsafeSet unsafe_;
   const MonteCarloOptions& options_;
   GaussianSampler initial_;
   GaussianSampler noise_;

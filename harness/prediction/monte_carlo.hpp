@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
+#include "controller/regions/safe_set.hpp"
 
 namespace qsmpc::harness {
 

@@ -20,14 +20,14 @@ Json rate_json(std::int64_t events, std::int64_t samples) {
 }
 
 Json certificate_json(const controller::StageCertificate& certificate) {
+  Json all = Json::object();
+  for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
+    if (entry.is_bound) all[entry.key] = certificate.of(entry.key);
+  }
   return {{"value", certificate.value},
           {"kind", certificate.kind},
-          {"all",
-           {{"c1", certificate.particles},
-            {"c2", certificate.mixture},
-            {"c3", certificate.surrogate},
-            {"c4", certificate.smoothed}}},
-          {"thesis", certificate.thesis}};
+          {"all", all},
+          {"thesis", certificate.of("thesis")}};
 }
 
 Json stage_json(const PredictionReport& report, std::size_t stage) {

@@ -74,7 +74,7 @@ std::string stage_row(const PredictionReport& report, std::size_t stage,
   std::string text = fmt::format("{:>{}}", stage, kStageWidth);
   for (const int state : states) text += fmt::format("{:>{}}", number(mean[state]), kStateWidth);
   text += tail(number(report.budgets[stage].total), probability(certificate.value),
-               certificate.kind, probability(certificate.thesis));
+               certificate.kind, probability(certificate.of("thesis")));
   if (report.monte_carlo) {
     text += simulated_columns(*report.monte_carlo, report.monte_carlo->stages[stage - 1]);
   }

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "controller/certification/certificate.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/safe_set.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
 #include "models/constants.hpp"
@@ -81,7 +81,7 @@ Chart certificate_chart(const EpisodeView& view) {
   const auto thesis = [](const StepRecord& step) {
     double largest = kNotANumber;
     for (const controller::StageCertificate& stage : step.certificates) {
-      largest = std::fmax(largest, stage.thesis);
+      largest = std::fmax(largest, stage.of("thesis"));
     }
     return largest;
   };
@@ -152,24 +152,20 @@ Chart budget_chart(const EpisodeView& view) {
 }
 
 Chart cost_chart(const Trace& trace) {
-  const auto part = [](auto member) {
-    return [member](const StepRecord& step) { return step.cost.*member; };
-  };
-  Chart chart{
-      .title = "Expected cost of the plan, by part",
-      .note = "What is below the axis, 0 included, is drawn at its foot.",
-      .x_label = kTimeLabel,
-      .y_label = "cost (–)",
-      .y_scale = Scale::kLog,
-      .least_shown = 1e-3,
-      .series = {
-          series_of(trace, "state", kBlue, part(&controller::CostParts::state)),
-          series_of(trace, "terminal", kOrange, part(&controller::CostParts::terminal)),
-          series_of(trace, "input", kGreen, part(&controller::CostParts::input)),
-          series_of(trace, "obstacle penalty", kVermilion, part(&controller::CostParts::obstacle)),
-          series_of(trace, "bounds penalty", kPurple, part(&controller::CostParts::box))}};
-  chart.series[3].dashed = true;
-  chart.series[4].dashed = true;
+  Chart chart{.title = "Expected cost of the plan, by part",
+              .note = "What is below the axis, 0 included, is drawn at its foot.",
+              .x_label = kTimeLabel,
+              .y_label = "cost (–)",
+              .y_scale = Scale::kLog,
+              .least_shown = 1e-3};
+  constexpr std::array kColours = {kBlue, kGreen, kOrange, kPurple, kVermilion, kSky};
+  const std::vector<controller::CostPartEntry>& parts = controller::cost_parts();
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    Series series = series_of(trace, parts[part].words, kColours[part % kColours.size()],
+                              [part](const StepRecord& step) { return step.cost[part]; });
+    series.dashed = part >= 3;
+    chart.series.push_back(std::move(series));
+  }
   return chart;
 }
 

@@ -96,14 +96,13 @@ class EpisodeData {
 
   [[nodiscard]] Json cost_parts() const {
     if (!parts_.cost) return Json::object();
-    const auto part = [this](double controller::CostParts::*member) {
-      return of_steps([member](const StepRecord& step) { return step.cost.*member; });
-    };
-    return {{"distance to the target", part(&controller::CostParts::state)},
-            {"distance at the plan’s end", part(&controller::CostParts::terminal)},
-            {"input", part(&controller::CostParts::input)},
-            {"nearness to obstacles", part(&controller::CostParts::obstacle)},
-            {"nearness to the bounds", part(&controller::CostParts::box)}};
+    Json json = Json::object();
+    const std::vector<controller::CostPartEntry>& parts = controller::cost_parts();
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      json[parts[part].words] =
+          of_steps([part](const StepRecord& step) { return step.cost[part]; });
+    }
+    return json;
   }
 
   [[nodiscard]] Json inputs() const {
@@ -119,24 +118,27 @@ class EpisodeData {
     return json;
   }
 
-  [[nodiscard]] std::string of_stages(double controller::StageCertificate::*member) const {
+  template <class Figure>
+  [[nodiscard]] std::string of_stages(const Figure& figure) const {
     std::vector<double> values;
     for (const StepRecord& step : trace_.steps) {
       for (std::size_t stage = 0; stage + 1 < stages(); ++stage) {
         const bool known = stage < step.certificates.size();
-        values.push_back(known ? step.certificates[stage].*member : kNotANumber);
+        values.push_back(known ? figure(step.certificates[stage]) : kNotANumber);
       }
     }
     return packed_floats(values);
   }
 
   [[nodiscard]] Json certificates() const {
-    return {{"value", of_stages(&controller::StageCertificate::value)},
-            {"thesis", of_stages(&controller::StageCertificate::thesis)},
-            {"plan", of_steps([](const StepRecord& step) {
-               return step.certificates.empty() ? kNotANumber
-                                                : controller::horizon_bound(step.certificates);
-             })}};
+    return {
+        {"value", of_stages([](const controller::StageCertificate& stage) { return stage.value; })},
+        {"thesis",
+         of_stages([](const controller::StageCertificate& stage) { return stage.of("thesis"); })},
+        {"plan", of_steps([](const StepRecord& step) {
+           return step.certificates.empty() ? kNotANumber
+                                            : controller::horizon_bound(step.certificates);
+         })}};
   }
 
   [[nodiscard]] std::string of_budgets(double controller::StageBudget::*member) const {

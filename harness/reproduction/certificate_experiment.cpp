@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "controller/certification/worst_case.hpp"
+#include "controller/certification/published_certificate.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/reproduction/turn_prediction.hpp"
@@ -54,14 +54,14 @@ void add_rows(const Case& turn, ExperimentResult& result) {
       fmt::format("{} samples; at least {:.3g} and at most {:.3g}, each but for a chance of {}",
                   turn.report.monte_carlo->samples, truth.limits.lower, truth.limits.upper,
                   kRateTail));
-  row("as published (Eq. 4-4, Algorithms 3 and 4)", certificate.thesis,
-      certificate.thesis < truth.limits.lower ? "below the truth: no bound" : "");
+  row("as published (Eq. 4-4, Algorithms 3 and 4)", certificate.of("thesis"),
+      certificate.of("thesis") < truth.limits.lower ? "below the truth: no bound" : "");
   row("Algorithm 4, distance and radius right", linear_transport_at(turn.report, turn.stage),
       "a bound, but loose");
-  row("C1, transport cost right too", certificate.particles, "a bound");
-  row("C2, Gaussian noise kept", certificate.mixture, "a bound");
-  row("C3, Gaussian surrogate", certificate.surrogate, "a bound");
-  row("C4, the same smoothed", certificate.smoothed, "a bound; the least of the four is in force");
+  row("C1, transport cost right too", certificate.of("c1"), "a bound");
+  row("C2, Gaussian noise kept", certificate.of("c2"), "a bound");
+  row("C3, Gaussian surrogate", certificate.of("c3"), "a bound");
+  row("C4, the same smoothed", certificate.of("c4"), "a bound; the least of the four is in force");
 }
 
 Chart chart_of(const Case& turn) {
@@ -79,18 +79,18 @@ Chart chart_of(const Case& turn) {
     }
     chart.series.push_back(series);
   };
-  const auto certificate = [&](double controller::StageCertificate::*bound) {
-    return [&turn, bound](int stage) { return certificate_at(turn.report, stage).*bound; };
+  const auto certificate = [&](const std::string& key) {
+    return [&turn, key](int stage) { return certificate_at(turn.report, stage).of(key); };
   };
   add("truth", kGreen, [&](int stage) { return truth_at(turn.report, stage).rate; });
   add(
       "its lower limit", kGreen,
       [&](int stage) { return truth_at(turn.report, stage).limits.lower; }, true);
-  add("as published", kVermilion, certificate(&controller::StageCertificate::thesis), true);
-  add("C1", kSky, certificate(&controller::StageCertificate::particles));
-  add("C2", kOrange, certificate(&controller::StageCertificate::mixture));
-  add("C3", kPurple, certificate(&controller::StageCertificate::surrogate));
-  add("C4", kBlue, certificate(&controller::StageCertificate::smoothed));
+  add("as published", kVermilion, certificate("thesis"), true);
+  add("C1", kSky, certificate("c1"));
+  add("C2", kOrange, certificate("c2"));
+  add("C3", kPurple, certificate("c3"));
+  add("C4", kBlue, certificate("c4"));
   return chart;
 }
 
@@ -117,7 +117,7 @@ ExperimentResult published_certificate(Laboratory& laboratory) {
            contradicted_stages(walls.report).empty() && contradicted_stages(block.report).empty(),
        .evidence = fmt::format("{} samples, each limit but for a chance of {}",
                                laboratory.truth_samples(), kRateTail)});
-  const double published = certificate_at(block.report, block.stage).thesis;
+  const double published = certificate_at(block.report, block.stage).of("thesis");
   const SimulatedRate truth = truth_at(block.report, block.stage);
   result.claims.push_back(
       {.statement = "The published probability is an upper bound (thesis, Eq. 4-14)",

@@ -45,8 +45,8 @@ EpisodeDigest digest_of(const Trace& trace) {
         1e-3 * (step.timing.quantise + step.timing.propagate + step.timing.optimise);
     digest.costs.push_back(step.cost.total());
     digest.next_step.push_back(step.certificates.front().value);
-    digest.particles.push_back(step.certificates.front().particles);
-    digest.published.push_back(step.certificates.front().thesis);
+    digest.particles.push_back(step.certificates.front().of("c1"));
+    digest.published.push_back(step.certificates.front().of("thesis"));
     digest.plan_risk.push_back(controller::horizon_bound(step.certificates));
   }
   return digest;

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <memory>
 
-#include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
+#include "controller/certification/published_certificate.hpp"
 #include "controller/certification/worst_case.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/planner.hpp"
@@ -32,10 +32,10 @@ controller::DiscreteMeasure product_of(const controller::Points& states,
 }  // namespace
 
 WorstCase worst_cases(const controller::DiscreteMeasure& measure,
-                      const controller::SafeSet& safe_set, const Radii& radii) {
-  return {.published = controller::thesis_probability(measure, safe_set, radii.published),
-          .distance = controller::linear_transport_probability(measure, safe_set, radii.sound),
-          .sound = controller::worst_case_probability(measure, safe_set, radii.sound)};
+                      const controller::UnsafeSet& unsafe, const Radii& radii) {
+  return {.published = controller::thesis_probability(measure, unsafe.bounds(), radii.published),
+          .distance = controller::linear_transport_probability(measure, unsafe, radii.sound),
+          .sound = controller::worst_case_probability(measure, unsafe, radii.sound)};
 }
 
 std::vector<NextStepView> next_step_views(const Trace& trace) {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "controller/measure/measures.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/unsafe_set.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace qsmpc::harness {
@@ -29,7 +29,7 @@ struct Radii {
 };
 
 [[nodiscard]] WorstCase worst_cases(const controller::DiscreteMeasure& measure,
-                                    const controller::SafeSet& safe_set, const Radii& radii);
+                                    const controller::UnsafeSet& unsafe, const Radii& radii);
 
 /// The next step of a period, from the product of stepped points and noise points (Eq. 4-4) and
 /// from the compressed measure (Eq. 4-6).

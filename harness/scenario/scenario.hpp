@@ -12,8 +12,8 @@
 
 #include <Eigen/Core>
 
-#include "controller/planning/safe_set.hpp"
 #include "controller/prediction/model_error.hpp"
+#include "controller/regions/safe_set.hpp"
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/safe_set.hpp"
 #include "harness/scenario/yaml_section.hpp"
 #include "models/dynamics/dynamics.hpp"
 

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/safe_set.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {

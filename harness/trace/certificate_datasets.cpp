@@ -31,12 +31,13 @@ std::vector<DatasetSpec> certificate_layout(std::optional<std::size_t> horizon) 
   add_of_budget(kModelErrorPath, kStateNorm, kModelErrorMeaning);
   add_of_budget(kDynamicsPath, kStateNorm, kDynamicsMeaning);
   add_of_budget("/certificate/lipschitz", "1", kLipschitzMeaning);
-  for (const CertificateField& field : kCertificateFields) {
-    layout.push_back({.path = certificate_path(field),
-                      .row_shape = stages(0),
-                      .axes = axes,
-                      .units = {"1"},
-                      .comment = field.meaning});
+  const auto add_of_stages = [&](const std::string& path, const std::string& meaning) {
+    layout.push_back(
+        {.path = path, .row_shape = stages(0), .axes = axes, .units = {"1"}, .comment = meaning});
+  };
+  add_of_stages(kCertificateValuePath, kCertificateValueMeaning);
+  for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
+    add_of_stages(certificate_path(entry), entry.meaning);
   }
   layout.push_back({.path = "/certificate/kind",
                     .type = DatasetSpec::Type::kText,
@@ -57,8 +58,13 @@ void append_certificates(Hdf5File& file, const std::vector<controller::StageBudg
   file.append(kModelErrorPath, column_of(budgets, &controller::StageBudget::model));
   file.append(kDynamicsPath, column_of(budgets, &controller::StageBudget::dynamics));
   file.append("/certificate/lipschitz", column_of(budgets, &controller::StageBudget::lipschitz));
-  for (const CertificateField& field : kCertificateFields) {
-    file.append(certificate_path(field), column_of(certificates, field.member));
+  file.append(kCertificateValuePath, column_of(certificates, &controller::StageCertificate::value));
+  for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
+    std::vector<double> column;
+    for (const controller::StageCertificate& stage : certificates) {
+      column.push_back(stage.of(entry.key));
+    }
+    file.append(certificate_path(entry), column);
   }
   file.append("/certificate/kind", column_of(certificates, &controller::StageCertificate::kind));
 }

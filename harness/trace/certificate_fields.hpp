@@ -12,30 +12,6 @@
 
 namespace qsmpc::harness {
 
-struct CertificateField {
-  const char* name;  ///< of the dataset, in the group /certificate
-  double controller::StageCertificate::*member;
-  const char* meaning;
-};
-
-inline constexpr std::array<CertificateField, 7> kCertificateFields = {{
-    {"value", &controller::StageCertificate::value,
-     "the least of the sound upper bounds of the probability that the state, the model's or with a "
-     "model_error the plant's, is unsafe; the first is that of stage 1"},
-    {"particles", &controller::StageCertificate::particles,
-     "c1: worst case over the W2 ball around the particles; sound"},
-    {"mixture", &controller::StageCertificate::mixture,
-     "c2: the same before the last noise, which stays Gaussian; sound"},
-    {"surrogate", &controller::StageCertificate::surrogate,
-     "c3: affine-Gaussian surrogate, 1 where it does not apply; sound"},
-    {"smoothed", &controller::StageCertificate::smoothed,
-     "c4: the surrogate smoothed by the noise, 1 where it does not apply; sound"},
-    {"thesis", &controller::StageCertificate::thesis,
-     "the reference algorithm as printed; not sound"},
-    {"unsafe_mass", &controller::StageCertificate::unsafe_mass,
-     "weight of the particles that are unsafe; no bound"},
-}};
-
 struct BudgetField {
   const char* name;
   double controller::StageBudget::*member;
@@ -55,9 +31,15 @@ inline constexpr std::array<BudgetField, 4> kBudgetColumns = {{
   return names;
 }
 
-[[nodiscard]] inline std::string certificate_path(const CertificateField& field) {
-  return std::string("/certificate/") + field.name;
+/// Where a bound, or what is shown beside the bounds, is.
+[[nodiscard]] inline std::string certificate_path(const controller::CertificateEntry& entry) {
+  return "/certificate/" + entry.dataset;
 }
+
+inline constexpr const char* kCertificateValuePath = "/certificate/value";
+inline constexpr const char* kCertificateValueMeaning =
+    "the least of the sound upper bounds of the probability that the state, the model's or with a "
+    "model_error the plant's, is unsafe; the first is that of stage 1";
 
 inline constexpr const char* kDynamicsPath = "/certificate/dynamics";
 /// The budget's part that the scenario's model error has; not among the columns, so that traces

@@ -2,40 +2,24 @@
 // read is one list.
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <string>
 #include <vector>
 
-#include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/cost/cost_parts.hpp"
 
 namespace qsmpc::harness {
 
-struct CostField {
-  const char* name;
-  double controller::CostParts::*member;
-};
-
 /// The columns of /plan/cost.
-inline constexpr std::array<CostField, 5> kCostFields = {{
-    {"state", &controller::CostParts::state},
-    {"input", &controller::CostParts::input},
-    {"terminal", &controller::CostParts::terminal},
-    {"box", &controller::CostParts::box},
-    {"obstacle", &controller::CostParts::obstacle},
-}};
-
 [[nodiscard]] inline std::vector<std::string> cost_part_names() {
-  std::vector<std::string> names(kCostFields.size());
-  std::ranges::transform(kCostFields, names.begin(), &CostField::name);
+  std::vector<std::string> names;
+  for (const controller::CostPartEntry& part : controller::cost_parts()) names.push_back(part.name);
   return names;
 }
 
 /// The parts in the order of the columns.
 [[nodiscard]] inline std::vector<double> cost_row(const controller::CostParts& cost) {
-  std::vector<double> row;
-  row.reserve(kCostFields.size());
-  for (const CostField& field : kCostFields) row.push_back(cost.*field.member);
+  std::vector<double> row(controller::cost_parts().size());
+  for (std::size_t part = 0; part < row.size(); ++part) row[part] = cost[part];
   return row;
 }
 

@@ -1,6 +1,6 @@
 #include "harness/trace/episode_view.hpp"
 
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/unsafe_set.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/trace/residuals.hpp"
 
@@ -13,8 +13,9 @@ EpisodeView::EpisodeView(const Trace& trace)
       states_(true_states(trace)),
       clearances_(states_.cols()),
       residuals_(one_step_residuals(trace, *model_)) {
+  const controller::UnsafeSet unsafe(trace.scenario.safe_set);
   for (Eigen::Index k = 0; k < states_.cols(); ++k) {
-    clearances_[k] = controller::clearance(states_.col(k), trace.scenario.safe_set);
+    clearances_[k] = controller::clearance(states_.col(k), unsafe);
   }
   summary_ = summarise(*this);
 }

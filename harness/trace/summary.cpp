@@ -81,7 +81,7 @@ void add_certificates(const EpisodeView& view, Summary& summary) {
     summary.horizon_max =
         std::max(summary.horizon_max, controller::horizon_bound(step.certificates));
     for (const controller::StageCertificate& certificate : step.certificates) {
-      summary.thesis_max = std::max(summary.thesis_max, certificate.thesis);
+      summary.thesis_max = std::max(summary.thesis_max, certificate.of("thesis"));
     }
   }
   if (view.parts().stages == 0) summary.horizon_max = kNotANumber;

@@ -197,13 +197,14 @@ void TraceReader::read_policy() {
 
 void TraceReader::read_solution() {
   for (StepRecord& step : trace_.steps) {
-    for (const CostField& field : kCostFields) step.cost.*field.member = kNotANumber;
+    step.cost = controller::CostParts::all(kNotANumber);
   }
   if (parts_.cost) {
     const auto costs = file_.doubles("/plan/cost");
     for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
-      const double* cost = row_of(costs, k, std::ssize(kCostFields));
-      for (const CostField& field : kCostFields) trace_.steps[k].cost.*field.member = *cost++;
+      const auto count = std::ssize(controller::cost_parts());
+      const double* cost = row_of(costs, k, count);
+      for (std::ptrdiff_t part = 0; part < count; ++part) trace_.steps[k].cost[part] = cost[part];
     }
   }
   if (!parts_.status) return;
@@ -267,20 +268,28 @@ void TraceReader::read_budgets() {
 void TraceReader::read_certificates() {
   const auto kinds = file_.texts("/certificate/kind");
   for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
-    trace_.steps[k].certificates.resize(stages_);
+    trace_.steps[k].certificates.assign(stages_, controller::blank_certificate());
     for (std::size_t s = 0; s < stages_; ++s) {
       trace_.steps[k].certificates[s].kind = kinds[k * stages_ + s];
     }
   }
-  for (const CertificateField& field : kCertificateFields) {
-    // A bound that is missing keeps its default of 1: it was not among those that were computed.
-    const auto values = doubles_if_there(certificate_path(field));
-    if (values.empty()) continue;
+  const auto for_stages = [&](const std::vector<double>& values, const auto& take) {
     for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
       for (std::size_t s = 0; s < stages_; ++s) {
-        trace_.steps[k].certificates[s].*field.member = values[k * stages_ + s];
+        take(trace_.steps[k].certificates[s], values[k * stages_ + s]);
       }
     }
+  };
+  for_stages(file_.doubles(kCertificateValuePath),
+             [](controller::StageCertificate& stage, double value) { stage.value = value; });
+  const std::vector<controller::CertificateEntry>& entries = controller::certificate_entries();
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    // What is missing keeps what stands for it: it was not among those that were computed.
+    const auto values = doubles_if_there(certificate_path(entries[i]));
+    if (values.empty()) continue;
+    for_stages(values, [i](controller::StageCertificate& stage, double value) {
+      stage.figures[i] = value;
+    });
   }
 }
 

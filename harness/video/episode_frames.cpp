@@ -18,14 +18,19 @@ namespace {
 
 constexpr double kFlatHalfWidth = 0.5;  // m, of an obstacle in a direction that a system lacks
 
-// The box's sides along x and y.
-render::PlanarRectangle planar_box(const models::SystemDescription& system,
-                                   const controller::Box& box, double missing) {
-  const auto side = [missing](const Eigen::VectorXd& values, int index, double sign) {
-    return index >= 0 ? values[index] : sign * missing;
-  };
-  return {side(box.lower, system.position_x, -1.0), side(box.upper, system.position_x, 1.0),
-          side(box.lower, system.position_y, -1.0), side(box.upper, system.position_y, 1.0)};
+// The region's sides along x and y; `missing` stands for half of one that the system lacks.
+render::PlanarRectangle planar_sides(const models::SystemDescription& system,
+                                     const controller::UnsafeRegion& region, double missing) {
+  const Eigen::Matrix2Xd corners = region.outline(0, system.position_x, system.position_y).corners;
+  Eigen::Vector2d lower = corners.rowwise().minCoeff();
+  Eigen::Vector2d upper = corners.rowwise().maxCoeff();
+  const std::array<int, 2> index = {system.position_x, system.position_y};
+  for (int side = 0; side < 2; ++side) {
+    if (index[side] >= 0) continue;
+    lower[side] = -missing;
+    upper[side] = missing;
+  }
+  return {lower.x(), upper.x(), lower.y(), upper.y()};
 }
 
 std::string banner(const Trace& trace, double time) {
@@ -67,7 +72,7 @@ EpisodeFrames::EpisodeFrames(const Trace& trace, const Overlays& overlays)
       dynamics_(models::make_dynamics(trace.scenario.model.system, trace.scenario.model.parameters,
                                       trace.scenario.time_step)),
       track_(trace, dynamics_->description()),
-      planar_safe_set_(planar_safe_set(world())),
+      planar_unsafe_(planar_safe_set(world())),
       ranges_(chart_ranges(trace)) {
   if (overlays_.raw) raw_.emplace(trace_.scenario, *dynamics_);
 }
@@ -86,10 +91,10 @@ render::World EpisodeFrames::world() const {
   const models::SystemDescription& system = dynamics_->description();
   const Scenario& scenario = trace_.scenario;
   render::World world;
-  world.bounds =
-      planar_box(system, scenario.safe_set.bounds, std::numeric_limits<double>::infinity());
-  for (const controller::Box& obstacle : scenario.safe_set.obstacles) {
-    world.obstacles.push_back(planar_box(system, obstacle, kFlatHalfWidth));
+  const controller::UnsafeSet unsafe(scenario.safe_set);
+  world.bounds = planar_sides(system, unsafe.walls(), std::numeric_limits<double>::infinity());
+  for (const controller::RegionPointer& obstacle : unsafe.obstacles()) {
+    world.obstacles.push_back(planar_sides(system, *obstacle, kFlatHalfWidth));
   }
   const render::PlanarPose target = planar_pose(system, scenario.target.state);
   world.target = {target.x, target.y};
@@ -143,7 +148,7 @@ render::Frame EpisodeFrames::at(double time) const {
   if (overlays_.path) {
     for (const render::PlanarPoint& point : frame.driven_path) {
       frame.clearances.push_back(
-          controller::clearance(Eigen::Vector2d(point.x, point.y), planar_safe_set_));
+          controller::clearance(Eigen::Vector2d(point.x, point.y), planar_unsafe_));
     }
   }
   const std::size_t step = step_at(now);

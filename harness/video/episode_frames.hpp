@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/unsafe_set.hpp"
 #include "harness/trace/trace.hpp"
 #include "harness/video/episode_hud.hpp"
 #include "harness/video/episode_track.hpp"
@@ -63,7 +63,7 @@ class EpisodeFrames {
   Overlays overlays_;
   std::unique_ptr<const models::Dynamics> dynamics_;
   EpisodeTrack track_;
-  controller::SafeSet planar_safe_set_;
+  controller::UnsafeSet planar_unsafe_;
   std::optional<RawPoints> raw_;  // where they are drawn
   ChartRanges ranges_;
 };

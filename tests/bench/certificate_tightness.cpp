@@ -152,7 +152,7 @@ bool report(const Vehicle& vehicle, const Place& place, bool closed_loop, const 
     std::cout << fmt::format(
         "{:5} {:9.2e} {:9.2e} {:7.2f}  {:4} {:9.2e} {:9.2e} {:9.2e} {:9.2e} {:9.2e} {:7.3f}{}\n",
         k + 1, truth, stage.value, truth > 0.0 ? stage.value / truth : kInfinity, stage.kind,
-        stage.particles, stage.mixture, stage.surrogate, stage.smoothed, stage.thesis,
+        stage.of("c1"), stage.of("c2"), stage.of("c3"), stage.of("c4"), stage.of("thesis"),
         budgets[k + 1].total, holds ? "" : "  above the promise");
   }
   return kept;

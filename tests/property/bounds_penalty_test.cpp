@@ -6,6 +6,7 @@
 #include "controller/planning/cost/penalty.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/support/planning_quality.hpp"
+#include "tests/support/point_penalty.hpp"
 #include "tests/support/simulated_truth.hpp"
 
 namespace qsmpc::controller {
@@ -21,8 +22,8 @@ double price_of_paths(const std::vector<Points>& states, const PlannerSettings& 
   for (const Points& stage : states) {
     const auto count = static_cast<double>(stage.cols());
     Points unused = Points::Zero(stage.rows(), stage.cols());
-    price += add_penalty(stage, Eigen::VectorXd::Constant(stage.cols(), 1.0 / count), room,
-                         settings.penalty, unused)
+    price += testing::add_penalty(stage, Eigen::VectorXd::Constant(stage.cols(), 1.0 / count), room,
+                                  settings.penalty, unused)
                  .box;
   }
   return price;
@@ -36,7 +37,8 @@ double price_of_particles(const Plan& plan, const PlannerSettings& settings) {
   for (std::size_t k = 1; k < plan.prediction.stages.size(); ++k) {
     const DiscreteMeasure& stage = plan.prediction.stages[k];
     Points unused = Points::Zero(stage.dim(), stage.size());
-    price += add_penalty(stage.locations, stage.weights, room, settings.penalty, unused).box;
+    price +=
+        testing::add_penalty(stage.locations, stage.weights, room, settings.penalty, unused).box;
   }
   return price;
 }
@@ -60,12 +62,13 @@ TEST_P(BoundsPenalty, of_a_hundred_particles_is_near_that_of_paths) {
                    by_effort(40000, 200000, 1000000), generator, &states);
     const double truth = price_of_paths(states, settings);
     ASSERT_GT(truth, 5.0);
-    EXPECT_GT(plan.cost.box, 0.6 * truth) << turn;
-    EXPECT_LT(plan.cost.box, 1.2 * truth) << turn;
+    EXPECT_GT(plan.cost.of("box"), 0.6 * truth) << turn;
+    EXPECT_LT(plan.cost.of("box"), 1.2 * truth) << turn;
     // Without what they stand for, the particles know less.
-    EXPECT_LT(std::abs(plan.cost.box - truth), std::abs(price_of_particles(plan, settings) - truth))
+    EXPECT_LT(std::abs(plan.cost.of("box") - truth),
+              std::abs(price_of_particles(plan, settings) - truth))
         << turn;
-    RecordProperty("share_" + std::to_string(turn), std::to_string(plan.cost.box / truth));
+    RecordProperty("share_" + std::to_string(turn), std::to_string(plan.cost.of("box") / truth));
     RecordProperty("particles_" + std::to_string(turn),
                    std::to_string(price_of_particles(plan, settings) / truth));
     planner.reset();

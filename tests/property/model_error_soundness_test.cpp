@@ -68,10 +68,10 @@ struct Tally {
 };
 
 void compare(const StageCertificate& certificate, double least, const std::string& where) {
-  EXPECT_GE(certificate.particles, least) << "C1 " << where;
-  EXPECT_GE(certificate.mixture, least) << "C2 " << where;
-  EXPECT_GE(certificate.surrogate, least) << "C3 " << where;
-  EXPECT_GE(certificate.smoothed, least) << "C4 " << where;
+  EXPECT_GE(certificate.of("c1"), least) << "C1 " << where;
+  EXPECT_GE(certificate.of("c2"), least) << "C2 " << where;
+  EXPECT_GE(certificate.of("c3"), least) << "C3 " << where;
+  EXPECT_GE(certificate.of("c4"), least) << "C4 " << where;
   EXPECT_GE(certificate.value, least) << "value " << where;
 }
 

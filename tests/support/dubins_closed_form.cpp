@@ -144,13 +144,15 @@ controller::CostParts dubins_cost(const DubinsProblem& problem,
                                   const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   const std::vector<DubinsMoments> moments = dubins_moments(problem, inputs);
   const controller::QuadraticCost& cost = problem.cost;
-  controller::CostParts parts;
+  double state = 0.0;
+  double input = 0.0;
   for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
-    parts.state += 0.5 * quadratic(moments[k], cost.state, cost.target);
-    parts.input += inputs.col(k).dot(cost.input * inputs.col(k));
+    state += 0.5 * quadratic(moments[k], cost.state, cost.target);
+    input += inputs.col(k).dot(cost.input * inputs.col(k));
   }
-  parts.terminal = quadratic(moments.back(), cost.terminal, cost.target);
-  return parts;
+  return {{"state", state},
+          {"input", input},
+          {"terminal", quadratic(moments.back(), cost.terminal, cost.target)}};
 }
 
 DubinsOptimum dubins_optimum(const DubinsProblem& problem, int horizon, int starts) {

@@ -102,14 +102,10 @@ inline void add_example_plan(harness::StepRecord& step, const harness::Scenario&
       // Every entry another number: a transposed copy would show.
       step.plan_gains.emplace_back(noise() * Eigen::RowVector3d(1.0, -2.0, 3.0));
       const double value = std::exp(-9.0 + static_cast<double>(s) + 2.0 * noise());
-      step.certificates.push_back({.value = value,
-                                   .kind = value < 1e-3 ? "c2" : "c1",
-                                   .particles = value * 1.5,
-                                   .mixture = value,
-                                   .surrogate = value * 2.5,
-                                   .smoothed = value * 2.25,
-                                   .thesis = value * 0.3,
-                                   .unsafe_mass = 0.0});
+      step.certificates.push_back(
+          {.value = value,
+           .kind = value < 1e-3 ? "c2" : "c1",
+           .figures = {value * 1.5, value, value * 2.5, value * 2.25, value * 0.3, 0.0}});
     }
     models::StateBatch next(3, 1);
     const models::StateBatch input = step.input;
@@ -132,7 +128,8 @@ inline harness::StepRecord example_step(const harness::Scenario& scenario,
   step.belief_mean = state;
   step.belief_covariance = 0.01 * Eigen::Matrix3d::Identity();
   step.belief_covariance(0, 1) = 0.001;  // not symmetric: a transposed copy would show
-  step.cost = {.state = 900.0 - k, .input = 2.0, .terminal = 300.0, .box = 0.5, .obstacle = 40.0};
+  step.cost = {
+      {"state", 900.0 - k}, {"input", 2.0}, {"terminal", 300.0}, {"box", 0.5}, {"obstacle", 40.0}};
   step.solver_status = k % 7 == 3 ? "iteration_limit" : "converged";
   step.fallback = k % 17 == 5;
   step.iterations = 20 + k % 5;

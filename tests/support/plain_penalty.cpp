@@ -86,8 +86,7 @@ ValueAndSlope excess(double x, double lower, double upper) {
 
 }  // namespace
 
-controller::PenaltyValue PlainPenalty::operator()(const Eigen::VectorXd& x,
-                                                  Eigen::VectorXd& slope) const {
+PenaltyValue PlainPenalty::operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
   return penalty_.shape == controller::PenaltyShape::kThesis ? thesis(x, slope) : smooth(x, slope);
 }
 
@@ -115,9 +114,8 @@ double PlainPenalty::of_bounds(const Eigen::MatrixXd& x, const Eigen::VectorXd& 
   return value;
 }
 
-controller::PenaltyValue PlainPenalty::smooth(const Eigen::VectorXd& x,
-                                              Eigen::VectorXd& slope) const {
-  controller::PenaltyValue value;
+PenaltyValue PlainPenalty::smooth(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+  PenaltyValue value;
   for (const controller::Box& obstacle : safe_set_.obstacles) {
     Eigen::VectorXd outward = Eigen::VectorXd::Zero(x.size());
     const double distance = outward_distance(x, obstacle, outward);
@@ -128,9 +126,8 @@ controller::PenaltyValue PlainPenalty::smooth(const Eigen::VectorXd& x,
   return value;
 }
 
-controller::PenaltyValue PlainPenalty::thesis(const Eigen::VectorXd& x,
-                                              Eigen::VectorXd& slope) const {
-  controller::PenaltyValue value;
+PenaltyValue PlainPenalty::thesis(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
+  PenaltyValue value;
   const controller::Box& room = safe_set_.bounds;
   for (Eigen::Index axis = 0; axis < x.size(); ++axis) {
     const ValueAndSlope out = excess(x[axis], room.lower[axis], room.upper[axis]);

@@ -5,7 +5,8 @@
 #include <Eigen/Core>
 
 #include "controller/planning/cost/penalty.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/safe_set.hpp"
+#include "tests/support/point_penalty.hpp"
 
 namespace qsmpc::testing {
 
@@ -16,7 +17,7 @@ class PlainPenalty {
       : safe_set_(safe_set), penalty_(penalty) {}
 
   /// Of one particle, without its weight; adds the gradient to `slope`.
-  controller::PenaltyValue operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const;
+  PenaltyValue operator()(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const;
 
   /// Of the bounds, for particles (d x n) that stand for normal laws of these deviations; 0 for the
   /// printed shape, which has them above. Overwrites the slopes by the particles (d x n) and by the
@@ -26,10 +27,8 @@ class PlainPenalty {
                    Eigen::VectorXd& deviation_slopes) const;
 
  private:
-  [[nodiscard]] controller::PenaltyValue smooth(const Eigen::VectorXd& x,
-                                                Eigen::VectorXd& slope) const;
-  [[nodiscard]] controller::PenaltyValue thesis(const Eigen::VectorXd& x,
-                                                Eigen::VectorXd& slope) const;
+  [[nodiscard]] PenaltyValue smooth(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const;
+  [[nodiscard]] PenaltyValue thesis(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const;
 
   const controller::SafeSet& safe_set_;
   const controller::Penalty& penalty_;

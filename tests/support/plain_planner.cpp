@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "controller/planning/cost/expected_bounds.hpp"
 #include "controller/prediction/moment_matching.hpp"
 #include "tests/support/plain_penalty.hpp"
 
@@ -137,8 +138,12 @@ class PlainHorizon {
   }
   [[nodiscard]] double factor(Eigen::Index k) const { return k == horizon_ ? 1.0 : 0.5; }
 
+  [[nodiscard]] double& part(std::string_view name) {
+    return result_.parts[controller::cost_part(name)];
+  }
+
   void add_state_cost(Eigen::Index k, double value) {
-    (k == horizon_ ? result_.parts.terminal : result_.parts.state) += value;
+    part(k == horizon_ ? "terminal" : "state") += value;
   }
 
   /// Of the points before noise and compression, with what the noise adds.
@@ -167,9 +172,9 @@ class PlainHorizon {
       next.states = moved(prediction_.maps[k], stage.stepped);
       for (std::size_t n = 0; n < next.states.size(); ++n) {
         Eigen::VectorXd slope = Eigen::VectorXd::Zero(dim_);
-        const controller::PenaltyValue value = penalty(next.states[n], slope);
-        result_.parts.box += weight(k + 1, n) * value.box;
-        result_.parts.obstacle += weight(k + 1, n) * value.obstacle;
+        const PenaltyValue value = penalty(next.states[n], slope);
+        part("box") += weight(k + 1, n) * value.box;
+        part("obstacle") += weight(k + 1, n) * value.obstacle;
         next.penalty_slope.emplace_back(weight(k + 1, n) * slope);
       }
     }
@@ -195,8 +200,8 @@ class PlainHorizon {
         (terms_.noise_covariance.diagonal() + smoothing * variance).cwiseSqrt();
     Eigen::MatrixXd slopes;
     Eigen::VectorXd by_deviation;
-    result_.parts.box += penalty.of_bounds((share * away).colwise() + mean, weights, deviations,
-                                           slopes, by_deviation);
+    part("box") += penalty.of_bounds((share * away).colwise() + mean, weights, deviations, slopes,
+                                     by_deviation);
     const Eigen::VectorXd by_mean = (1.0 - share) * slopes.rowwise().sum();
     for (Eigen::Index i = 0; i < count; ++i) {
       Eigen::VectorXd slope = share * slopes.col(i) + weights[i] * by_mean;
@@ -221,7 +226,7 @@ class PlainHorizon {
       clamped[a] =
           closed_ && (wanted[a] <= policy_.bounds.lower[a] || wanted[a] >= policy_.bounds.upper[a]);
     }
-    result_.parts.input += weight(k, i) * input.dot(terms_.cost.input * input);
+    part("input") += weight(k, i) * input.dot(terms_.cost.input * input);
     stage.stepped.push_back(step(terms_.dynamics, stage.states[i], input));
     stage.inputs.push_back(input);
     stage.clamped.push_back(clamped);

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "controller/measure/measures.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "controller/prediction/prediction.hpp"
+#include "controller/regions/safe_set.hpp"
 
 namespace qsmpc::testing {
 

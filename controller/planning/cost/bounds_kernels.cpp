@@ -80,9 +80,9 @@ CoordinateMoments moments_loop(const double* x, const double* weights, std::size
           hn::GetLane(hn::MaxOfLanes(d, most))};
 }
 
-FaceCost face_cost_loop(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law,
-                        double scale, double length, const double* x, const double* weights,
-                        std::size_t size, double* gradient) {
+FaceCost face_cost_loop(const AxisInterval& bounds, const SmoothedCoordinate& law, double scale,
+                        double length, const double* x, const double* weights, std::size_t size,
+                        double* gradient) {
   const Vector inverse_length = constant(1.0 / length);
   const Vector spread = constant(law.deviation / length);
   const Vector share = constant(law.share);
@@ -133,7 +133,7 @@ CoordinateMoments coordinate_moments(const double* x, const double* weights, std
   return HWY_DYNAMIC_DISPATCH(moments_loop)(x, weights, size, reference);
 }
 
-FaceCost evaluate_faces(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law,
+FaceCost evaluate_faces(const AxisInterval& bounds, const SmoothedCoordinate& law,
                         const Penalty& penalty, const double* x, const double* weights,
                         std::size_t size, double* gradient) {
   return HWY_DYNAMIC_DISPATCH(face_cost_loop)(bounds, law, penalty.box, penalty.length, x, weights,

@@ -5,7 +5,7 @@
 #include <cstddef>
 
 #include "controller/planning/cost/penalty.hpp"
-#include "controller/planning/cost/stage_kernels.hpp"
+#include "controller/regions/safe_set.hpp"
 
 namespace qsmpc::controller {
 
@@ -46,7 +46,7 @@ struct FaceCorrection {
                                                    std::size_t size, double reference);
 
 /// Adds the derivatives by the x_i, at fixed share, offset and deviation, to `gradient`.
-FaceCost evaluate_faces(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law,
+FaceCost evaluate_faces(const AxisInterval& bounds, const SmoothedCoordinate& law,
                         const Penalty& penalty, const double* x, const double* weights,
                         std::size_t size, double* gradient);
 

@@ -10,8 +10,8 @@ namespace {
 constexpr double kLeastDeviation = 1e-150;
 
 /// Whether no particle between these two feels a face; false if anything is NaN.
-bool all_far(const PenaltyTable::Face& bounds, const SmoothedCoordinate& law, double least,
-             double most, double length) {
+bool all_far(const AxisInterval& bounds, const SmoothedCoordinate& law, double least, double most,
+             double length) {
   const double reach = length + kFarDeviations * law.deviation;
   return law.share * least + law.offset - bounds.lower > reach &&
          bounds.upper - (law.share * most + law.offset) > reach;
@@ -29,7 +29,7 @@ double smoothing_of(Eigen::Index count, Eigen::Index dim) {
 ExpectedBounds::ExpectedBounds(const SafeSet& safe_set, const Penalty& penalty)
     : penalty_(penalty) {
   if (penalty.shape != PenaltyShape::kSmooth || !(penalty.box > 0.0)) return;
-  bounds_ = PenaltyTable(safe_set, penalty).bounds;
+  bounds_ = bounded_axes(safe_set.bounds);
   coordinates_.resize(bounds_.size());
 }
 
@@ -49,7 +49,7 @@ void ExpectedBounds::for_near(const Executor& run, const Points& points,
 /// Laws of the coordinates, from the moments of all chunks.
 void ExpectedBounds::describe(const Law& law, const Points& points) {
   for (std::size_t n = 0; n < bounds_.size(); ++n) {
-    const PenaltyTable::Face& bounds = bounds_[n];
+    const AxisInterval& bounds = bounds_[n];
     const double reference = points(bounds.axis, 0);
     CoordinateMoments sum = moments_[n];
     for (std::size_t slot = n + bounds_.size(); slot < moments_.size(); slot += bounds_.size()) {

@@ -21,7 +21,7 @@
 #include "controller/parallel.hpp"
 #include "controller/planning/cost/bounds_kernels.hpp"
 #include "controller/planning/cost/penalty.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/safe_set.hpp"
 
 namespace qsmpc::controller {
 
@@ -62,7 +62,7 @@ class ExpectedBounds {
   void describe(const Law& law, const Points& points);
 
   Penalty penalty_;
-  std::vector<PenaltyTable::Face> bounds_;
+  std::vector<AxisInterval> bounds_;
   std::vector<Coordinate> coordinates_;     // as bounds_
   std::vector<CoordinateMoments> moments_;  // chunks x bounds
   std::vector<FaceCost> face_costs_;        // chunks x bounds

@@ -20,14 +20,17 @@ auto columns(Points& points, ParticleRange range) {
 }  // namespace
 
 HorizonCost::HorizonCost(const HorizonCostTerms& terms, Executor run)
-    : terms_(terms),
-      run_(std::move(run)),
-      state_form_(terms.cost.state, terms.cost.target),
-      terminal_form_(terms.cost.terminal, terms.cost.target),
-      input_form_(terms.cost.input, Eigen::VectorXd::Zero(terms.cost.input.rows())),
-      penalties_(terms.safe_set, terms.penalty),
-      expected_bounds_(terms.safe_set, terms.penalty) {
-  if (terms.penalty.shape == PenaltyShape::kSmooth) penalties_.bounds.clear();
+    : terms_(terms), run_(std::move(run)) {
+  for (const CostTermEntry& entry : cost_terms()) {
+    std::unique_ptr<StageTerm> term = entry.make(terms);
+    if (term == nullptr) continue;
+    const TermPlace place = term->place();
+    const bool needs_all = term->needs_all();
+    terms_in_use_.push_back({.part = cost_part(entry.part),
+                             .place = place,
+                             .needs_all = needs_all,
+                             .term = std::move(term)});
+  }
 }
 
 HorizonCost::HorizonCost(const HorizonCostTerms& terms, const Prediction& prediction,
@@ -49,22 +52,15 @@ void HorizonCost::freeze_assignments(const Prediction& prediction, const Policy&
   lone_ = std::all_of(prediction.maps.begin(), prediction.maps.end(),
                       [](const StageMap& map) { return map.identity; });
   resize_stages();
-  noise_deviations_ = terms_.noise_covariance.diagonal().cwiseMax(0.0).cwiseSqrt();
-  const QuadraticCost& cost = terms_.cost;
-  state_form_.centre = cost.target;
-  terminal_form_.centre = cost.target;
-  const double noise = cost.state.cwiseProduct(terms_.noise_covariance).sum();
-  Stage& first = stages_[0];
-  first.points = prediction.stages[0].locations;
-  double belief = 0.0;
-  for (Eigen::Index i = 0; i < first.points.cols(); i += kChunk) {
-    belief += weighted_quadratic(state_form_, 0.5, first.points, prediction.stages[0].weights,
-                                 chunk_range(static_cast<int>(i / kChunk), first.points.cols()),
-                                 first.pulled);
+  stages_[0].points = prediction.stages[0].locations;
+  fixed_ = {};
+  for (const Term& each : terms_in_use_) {
+    each.term->freeze({.belief = prediction.stages[0],
+                       .noise_covariance = terms_.noise_covariance,
+                       .within_covariance = terms_.within_covariance,
+                       .horizon = policy.horizon()});
+    fixed_[each.part] += each.term->fixed();
   }
-  constant_state_cost_ = belief + 0.5 * (cost.state.cwiseProduct(terms_.within_covariance).sum() +
-                                         static_cast<double>(policy.horizon() - 1) * noise);
-  constant_terminal_cost_ = cost.terminal.cwiseProduct(terms_.noise_covariance).sum();
 }
 
 void HorizonCost::resize_stages() {
@@ -111,7 +107,7 @@ double HorizonCost::evaluate(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
 }
 
 double HorizonCost::evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
-  if (!penalties_at_hand_ || !is_rolled_out(z)) forward(z);
+  if (!adjoints_at_hand_ || !is_rolled_out(z)) forward(z);
   backward(policy_.horizon(), /*with_cost=*/true, gradient);
   return parts_.total();
 }
@@ -147,11 +143,11 @@ StagePolicy HorizonCost::stage_policy(Eigen::Index k) const {
 void HorizonCost::forward(const Eigen::VectorXd& z) {
   decision_.assign(z.begin(), z.end());
   rolled_out_ = true;
-  penalties_at_hand_ = true;
+  adjoints_at_hand_ = true;
   set_decision(z);
   const Eigen::Index dim = policy_.states.rows();
   const Eigen::Index inputs = policy_.inputs.rows();
-  parts_ = {.state = constant_state_cost_, .terminal = constant_terminal_cost_};
+  parts_ = fixed_;
   for (Eigen::Index k = 0; k < policy_.horizon(); ++k) {
     Stage& stage = stages_[k];
     const double* const state = policy_.states.col(k).data();
@@ -167,12 +163,9 @@ void HorizonCost::forward(const Eigen::VectorXd& z) {
       partials_[chunk].cost = forward_sources(k, range);
     });
     for (Eigen::Index i = 0; i < sources; i += kChunk) {
-      const CostParts& part = partials_[i / kChunk].cost;
-      parts_.input += part.input;
-      parts_.state += part.state;
-      parts_.terminal += part.terminal;
+      parts_.add(partials_[i / kChunk].cost);
     }
-    parts_.box += evaluate_bounds(k);
+    add_terms_of_all(k);
     const bool spread = prediction_->maps[k].spread.size() != 0;
     if (spread) {
       for_chunks(run_, clusters, [&](ParticleRange range, int) {
@@ -182,13 +175,22 @@ void HorizonCost::forward(const Eigen::VectorXd& z) {
       apply_spread(prediction_->maps[k], stages_[k + 1].points);
     }
     for_chunks(run_, clusters, [&](ParticleRange range, int chunk) {
-      partials_[chunk].penalty = forward_clusters(k, range);
+      partials_[chunk].cost = forward_clusters(k, range);
     });
-    for (Eigen::Index i = 0; i < clusters; i += kChunk) {
-      parts_.box += partials_[i / kChunk].penalty.box;
-      parts_.obstacle += partials_[i / kChunk].penalty.obstacle;
-    }
+    for (Eigen::Index i = 0; i < clusters; i += kChunk) parts_.add(partials_[i / kChunk].cost);
   }
+}
+
+/// The terms at one place that can be taken of some particles, or zero where there is none.
+void HorizonCost::add_terms(TermPlace place, TermBatch batch, CostParts& parts) const {
+  batch.blank = true;
+  for (const Term& each : terms_in_use_) {
+    if (each.place != place || each.needs_all) continue;
+    if (!each.term->acts(batch.stage, policy_.horizon())) continue;
+    parts[each.part] += each.term->add(batch, run_);
+    batch.blank = false;
+  }
+  clear_if_blank(batch);
 }
 
 /// Policy, step and costs of some particles of stage k.
@@ -197,49 +199,65 @@ CostParts HorizonCost::forward_sources(Eigen::Index k, ParticleRange range) {
   const Eigen::VectorXd& weights = prediction_->stages[k].weights;
   CostParts cost;
   apply_policy(stage_policy(k), stage.points, range, stage.inputs);
-  cost.input =
-      weighted_quadratic(input_form_, 1.0, stage.inputs, weights, range, stage.input_gradient);
+  add_terms(TermPlace::kInputs,
+            {.stage = k,
+             .points = stage.inputs,
+             .weights = weights,
+             .range = range,
+             .gradient = stage.input_gradient},
+            cost);
   terms_.dynamics.step(columns(std::as_const(stage.points), range),
                        columns(std::as_const(stage.inputs), range), columns(stage.stepped, range));
-  if (k + 1 == policy_.horizon()) {
-    cost.terminal = weighted_quadratic(terminal_form_, 1.0, stage.stepped, weights, range,
-                                       stage.state_gradient);
-  } else {
-    cost.state =
-        weighted_quadratic(state_form_, 0.5, stage.stepped, weights, range, stage.state_gradient);
-  }
+  add_terms(TermPlace::kStepped,
+            {.stage = k + 1,
+             .points = stage.stepped,
+             .weights = weights,
+             .range = range,
+             .gradient = stage.state_gradient},
+            cost);
   if (!prediction_->maps[k].identity) {
     pack(stage.stepped, range.begin, range.end, stage.packed_stepped);
   }
   return cost;
 }
 
-/// The penalties of the bounds for the next state, in expectation.
-double HorizonCost::evaluate_bounds(Eigen::Index k) {
-  if (expected_bounds_.empty()) return 0.0;
+/// The terms of the next state that have to see all particles of stage k.
+void HorizonCost::add_terms_of_all(Eigen::Index k) {
   Stage& stage = stages_[k];
-  // Particles that no compression has made stand for themselves alone.
-  const double smoothing =
-      prediction_->maps[k].identity ? 0.0 : smoothing_of(stage.points.cols(), stage.points.rows());
-  return expected_bounds_.add({.noise_deviation = noise_deviations_, .smoothing = smoothing},
-                              stage.stepped, prediction_->stages[k].weights, run_,
-                              stage.state_gradient);
+  for (const Term& each : terms_in_use_) {
+    if (!each.needs_all || !each.term->acts(k + 1, policy_.horizon())) continue;
+    parts_[each.part] += each.term->add({.stage = k + 1,
+                                         .points = stage.stepped,
+                                         .weights = prediction_->stages[k].weights,
+                                         .range = {0, stage.stepped.cols()},
+                                         .gradient = stage.state_gradient,
+                                         .lone = prediction_->maps[k].identity},
+                                        run_);
+  }
 }
 
-/// Some particles of stage k + 1, and their penalties.
-PenaltyValue HorizonCost::forward_clusters(Eigen::Index k, ParticleRange range) {
+/// Some particles of stage k + 1, and the terms at them.
+CostParts HorizonCost::forward_clusters(Eigen::Index k, ParticleRange range) {
   const Stage& stage = stages_[k];
   Stage& next = stages_[k + 1];
   const StageMap& map = prediction_->maps[k];
   if (map.spread.size() == 0) {
     apply_shares(map, stage.stepped, stage.packed_stepped, range.begin, range.end, next.points);
   }
-  return penalise(penalties_, next.points, map.weights, range, next.adjoint);
+  CostParts cost;
+  add_terms(TermPlace::kParticles,
+            {.stage = k + 1,
+             .points = next.points,
+             .weights = map.weights,
+             .range = range,
+             .gradient = next.adjoint},
+            cost);
+  return cost;
 }
 
 /// From the adjoints of stage `from` and, with the cost, of all stages before it.
 void HorizonCost::backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient) {
-  penalties_at_hand_ = false;
+  adjoints_at_hand_ = false;
   gradient.setZero();
   nominal_adjoint_.setZero();
   stages_[0].adjoint.setZero();
@@ -308,26 +326,28 @@ void HorizonCost::backward_nominal(Eigen::Index k, const double* sum, const doub
   of_gain.noalias() -= of_inputs * policy_.states.col(k).transpose();
 }
 
-void HorizonCost::particle_gradient(Eigen::Index k, Eigen::Index particle, Eigen::Index axis,
-                                    Eigen::VectorXd& gradient) {
-  if (lone_) {
-    lone_particle_gradient(k, particle, axis, gradient);
+void HorizonCost::pull_back(Eigen::Index k, const StageSlope& slope, Eigen::VectorXd& gradient) {
+  if (lone_ && slope.particles.size() == 1) {
+    pull_back_alone(k, slope, gradient);
     return;
   }
   for (Eigen::Index j = 0; j <= k; ++j) stages_[j].adjoint.setZero();
-  stages_[k].adjoint(axis, particle) = 1.0;
+  for (std::size_t i = 0; i < slope.particles.size(); ++i) {
+    stages_[k].adjoint.col(slope.particles[i]) =
+        slope.by_particle.col(static_cast<Eigen::Index>(i));
+  }
   backward(k, /*with_cost=*/false, gradient);
 }
 
 /// The same where a particle depends on no other: back along its own path.
-void HorizonCost::lone_particle_gradient(Eigen::Index k, Eigen::Index particle, Eigen::Index axis,
-                                         Eigen::VectorXd& gradient) {
+void HorizonCost::pull_back_alone(Eigen::Index k, const StageSlope& slope,
+                                  Eigen::VectorXd& gradient) {
   const Eigen::Index inputs = policy_.inputs.rows();
+  const Eigen::Index particle = slope.particles.front();
   gradient.setZero();
   nominal_adjoint_.setZero();
   Eigen::VectorXd& adjoint = lone_adjoint_;
-  adjoint.setZero(policy_.states.rows());
-  adjoint[axis] = 1.0;
+  adjoint = slope.by_particle.col(0);
   for (Eigen::Index j = k - 1; j >= 0; --j) {
     const Stage& stage = stages_[j];
     const ParticleRange one{particle, particle + 1};

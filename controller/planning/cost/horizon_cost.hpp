@@ -3,59 +3,27 @@
 // With the assignments of a prediction held, the cost is a piecewise smooth function of the nominal
 // inputs, and HorizonCost evaluates it and its exact gradient by one pass forward and one backward.
 //
-// With f_i the stepped points and w the noise, the stage cost of Eq. 4-18 (its first line) is taken
-// before this stage's compression, which would lose a part of the second moment:
-//     ½ E|x − r|²_Q = ½ Σ_i ρ_i |f_i − r|²_Q + ½ tr(Q Σ_w),
-// and the terminal cost (Eq. 4-19) likewise, without the ½. The smooth penalties of the bounds are
-// taken there, too, in expectation (expected_bounds.hpp); the others act on the compressed points.
+// What is added up are the terms of cost_terms.hpp, each at its place in a period: at the inputs,
+// at where the step takes the particles, or at the particles that are kept.
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "controller/parallel.hpp"
-#include "controller/planning/cost/expected_bounds.hpp"
-#include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/cost/cost_parts.hpp"
+#include "controller/planning/cost/cost_terms.hpp"
 #include "controller/planning/cost/stage_kernels.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/planning/cost/stage_slope.hpp"
+#include "controller/planning/cost/stage_term.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::controller {
-
-/// Weights of Eq. 4-18 and 4-19 about a target state r.
-struct QuadraticCost {
-  Eigen::MatrixXd state;     ///< Q, state_dim x state_dim
-  Eigen::MatrixXd input;     ///< R, input_dim x input_dim
-  Eigen::MatrixXd terminal;  ///< Q_term, state_dim x state_dim
-  Eigen::VectorXd target;    ///< r, state_dim
-  /// States whose target is meant modulo 2π. A planner shifts the target, for each plan, to what is
-  /// nearest to the belief's mean; HorizonCost takes it as it is.
-  std::vector<int> angles{};
-};
-
-/// The parts of the expected cost (Eq. 4-21).
-struct CostParts {
-  double state = 0.0;
-  double input = 0.0;
-  double terminal = 0.0;
-  double box = 0.0;
-  double obstacle = 0.0;
-  [[nodiscard]] double total() const { return state + input + terminal + box + obstacle; }
-};
-
-/// What the cost depends on besides the prediction; refers to objects that must outlive it.
-struct HorizonCostTerms {
-  const models::Dynamics& dynamics;
-  const SafeSet& safe_set;
-  const QuadraticCost& cost;
-  const Penalty& penalty;
-  const Eigen::MatrixXd& noise_covariance;   ///< zero where the prediction leaves the noise out
-  const Eigen::MatrixXd& within_covariance;  ///< of the belief's quantiser, for stage 0
-};
 
 class HorizonCost {
  public:
@@ -93,23 +61,22 @@ class HorizonCost {
   /// Particles of stage k = 0 … horizon under the decision last evaluated, state_dim x n.
   [[nodiscard]] const Points& particles(Eigen::Index k) const { return stages_[k].points; }
 
-  /// The gradient, with respect to the decision last evaluated, of coordinate `axis` of one
-  /// particle of stage k ≥ 1; as in `evaluate`.
-  void particle_gradient(Eigen::Index k, Eigen::Index particle, Eigen::Index axis,
-                         Eigen::VectorXd& gradient);
+  /// The gradient, with respect to the decision last evaluated, of a function of the particles of
+  /// stage k ≥ 1 that has this slope; as in `evaluate`.
+  void pull_back(Eigen::Index k, const StageSlope& slope, Eigen::VectorXd& gradient);
 
  private:
   // Scratch of one stage; stage 0 … horizon.
   struct Stage {
     Points points;   // c
-    Points adjoint;  // of c; after a forward pass that of the penalties
+    Points adjoint;  // of c; after a forward pass that of the terms at the particles
     PackedPoints packed_adjoint;
     Points inputs;          // u at the points
-    Points input_gradient;  // of the input cost
+    Points input_gradient;  // of the terms at the inputs
     Points input_adjoint;
     Points stepped;  // f(c, u)
     PackedPoints packed_stepped;
-    Points state_gradient;  // of the state or terminal cost, at f
+    Points state_gradient;  // of the terms at f
     Points stepped_adjoint;
     Points pulled;             // of c, through f alone
     Eigen::VectorXd constant;  // v − K x̄
@@ -117,9 +84,15 @@ class HorizonCost {
   // What one chunk of particles adds to sums.
   struct Partial {
     CostParts cost;
-    PenaltyValue penalty;
     Eigen::VectorXd inputs;  // Σ a
     Eigen::MatrixXd outer;   // Σ a xᵀ
+  };
+
+  struct Term {
+    std::size_t part = 0;  // among cost_parts()
+    TermPlace place = TermPlace::kInputs;
+    bool needs_all = false;
+    std::unique_ptr<StageTerm> term;
   };
 
   [[nodiscard]] bool is_rolled_out(const Eigen::VectorXd& z) const {
@@ -129,24 +102,19 @@ class HorizonCost {
   void set_decision(const Eigen::VectorXd& z);
   void forward(const Eigen::VectorXd& z);
   [[nodiscard]] CostParts forward_sources(Eigen::Index k, ParticleRange range);
-  [[nodiscard]] double evaluate_bounds(Eigen::Index k);
-  [[nodiscard]] PenaltyValue forward_clusters(Eigen::Index k, ParticleRange range);
+  void add_terms_of_all(Eigen::Index k);
+  [[nodiscard]] CostParts forward_clusters(Eigen::Index k, ParticleRange range);
   void backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient);
   void backward_sources(Eigen::Index k, bool with_cost, ParticleRange range, Partial& partial);
   void backward_nominal(Eigen::Index k, const double* sum, const double* outer,
                         Eigen::VectorXd& gradient);
-  void lone_particle_gradient(Eigen::Index k, Eigen::Index particle, Eigen::Index axis,
-                              Eigen::VectorXd& gradient);
+  void pull_back_alone(Eigen::Index k, const StageSlope& slope, Eigen::VectorXd& gradient);
+  void add_terms(TermPlace place, TermBatch batch, CostParts& parts) const;
   [[nodiscard]] StagePolicy stage_policy(Eigen::Index k) const;
 
   HorizonCostTerms terms_;
   Executor run_;
-  QuadraticForm state_form_;
-  QuadraticForm terminal_form_;
-  QuadraticForm input_form_;
-  PenaltyTable penalties_;          // at the particles
-  ExpectedBounds expected_bounds_;  // before noise and compression
-  Eigen::VectorXd noise_deviations_;
+  std::vector<Term> terms_in_use_;  // in the order of the table
   const Prediction* prediction_ = nullptr;
   Policy policy_;                       // with the decision last evaluated
   std::vector<Eigen::MatrixXd> gains_;  // as held, without ΔK
@@ -155,10 +123,9 @@ class HorizonCost {
   bool lone_ = false;                   // whether no particle ever meets another
   std::vector<double> decision_;        // that the stages belong to …
   bool rolled_out_ = false;             // … if any
-  bool penalties_at_hand_ = false;      // whether the adjoints are still those of the penalties
+  bool adjoints_at_hand_ = false;       // whether the adjoints are still those of the terms
   CostParts parts_;
-  double constant_state_cost_ = 0.0;  // noise and quantiser, which no input changes
-  double constant_terminal_cost_ = 0.0;
+  CostParts fixed_;  // what no decision changes
   std::vector<Stage> stages_;
   std::vector<Partial> partials_;
   Eigen::VectorXd flat_;  // scratch of the matrix form of `evaluate`

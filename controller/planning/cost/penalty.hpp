@@ -1,4 +1,4 @@
-// Penalties that keep particles out of the unsafe set, with their gradients.
+// Penalties that keep particles out of the unsafe set; terms of the cost (cost_terms.hpp).
 //
 // `thesis` is Algorithm 2 and Eq. 4-10 as printed: flat inside an obstacle, so that a particle in
 // it is not pushed out, and with a halo of one unit whatever the unit is. `smooth` is the default:
@@ -11,11 +11,6 @@
 // gradient points the way out from everywhere.
 #pragma once
 
-#include <Eigen/Core>
-
-#include "controller/measure/measures.hpp"
-#include "controller/planning/safe_set.hpp"
-
 namespace qsmpc::controller {
 
 enum class PenaltyShape { kSmooth, kThesis };
@@ -26,17 +21,5 @@ struct Penalty {
   double obstacle = 400.0;  ///< weight of entering an obstacle, ≥ 0
   double length = 0.5;      ///< ℓ (m), > 0; `smooth` only
 };
-
-struct PenaltyValue {
-  double box = 0.0;
-  double obstacle = 0.0;
-};
-
-/// Σ_i weights_i · penalty(locations_i), box and obstacles apart; the gradient with respect to the
-/// locations is added to `adjoint` (d x n). Where two faces are equally near the gradient is that
-/// of one of them.
-[[nodiscard]] PenaltyValue add_penalty(const Points& locations, const Eigen::VectorXd& weights,
-                                       const SafeSet& safe_set, const Penalty& penalty,
-                                       Points& adjoint);
 
 }  // namespace qsmpc::controller

@@ -1,5 +1,5 @@
-// The loops over the particles of one stage that are not the system's: policy, quadratic costs and
-// penalties, forwards and backwards, for the processor's widest vectors. Each works on the
+// The loops over the particles of one stage that are not the system's: policy and quadratic costs,
+// forwards and backwards, for the processor's widest vectors. Each works on the
 // particles begin … end − 1 only, so that several threads can share a stage.
 #pragma once
 
@@ -7,7 +7,6 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/parallel.hpp"
-#include "controller/planning/cost/penalty_table.hpp"
 
 namespace qsmpc::controller {
 
@@ -41,16 +40,16 @@ struct QuadraticForm {
   bool diagonal = false;
 };
 
-/// factor · Σ ρ_i (x_i − r)ᵀW(x_i − r); its gradient 2 factor ρ_i W (x_i − r) overwrites `gradient`
+/// Whether a gradient replaces what is there.
+enum class GradientUse { kOverwrite, kAdd };
+
+/// factor · Σ ρ_i (x_i − r)ᵀW(x_i − r); its gradient 2 factor ρ_i W (x_i − r) goes into `gradient`
 /// (d x n).
 double weighted_quadratic(const QuadraticForm& form, double factor, const Points& points,
-                          const Eigen::VectorXd& weights, ParticleRange range, Points& gradient);
+                          const Eigen::VectorXd& weights, ParticleRange range, Points& gradient,
+                          GradientUse use = GradientUse::kOverwrite);
 
 /// a += b in the range.
 void add_points(const Points& b, ParticleRange range, Points& a);
-
-/// As add_penalty (penalty.hpp), but the gradient overwrites `adjoint` in the range.
-PenaltyValue penalise(const PenaltyTable& table, const Points& locations,
-                      const Eigen::VectorXd& weights, ParticleRange range, Points& adjoint);
 
 }  // namespace qsmpc::controller

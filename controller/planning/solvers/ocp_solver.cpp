@@ -10,7 +10,7 @@
 namespace qsmpc::controller {
 namespace {
 
-void require(bool holds, const char* message) {
+void check(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("solver: ") + message);
 }
 
@@ -88,17 +88,17 @@ std::unique_ptr<OcpSolver> make_solver(std::string_view name, const SolverSettin
 
 void check_problem(const OcpProblem& problem, const Eigen::VectorXd& start,
                    const SolverOptions& options, ConstraintsTaken taken) {
-  require(start.size() >= 1, "there is nothing to decide");
-  require(problem.lower.size() == start.size() && problem.upper.size() == start.size(),
-          "bounds and start must be of one size");
+  check(start.size() >= 1, "there is nothing to decide");
+  check(problem.lower.size() == start.size() && problem.upper.size() == start.size(),
+        "bounds and start must be of one size");
   // A comparison with NaN is false, so these are refused as well.
-  require((problem.lower.array() <= problem.upper.array()).all(), "the bounds are crossed");
-  require(options.max_evaluations >= 1, "at least one evaluation of the cost is needed");
+  check((problem.lower.array() <= problem.upper.array()).all(), "the bounds are crossed");
+  check(options.max_evaluations >= 1, "at least one evaluation of the cost is needed");
   if (!problem.constraints) return;
-  require(taken == ConstraintsTaken::kInequalities, "this solver takes no constraints");
+  check(taken == ConstraintsTaken::kInequalities, "this solver takes no constraints");
   const ConstraintSet& set = *problem.constraints;
-  require(set.count >= 0 && (set.group.empty() || std::ssize(set.group) == set.count),
-          "each constraint must be in a group, or none");
+  check(set.count >= 0 && (set.group.empty() || std::ssize(set.group) == set.count),
+        "each constraint must be in a group, or none");
 }
 
 }  // namespace qsmpc::controller

@@ -15,7 +15,7 @@ std::vector<PeriodRow> period_rows(const EpisodeView& view) {
     const StepRecord& step = view.trace().steps[static_cast<std::size_t>(k)];
     const controller::StageCertificate& next = step.certificates.front();
     rows.push_back({.certified = next.value,
-                    .published = next.thesis,
+                    .published = next.of("thesis"),
                     .unsafe = view.ended_unsafe(k),
                     .ocp_ms = step.timing.total});
   }

@@ -35,7 +35,7 @@ TEST(EpisodeRow, takes_the_certificate_of_the_next_step) {
   EXPECT_EQ(row.variant, 7);
   for (std::size_t k = 0; k < row.periods.size(); ++k) {
     EXPECT_EQ(row.periods[k].certified, trace.steps[k].certificates.front().value);
-    EXPECT_EQ(row.periods[k].published, trace.steps[k].certificates.front().thesis);
+    EXPECT_EQ(row.periods[k].published, trace.steps[k].certificates.front().of("thesis"));
     EXPECT_EQ(row.periods[k].ocp_ms, trace.steps[k].timing.total);
   }
 }

@@ -75,11 +75,11 @@ TEST(PredictionJson, holds_the_reports_numbers_bit_for_bit) {
     EXPECT_EQ(stage["budget"]["dynamics"], report.budgets[k + 1].dynamics);
     EXPECT_EQ(stage["certificate"]["value"], certificate.value);
     EXPECT_EQ(stage["certificate"]["kind"], certificate.kind);
-    EXPECT_EQ(stage["certificate"]["all"]["c1"], certificate.particles);
-    EXPECT_EQ(stage["certificate"]["all"]["c2"], certificate.mixture);
-    EXPECT_EQ(stage["certificate"]["all"]["c3"], certificate.surrogate);
-    EXPECT_EQ(stage["certificate"]["all"]["c4"], certificate.smoothed);
-    EXPECT_EQ(stage["certificate"]["thesis"], certificate.thesis);
+    EXPECT_EQ(stage["certificate"]["all"]["c1"], certificate.of("c1"));
+    EXPECT_EQ(stage["certificate"]["all"]["c2"], certificate.of("c2"));
+    EXPECT_EQ(stage["certificate"]["all"]["c3"], certificate.of("c3"));
+    EXPECT_EQ(stage["certificate"]["all"]["c4"], certificate.of("c4"));
+    EXPECT_EQ(stage["certificate"]["thesis"], certificate.of("thesis"));
     EXPECT_EQ(stage["monte_carlo"]["samples"], 2000);
   }
   EXPECT_EQ(json["horizon"]["value"], report.horizon_bound);
@@ -128,7 +128,7 @@ TEST(PredictionFile, holds_particles_policy_and_certificates) {
   EXPECT_EQ(file.doubles("/plan/gains")[5], report.policy.gains[1](0, 2));
   EXPECT_EQ(file.doubles("/plan/states")[4], report.policy.states(1, 1));
   EXPECT_EQ(file.doubles("/certificate/budget")[4 * 4 + 3], report.budgets[4].total);
-  EXPECT_EQ(file.doubles("/certificate/smoothed")[0], report.certificates[0].smoothed);
+  EXPECT_EQ(file.doubles("/certificate/smoothed")[0], report.certificates[0].of("c4"));
   EXPECT_EQ(file.texts("/certificate/kind")[0], report.certificates[0].kind);
   EXPECT_EQ(file.doubles("/certificate/horizon")[0], report.horizon_bound);
   EXPECT_EQ(file.integers("/monte_carlo/unsafe"), report.monte_carlo->stages);

@@ -198,7 +198,7 @@ TEST(EpisodePage, numbers_that_are_not_finite_do_not_break_the_drawings) {
   const double infinity = std::numeric_limits<double>::infinity();
   trace.steps[3].state.setConstant(nan);
   trace.steps[4].input.setConstant(infinity);
-  trace.steps[5].cost.state = nan;
+  trace.steps[5].cost[controller::cost_part("state")] = nan;
   trace.steps[6].budgets.back().total = infinity;
   trace.steps[7].certificates.front().value = nan;
   trace.steps[8].certificates.clear();

@@ -46,7 +46,8 @@ TEST(CertificateDatasets, what_is_appended_is_read_back) {
   budget.belief = 1.0;
   budget.total = 2.0;
   budget.model = 3.0;
-  controller::StageCertificate certificate;
+  controller::StageCertificate certificate = controller::blank_certificate();
+  certificate.figures[controller::certificate_index("c3")] = 0.5;
   certificate.value = 0.25;
   certificate.kind = "c2";
   append_certificates(file, {budget, budget}, {certificate});
@@ -60,11 +61,15 @@ TEST(CertificateDatasets, what_is_appended_is_read_back) {
   EXPECT_THAT(read.doubles("/certificate/budget"), ElementsAre(1, 0, 0, 2, 1, 0, 0, 2));
   EXPECT_THAT(read.doubles("/certificate/model"), ElementsAre(3, 3));
   EXPECT_THAT(read.doubles("/certificate/value"), ElementsAre(0.25));
+  EXPECT_THAT(read.doubles("/certificate/surrogate"), ElementsAre(0.5));
+  EXPECT_THAT(read.doubles("/certificate/smoothed"), ElementsAre(1.0));
+  EXPECT_THAT(read.doubles("/certificate/unsafe_mass"), ElementsAre(0.0));
   EXPECT_THAT(read.texts("/certificate/kind"), ElementsAre("c2"));
 }
 
 TEST(CostFields, hold_every_part_once) {
-  const controller::CostParts cost{.state = 1, .input = 2, .terminal = 4, .box = 8, .obstacle = 16};
+  const controller::CostParts cost{
+      {"state", 1}, {"input", 2}, {"terminal", 4}, {"box", 8}, {"obstacle", 16}};
   EXPECT_THAT(cost_row(cost), ElementsAre(1, 2, 4, 8, 16));
   EXPECT_THAT(cost_part_names(), ElementsAre("state", "input", "terminal", "box", "obstacle"));
 }

@@ -27,11 +27,12 @@ Trace straight_trace(int steps) {
     step.state = Eigen::Vector3d(0.15 * k, 0.0, 0.0);
     step.input = Eigen::VectorXd::Zero(1);
     step.disturbance = Eigen::Vector3d::Zero();
-    step.certificates.resize(2);
+    step.certificates.assign(2, controller::blank_certificate());
+    const std::size_t published = controller::certificate_index("thesis");
     step.certificates[0].value = 0.01 * (k + 1);
     step.certificates[1].value = 0.5;
-    step.certificates[0].thesis = 0.25;
-    step.certificates[1].thesis = 0.125;
+    step.certificates[0].figures[published] = 0.25;
+    step.certificates[1].figures[published] = 0.125;
     step.timing.total = k + 1;
     step.timing.certify = 7.0;
     step.iterations = 10 + k;

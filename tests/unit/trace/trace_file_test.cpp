@@ -103,7 +103,9 @@ TEST_F(TraceFile, a_trace_from_before_the_newer_numbers_is_read_with_what_it_has
   for (std::size_t k = 0; k < read.steps.size(); ++k) {
     StepRecord expected = trace.steps[k];
     expected.plan_gains.clear();
-    for (controller::StageCertificate& stage : expected.certificates) stage.smoothed = 1.0;
+    for (controller::StageCertificate& stage : expected.certificates) {
+      stage.figures[controller::certificate_index("c4")] = 1.0;
+    }
     for (controller::StageBudget& stage : expected.budgets) {
       stage.dynamics = std::numeric_limits<double>::quiet_NaN();
       stage.model = 0.0;

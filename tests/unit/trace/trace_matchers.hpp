@@ -47,12 +47,10 @@ inline void expect_same_stages(const harness::StepRecord& a, const harness::Step
   for (std::size_t s = 0; s < a.certificates.size(); ++s) {
     EXPECT_TRUE(same_bits(a.certificates[s].value, b.certificates[s].value));
     EXPECT_EQ(a.certificates[s].kind, b.certificates[s].kind);
-    EXPECT_TRUE(same_bits(a.certificates[s].particles, b.certificates[s].particles));
-    EXPECT_TRUE(same_bits(a.certificates[s].mixture, b.certificates[s].mixture));
-    EXPECT_TRUE(same_bits(a.certificates[s].surrogate, b.certificates[s].surrogate));
-    EXPECT_TRUE(same_bits(a.certificates[s].smoothed, b.certificates[s].smoothed));
-    EXPECT_TRUE(same_bits(a.certificates[s].thesis, b.certificates[s].thesis));
-    EXPECT_TRUE(same_bits(a.certificates[s].unsafe_mass, b.certificates[s].unsafe_mass));
+    for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
+      EXPECT_TRUE(same_bits(a.certificates[s].of(entry.key), b.certificates[s].of(entry.key)))
+          << entry.key;
+    }
   }
 }
 
@@ -66,11 +64,9 @@ inline void expect_same_step(const harness::StepRecord& a, const harness::StepRe
   EXPECT_TRUE(same_bits(a.belief_covariance, b.belief_covariance));
   EXPECT_TRUE(same_bits(a.plan_inputs, b.plan_inputs));
   EXPECT_TRUE(same_bits(a.plan_states, b.plan_states));
-  EXPECT_TRUE(same_bits(a.cost.state, b.cost.state));
-  EXPECT_TRUE(same_bits(a.cost.input, b.cost.input));
-  EXPECT_TRUE(same_bits(a.cost.terminal, b.cost.terminal));
-  EXPECT_TRUE(same_bits(a.cost.box, b.cost.box));
-  EXPECT_TRUE(same_bits(a.cost.obstacle, b.cost.obstacle));
+  for (std::size_t part = 0; part < controller::cost_parts().size(); ++part) {
+    EXPECT_TRUE(same_bits(a.cost[part], b.cost[part])) << controller::cost_parts()[part].name;
+  }
   EXPECT_EQ(a.solver_status, b.solver_status);
   EXPECT_EQ(a.fallback, b.fallback);
   EXPECT_EQ(a.iterations, b.iterations);

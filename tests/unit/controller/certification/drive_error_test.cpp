@@ -106,10 +106,10 @@ void expect_equal(const PredictedMotion& one, const PredictedMotion& other) {
   const auto others = certify(other, walls(1.5), other_budgets);
   for (std::size_t k = 0; k < certificates.size(); ++k) {
     EXPECT_EQ(budgets[k + 1].total, other_budgets[k + 1].total) << k;
-    EXPECT_EQ(certificates[k].particles, others[k].particles) << k;
-    EXPECT_EQ(certificates[k].mixture, others[k].mixture) << k;
-    EXPECT_EQ(certificates[k].surrogate, others[k].surrogate) << k;
-    EXPECT_EQ(certificates[k].smoothed, others[k].smoothed) << k;
+    EXPECT_EQ(certificates[k].of("c1"), others[k].of("c1")) << k;
+    EXPECT_EQ(certificates[k].of("c2"), others[k].of("c2")) << k;
+    EXPECT_EQ(certificates[k].of("c3"), others[k].of("c3")) << k;
+    EXPECT_EQ(certificates[k].of("c4"), others[k].of("c4")) << k;
   }
 }
 
@@ -176,10 +176,10 @@ TEST(DriveCertificate, without_the_first_periods_error_is_no_bound) {
   const Eigen::Vector3d push(kPush, 0.0, 0.0);
   for (const ModelError& first : {bounded(push), bounded(Eigen::Vector3d::Zero(), push)}) {
     error.first = {first};
-    EXPECT_GT(value().particles, 1.0 - 1e-6);
-    EXPECT_GT(value().mixture, 1.0 - 1e-6);
-    EXPECT_GT(value().surrogate, 1.0 - 1e-6);
-    EXPECT_GT(value().smoothed, 1.0 - 1e-6);
+    EXPECT_GT(value().of("c1"), 1.0 - 1e-6);
+    EXPECT_GT(value().of("c2"), 1.0 - 1e-6);
+    EXPECT_GT(value().of("c3"), 1.0 - 1e-6);
+    EXPECT_GT(value().of("c4"), 1.0 - 1e-6);
     motion.first_period = 1;
     EXPECT_LT(value().value, 1e-3);
     motion.first_period = 0;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "controller/regions/soft_part.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "controller/certification/published_certificate.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
@@ -148,7 +149,7 @@ TEST(ThesisProbability, takes_the_norm_of_the_face_distances_and_ignores_obstacl
   const DiscreteMeasure point{.locations = Eigen::Vector2d(3.0, 4.0),
                               .weights = Eigen::VectorXd::Ones(1)};
   // Distance 5 as printed, spent linearly: 1/5; the point is in fact on an obstacle.
-  EXPECT_NEAR(thesis_probability(point, room, 1.0), 0.2, kRounding);
+  EXPECT_NEAR(thesis_probability(point, room.bounds, 1.0), 0.2, kRounding);
   EXPECT_EQ(worst_case_probability(point, room, 0.0), 1.0);
 }
 

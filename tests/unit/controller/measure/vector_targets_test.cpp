@@ -8,6 +8,7 @@
 
 #include "controller/planning/cost/stage_kernels.hpp"
 #include "controller/prediction/sparse_matrix.hpp"
+#include "tests/support/point_penalty.hpp"
 #include "tests/unit/controller/measure/mixture_cases.hpp"
 #include "tests/unit/controller/measure/reference_cases.hpp"
 
@@ -107,14 +108,14 @@ TEST(VectorTargets, penalties_are_equal_bit_for_bit) {
       {.lower = Eigen::Vector3d(-0.5, -0.5, -1.0), .upper = Eigen::Vector3d(0.6, 0.7, 0.9)},
       {.lower = Eigen::Vector3d(0.2, 0.1, -1e300), .upper = Eigen::Vector3d(0.9, 1.0, 1e300)}};
   for (const PenaltyShape shape : {PenaltyShape::kSmooth, PenaltyShape::kThesis}) {
-    const PenaltyTable table(room, {.shape = shape});
+    const Penalty penalty{.shape = shape};
     for (const int size : kSizes) {
       const DiscreteMeasure measure = random_measure(generator, 3, size);
       expect_same_on_every_target(
           [&] {
             Points adjoint = Points::Ones(3, size);
-            const PenaltyValue value =
-                penalise(table, measure.locations, measure.weights, {size / 3, size}, adjoint);
+            const PenaltyValue value = add_penalty(measure.locations, measure.weights, room,
+                                                   penalty, adjoint, {size / 3, size});
             std::vector<double> all = all_of(adjoint);
             all.push_back(value.box);
             all.push_back(value.obstacle);

@@ -8,6 +8,7 @@
 
 #include "models/constants.hpp"
 #include "tests/support/executors.hpp"
+#include "tests/support/point_penalty.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::controller {
@@ -50,7 +51,7 @@ double by_quadrature(const SafeSet& safe_set, const Penalty& penalty,
       moved.array() += deviations[axis] * z;
       Points unused = Points::Zero(1, moved.cols());
       total += width * std::exp(-0.5 * z * z) / std::sqrt(2.0 * M_PI) *
-               add_penalty(moved, measure.weights, one, penalty, unused).box;
+               testing::add_penalty(moved, measure.weights, one, penalty, unused).box;
     }
   }
   return total;
@@ -79,9 +80,10 @@ TEST(ExpectedBounds, are_the_penalties_where_there_is_no_noise) {
   const double value =
       unsmoothed(ExpectedBounds(room(), penalty), Eigen::Vector3d::Zero(), measure, gradient);
   Points reference = Points::Zero(3, 37);
-  EXPECT_NEAR(value,
-              add_penalty(measure.locations, measure.weights, room(), penalty, reference).box,
-              1e-13 * value);
+  EXPECT_NEAR(
+      value,
+      testing::add_penalty(measure.locations, measure.weights, room(), penalty, reference).box,
+      1e-13 * value);
   EXPECT_LE((gradient - reference).cwiseAbs().maxCoeff(), 1e-13);
 }
 

@@ -267,8 +267,8 @@ TEST(HorizonCost, open_loop_value_is_near_the_closed_form) {
                                                   {.state = 1000, .noise = 200, .compressed = 500});
   // What the quantisers lose of the variance is a small part of the cost of being far away.
   EXPECT_NEAR(comparison.predicted.total(), comparison.exact, 0.005 * comparison.exact);
-  EXPECT_NEAR(comparison.predicted.input, 6 * 0.1 * 0.3 * 0.3, 1e-12);  // rounding
-  EXPECT_EQ(comparison.predicted.box + comparison.predicted.obstacle, 0.0);
+  EXPECT_NEAR(comparison.predicted.of("input"), 6 * 0.1 * 0.3 * 0.3, 1e-12);  // rounding
+  EXPECT_EQ(comparison.predicted.of("box") + comparison.predicted.of("obstacle"), 0.0);
 }
 
 TEST(HorizonCost, shortfall_of_the_variance_shrinks_with_more_points) {
@@ -311,9 +311,9 @@ TEST(HorizonCost, one_step_from_a_belief_is_exact_but_for_the_belief_quantiser) 
   Eigen::MatrixXd gradient(1, 1);
   cost.evaluate(policy.inputs, gradient);
   const Gaussian next{.mean = policy.states.col(1), .covariance = settings.noise_covariance};
-  EXPECT_NEAR(cost.parts().terminal,
+  EXPECT_NEAR(cost.parts().of("terminal"),
               expected_square(next, settings.cost.terminal, settings.cost.target), 1e-11);
-  EXPECT_NEAR(cost.parts().state,
+  EXPECT_NEAR(cost.parts().of("state"),
               0.5 * expected_square(known, settings.cost.state, settings.cost.target), 1e-11);
 }
 

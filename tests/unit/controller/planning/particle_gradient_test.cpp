@@ -97,6 +97,14 @@ class Held {
   int saturated_ = 0;
 };
 
+/// That of coordinate `axis` of one particle.
+StageSlope slope_of(const Held& held, Eigen::Index particle, Eigen::Index axis) {
+  StageSlope slope{.particles = {particle},
+                   .by_particle = Eigen::MatrixXd::Zero(held.policy().states.rows(), 1)};
+  slope.by_particle(axis, 0) = 1.0;
+  return slope;
+}
+
 TEST(ParticleGradient, equals_central_differences) {
   for (const Setting& setting : settings()) {
     Held held(setting);
@@ -110,7 +118,7 @@ TEST(ParticleGradient, equals_central_differences) {
       for (const Eigen::Index particle : {0, 4, 8}) {
         for (Eigen::Index axis = 0; axis < held.policy().states.rows(); ++axis) {
           cost.rollout(held.z());
-          cost.particle_gradient(stage, particle, axis, gradient);
+          cost.pull_back(stage, slope_of(held, particle, axis), gradient);
           for (Eigen::Index j = 0; j < held.z().size(); ++j) {
             Eigen::VectorXd moved = held.z();
             moved[j] = held.z()[j] + kStep;
@@ -129,6 +137,26 @@ TEST(ParticleGradient, equals_central_differences) {
   }
 }
 
+TEST(ParticleGradient, of_several_particles_is_the_sum) {
+  for (const Setting& setting : settings()) {
+    Held held(setting);
+    HorizonCost& cost = held.cost();
+    cost.rollout(held.z());
+    const Eigen::Index dim = held.policy().states.rows();
+    Eigen::VectorXd together(held.z().size());
+    Eigen::VectorXd one(held.z().size());
+    StageSlope slope{.particles = {1, 3, 6}, .by_particle = Eigen::MatrixXd::Random(dim, 3)};
+    cost.pull_back(3, slope, together);
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(held.z().size());
+    for (int i = 0; i < 3; ++i) {
+      cost.pull_back(
+          3, {.particles = {slope.particles[i]}, .by_particle = slope.by_particle.col(i)}, one);
+      sum += one;
+    }
+    EXPECT_LT((together - sum).norm(), kTolerance * (1.0 + sum.norm())) << setting.system;
+  }
+}
+
 TEST(ParticleGradient, leaves_cost_and_gradient_as_they_were) {
   for (const Setting& setting : settings()) {
     Held held(setting);
@@ -137,9 +165,9 @@ TEST(ParticleGradient, leaves_cost_and_gradient_as_they_were) {
     Eigen::VectorXd after(held.z().size());
     Eigen::VectorXd unused(held.z().size());
     const double value = cost.evaluate(held.z(), before);
-    cost.particle_gradient(3, 2, 0, unused);
+    cost.pull_back(3, slope_of(held, 2, 0), unused);
     EXPECT_EQ(cost.evaluate(held.z()), value);
-    cost.particle_gradient(1, 2, 1, unused);
+    cost.pull_back(1, slope_of(held, 2, 1), unused);
     EXPECT_EQ(cost.evaluate(held.z(), after), value);
     EXPECT_EQ(before, after);
   }

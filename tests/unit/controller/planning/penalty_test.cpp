@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "models/constants.hpp"
+#include "tests/support/point_penalty.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 
 namespace qsmpc::controller {
@@ -29,13 +30,14 @@ SafeSet room() {
 
 double total(const Points& points, const Eigen::VectorXd& weights, const Penalty& penalty) {
   Points adjoint = Points::Zero(points.rows(), points.cols());
-  const PenaltyValue value = add_penalty(points, weights, room(), penalty, adjoint);
+  const testing::PenaltyValue value =
+      testing::add_penalty(points, weights, room(), penalty, adjoint);
   return value.box + value.obstacle;
 }
 
 Eigen::VectorXd gradient_at(const Eigen::VectorXd& point, const Penalty& penalty) {
   Points adjoint = Points::Zero(point.size(), 1);
-  (void)add_penalty(point, Eigen::VectorXd::Ones(1), room(), penalty, adjoint);
+  (void)testing::add_penalty(point, Eigen::VectorXd::Ones(1), room(), penalty, adjoint);
   return adjoint.col(0);
 }
 
@@ -87,8 +89,8 @@ TEST_P(EveryPenalty, weighs_the_points_and_adds_to_the_adjoint) {
   Generator generator(82);
   const DiscreteMeasure measure = random_measure(generator, 3, 12);
   Points adjoint = Points::Constant(3, 12, 7.0);
-  const PenaltyValue value =
-      add_penalty(measure.locations, measure.weights, room(), penalty, adjoint);
+  const testing::PenaltyValue value =
+      testing::add_penalty(measure.locations, measure.weights, room(), penalty, adjoint);
   double sum = 0.0;
   for (Eigen::Index i = 0; i < 12; ++i) {
     const Eigen::VectorXd point = measure.locations.col(i);
@@ -113,8 +115,8 @@ TEST(SmoothPenalty, is_a_half_on_the_boundary_and_grows_inwards) {
       .obstacles = {{.lower = Eigen::VectorXd::Zero(1), .upper = Eigen::VectorXd::Ones(1)}}};
   const auto at = [&](double x) {
     Points adjoint = Points::Zero(1, 1);
-    return add_penalty(Points::Constant(1, 1, x), Eigen::VectorXd::Ones(1), pillar, penalty,
-                       adjoint)
+    return testing::add_penalty(Points::Constant(1, 1, x), Eigen::VectorXd::Ones(1), pillar,
+                                penalty, adjoint)
         .obstacle;
   };
   EXPECT_EQ(at(-0.25), 0.0);
@@ -135,10 +137,10 @@ TEST(ThesisPenalty, is_flat_inside_an_obstacle_with_a_halo_of_one) {
                                         {-0.5, 5.0, 10.0},
                                         {2.5, 0.0, 0.0}}) {
     Points adjoint = Points::Zero(1, 1);
-    EXPECT_DOUBLE_EQ(
-        add_penalty(Points::Constant(1, 1, x), Eigen::VectorXd::Ones(1), pillar, penalty, adjoint)
-            .obstacle,
-        value);
+    EXPECT_DOUBLE_EQ(testing::add_penalty(Points::Constant(1, 1, x), Eigen::VectorXd::Ones(1),
+                                          pillar, penalty, adjoint)
+                         .obstacle,
+                     value);
     EXPECT_DOUBLE_EQ(adjoint(0, 0), slope);
   }
 }

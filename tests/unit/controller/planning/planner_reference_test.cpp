@@ -76,11 +76,11 @@ TEST_P(Reference, prediction_cost_and_gradient_agree) {
                      with_gain ? change : Eigen::MatrixXd(0.0 * change), with_gain);
       const double scale = std::max(1.0, expected.parts.total());
       EXPECT_NEAR(value, expected.parts.total(), kTolerance * scale);
-      EXPECT_NEAR(cost.parts().state, expected.parts.state, kTolerance * scale);
-      EXPECT_NEAR(cost.parts().input, expected.parts.input, kTolerance * scale);
-      EXPECT_NEAR(cost.parts().terminal, expected.parts.terminal, kTolerance * scale);
-      EXPECT_NEAR(cost.parts().box, expected.parts.box, kTolerance * scale);
-      EXPECT_NEAR(cost.parts().obstacle, expected.parts.obstacle, kTolerance * scale);
+      EXPECT_NEAR(cost.parts().of("state"), expected.parts.of("state"), kTolerance * scale);
+      EXPECT_NEAR(cost.parts().of("input"), expected.parts.of("input"), kTolerance * scale);
+      EXPECT_NEAR(cost.parts().of("terminal"), expected.parts.of("terminal"), kTolerance * scale);
+      EXPECT_NEAR(cost.parts().of("box"), expected.parts.of("box"), kTolerance * scale);
+      EXPECT_NEAR(cost.parts().of("obstacle"), expected.parts.of("obstacle"), kTolerance * scale);
       const Eigen::VectorXd of_inputs = expected.input_gradient.reshaped();
       EXPECT_LE((gradient.head(inputs.size()) - of_inputs).cwiseAbs().maxCoeff(),
                 kTolerance * scale_of(of_inputs));
@@ -104,8 +104,8 @@ TEST(ReferenceCases, meet_walls_obstacles_and_input_bounds) {
     HorizonCost cost(problem.terms(), prediction, problem.policy());
     const Eigen::VectorXd z = problem.policy().inputs.reshaped();
     (void)cost.evaluate(z);
-    EXPECT_GT(cost.parts().box, 0.0) << name_of(options);
-    EXPECT_GT(cost.parts().obstacle, 0.0) << name_of(options);
+    EXPECT_GT(cost.parts().of("box"), 0.0) << name_of(options);
+    EXPECT_GT(cost.parts().of("obstacle"), 0.0) << name_of(options);
     EXPECT_EQ(problem.saturated() > 0, options.closed_loop) << name_of(options);
   }
 }

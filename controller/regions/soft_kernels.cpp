@@ -1,4 +1,4 @@
-#include "controller/certification/smoothed_kernels.hpp"
+#include "controller/regions/soft_kernels.hpp"
 
 #include <array>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <boost/math/quadrature/gauss.hpp>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "controller/certification/smoothed_kernels.cpp"
+#define HWY_TARGET_INCLUDE "controller/regions/soft_kernels.cpp"
 #include <hwy/foreach_target.h>
 
 #include "controller/measure/normal/normal_cdf-inl.hpp"

@@ -1,4 +1,4 @@
-#include "controller/certification/unsafe_region_bound.hpp"
+#include "controller/regions/box_part_bound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@
 #include "controller/certification/affine_surrogate.hpp"
 #include "controller/measure/normal/bivariate_normal.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "controller/regions/unsafe_set.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 #include "tests/unit/controller/planning/planner_fixture.hpp"
@@ -24,8 +25,15 @@ bool inside(const Box& box, const Eigen::VectorXd& point) {
   return (point.array() >= box.lower.array()).all() && (point.array() <= box.upper.array()).all();
 }
 
-UnsafeRegion part_of(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
-  UnsafeRegion part{.box = {.lower = lower, .upper = upper}, .axes = {}};
+/// What the unsafe set is made of: half-spaces and boxes.
+std::vector<BoxPart> parts_of(const SafeSet& room) {
+  std::vector<BoxPart> parts = half_spaces(room.bounds);
+  for (const Box& obstacle : room.obstacles) parts.push_back(box_part(obstacle));
+  return parts;
+}
+
+BoxPart part_of(const Eigen::VectorXd& lower, const Eigen::VectorXd& upper) {
+  BoxPart part{.box = {.lower = lower, .upper = upper}, .axes = {}};
   for (Eigen::Index axis = 0; axis < lower.size(); ++axis) {
     if (std::isfinite(lower[axis]) || std::isfinite(upper[axis])) part.axes.push_back(axis);
   }
@@ -45,16 +53,15 @@ TEST(UnsafeParts, are_the_unsafe_set) {
       room.obstacles.push_back({.lower = corner, .upper = corner.array() + 0.7});
       room.obstacles.back().upper[repetition % 2] = kInfinity;
     }
-    const std::vector<UnsafeRegion> parts = unsafe_regions(room);
-    for (const UnsafeRegion& part : parts) {
+    const std::vector<BoxPart> parts = parts_of(room);
+    for (const BoxPart& part : parts) {
       EXPECT_EQ(part.axes, part_of(part.box.lower, part.box.upper).axes);
       EXPECT_FALSE(part.axes.empty());
     }
     for (int i = 0; i < 200; ++i) {
       const Eigen::VectorXd point = random_matrix(generator, 3, 1, 1.5);
-      const bool in_parts = std::any_of(parts.begin(), parts.end(), [&](const UnsafeRegion& part) {
-        return inside(part.box, point);
-      });
+      const bool in_parts = std::any_of(
+          parts.begin(), parts.end(), [&](const BoxPart& part) { return inside(part.box, point); });
       EXPECT_EQ(in_parts, distance_to_unsafe(point, room) == 0.0);
     }
   }
@@ -76,7 +83,7 @@ enum class Adversary {
 constexpr Adversary kAdversaries[] = {Adversary::kPushesWhoIsNear, Adversary::kPushesAll,
                                       Adversary::kPullsBoth};
 
-Eigen::VectorXd error_at(Adversary adversary, const Eigen::VectorXd& y, const UnsafeRegion& part,
+Eigen::VectorXd error_at(Adversary adversary, const Eigen::VectorXd& y, const BoxPart& part,
                          double size, Generator& generator) {
   const Eigen::VectorXd across = y.cwiseMax(part.box.lower).cwiseMin(part.box.upper) - y;
   const double distance = across.norm();
@@ -100,7 +107,7 @@ struct Attack {
   Eigen::VectorXd error;
 };
 
-Attack attack(const Perturbed& state, const UnsafeRegion& part, Adversary adversary, double size,
+Attack attack(const Perturbed& state, const BoxPart& part, Adversary adversary, double size,
               Generator& generator) {
   NormalSampler known(state.rest);
   NormalSampler smooth(state.smoothing);
@@ -128,7 +135,7 @@ Perturbed random_state(Generator& generator, Eigen::Index dim, bool diagonal) {
 }
 
 /// A face, a slab or a box somewhere beside the mean.
-UnsafeRegion random_part(Generator& generator, const Perturbed& state) {
+BoxPart random_part(Generator& generator, const Perturbed& state) {
   const Eigen::Index dim = state.mean.size();
   Eigen::VectorXd lower = state.mean + random_matrix(generator, dim, 1);
   Eigen::VectorXd upper = lower + Eigen::VectorXd(random_matrix(generator, dim, 1).cwiseAbs());
@@ -147,7 +154,7 @@ TEST(PartBounds, hold_under_adversarial_errors) {
   for (int repetition = 0; repetition < 120; ++repetition) {
     const Eigen::Index dim = 2 + repetition % 2;
     const Perturbed state = random_state(generator, dim, repetition % 3 == 0);
-    const UnsafeRegion part = random_part(generator, state);
+    const BoxPart part = random_part(generator, state);
     const Gaussian law{.mean = state.mean, .covariance = state.rest + state.smoothing};
     const double size =
         std::sqrt(state.smoothing(0, 0)) * std::pow(10.0, uniform(generator, -1.5, 0.3));
@@ -173,7 +180,7 @@ TEST(TailBound, holds_under_adversarial_errors) {
   int informative = 0;
   for (int repetition = 0; repetition < 60; ++repetition) {
     const Perturbed state = random_state(generator, 2, repetition % 3 == 0);
-    const UnsafeRegion part = random_part(generator, state);
+    const BoxPart part = random_part(generator, state);
     const Gaussian law{.mean = state.mean, .covariance = state.rest + state.smoothing};
     // The worst error of a given size: straight towards the part, wherever the state is.
     const double size =
@@ -206,7 +213,7 @@ TEST(TailBound, holds_under_adversarial_errors) {
 
 TEST(TailBound, says_one_where_nothing_is_known_and_nearly_nothing_far_away) {
   const Gaussian law{.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()};
-  const UnsafeRegion far =
+  const BoxPart far =
       part_of(Eigen::Vector2d(10.0, -kInfinity), Eigen::Vector2d(kInfinity, kInfinity));
   const Eigen::Vector2d small(0.05, 0.05);
   EXPECT_LT(far_region_bound(law, small, 8, far, 1e-8), 1e-8);
@@ -221,8 +228,7 @@ TEST(SmoothBound, holds_for_an_error_along_one_axis_of_a_correlated_part) {
   const Perturbed state{.mean = Eigen::Vector2d(0.1, 0.0),
                         .rest = Eigen::Matrix2d::Zero(),
                         .smoothing = Eigen::Matrix2d{{1.0, 0.9999}, {0.9999, 1.0}}};
-  const UnsafeRegion part =
-      part_of(Eigen::Vector2d(0.0, -kInfinity), Eigen::Vector2d(kInfinity, -0.2));
+  const BoxPart part = part_of(Eigen::Vector2d(0.0, -kInfinity), Eigen::Vector2d(kInfinity, -0.2));
   const Eigen::Vector2d error(0.3, 0.0);
   const double truth =
       rectangle_probability(state.mean + error, state.smoothing, part.box.lower, part.box.upper);
@@ -239,7 +245,7 @@ TEST(SmoothBound, counts_an_error_along_one_axis_once) {
                      .covariance = Eigen::Vector2d(1.0, 0.04).asDiagonal()};
   const Eigen::VectorXd error = Eigen::Vector2d(0.05, 0.0);
   const Eigen::MatrixXd smoothing = Eigen::Vector2d(0.5, 0.0).asDiagonal();
-  const UnsafeRegion part = part_of(Eigen::Vector2d(1.0, 0.3), Eigen::Vector2d(2.0, 0.6));
+  const BoxPart part = part_of(Eigen::Vector2d(1.0, 0.3), Eigen::Vector2d(2.0, 0.6));
   const double bound =
       smooth_region_bound({.law = law, .error = error, .smoothing = smoothing}, part);
   const double slab = smooth_region_bound(
@@ -253,7 +259,7 @@ TEST(MarkovBound, is_attained_by_the_worst_error) {
   // All of (c, 2) is moved onto the wall at 2: what E e² = ∫(2 − y)² φ dy moves most. The bound is
   // the dual of this problem.
   const Gaussian law{.mean = Eigen::VectorXd::Zero(1), .covariance = Eigen::MatrixXd::Ones(1, 1)};
-  const UnsafeRegion wall =
+  const BoxPart wall =
       part_of(Eigen::VectorXd::Constant(1, 2.0), Eigen::VectorXd::Constant(1, kInfinity));
   for (const double c : {1.99, 1.9, 1.5, 1.0}) {
     // Against the cumulative moments of the normal density between c and 2.
@@ -278,14 +284,14 @@ TEST(PartBounds, without_error_are_the_probability) {
     const Eigen::VectorXd none = Eigen::Vector2d::Zero();
     const PerturbedGaussian exact{.law = law, .error = none, .smoothing = state.smoothing};
     const Eigen::VectorXd lower = state.mean + random_matrix(generator, 2, 1);
-    const UnsafeRegion box = part_of(lower, lower.array() + 0.5);
+    const BoxPart box = part_of(lower, lower.array() + 0.5);
     const double in_box =
         rectangle_probability(law.mean, law.covariance, box.box.lower, box.box.upper);
     EXPECT_GE(smooth_region_bound(exact, box), in_box);
     EXPECT_LE(smooth_region_bound(exact, box), in_box + rectangle_error(law.covariance));
     EXPECT_GE(markov_region_bound(exact, box), in_box);
 
-    const UnsafeRegion face =
+    const BoxPart face =
         part_of(Eigen::Vector2d(lower[0], -kInfinity), Eigen::Vector2d(kInfinity, kInfinity));
     const double deviation = std::sqrt(law.covariance(0, 0));
     const double behind = normal_cumulative((law.mean[0] - lower[0]) / deviation);
@@ -300,7 +306,7 @@ TEST(PartBounds, grow_with_the_error) {
   Generator generator(124);
   for (int repetition = 0; repetition < 30; ++repetition) {
     const Perturbed state = random_state(generator, 3, false);
-    const UnsafeRegion part = random_part(generator, state);
+    const BoxPart part = random_part(generator, state);
     const Gaussian law{.mean = state.mean, .covariance = state.rest + state.smoothing};
     double markov = 0.0;
     double smooth = 0.0;
@@ -324,10 +330,10 @@ TEST(PartBounds, say_one_where_nothing_is_known) {
   const Gaussian law{.mean = Eigen::Vector2d::Zero(), .covariance = Eigen::Matrix2d::Identity()};
   const Eigen::MatrixXd smoothing = 0.5 * Eigen::Matrix2d::Identity();
   const Eigen::MatrixXd none = Eigen::Matrix2d::Zero();
-  const UnsafeRegion face =
+  const BoxPart face =
       part_of(Eigen::Vector2d(5.0, -kInfinity), Eigen::Vector2d(kInfinity, kInfinity));
-  const UnsafeRegion box = part_of(Eigen::Vector2d(5.0, 5.0), Eigen::Vector2d(6.0, 6.0));
-  for (const UnsafeRegion& part : {face, box}) {
+  const BoxPart box = part_of(Eigen::Vector2d(5.0, 5.0), Eigen::Vector2d(6.0, 6.0));
+  for (const BoxPart& part : {face, box}) {
     for (const double error : {kInfinity, nan}) {
       const Eigen::VectorXd unknown = Eigen::Vector2d::Constant(error);
       const PerturbedGaussian state{.law = law, .error = unknown, .smoothing = smoothing};
@@ -364,7 +370,7 @@ TEST(PartBounds, known_example_has_the_known_figures) {
   const SurrogateStage last = affine_surrogates(motion).back();
   double markov = 0.0;
   double smooth = 0.0;
-  for (const UnsafeRegion& part : unsafe_regions(settings.safe_set)) {
+  for (const BoxPart& part : parts_of(settings.safe_set)) {
     const Eigen::MatrixXd smoothing = smoothing_covariance(motion, 8, part.axes);
     const PerturbedGaussian state{.law = last.law, .error = last.error, .smoothing = smoothing};
     markov += markov_region_bound(state, part);

@@ -1,43 +1,38 @@
-// The bounds of the safe set as inequality constraints on every particle (Eq. 4-8).
+// The constraints of all stages as a solver takes them: functions of its decision.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "controller/planning/constraints/stage_constraint.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
-#include "controller/planning/safe_set.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 
 namespace qsmpc::controller {
 
-/// constraint c + margin ≤ 0 for each particle of the stages 1 … horizon against each finite face
-/// of the bounds; c is how far the particle is beyond the face, in the unit of the state. Refers to
-/// both arguments.
-class ParticleConstraints {
+/// c + margin ≤ 0 for each constraint of the stages 1 … horizon. Refers to the cost.
+class HorizonConstraints {
  public:
-  ParticleConstraints(HorizonCost& cost, const SafeSet& safe_set);
+  HorizonConstraints(HorizonCost& cost, const SafeSet& safe_set);
 
   /// Makes `out` the constraints of the prediction that the cost holds now. To be called again
   /// whenever it holds another one; `out` refers to this object.
   void describe(const Prediction& prediction, ConstraintSet& out);
 
-  /// Particles are asked to stay this far within the faces (≥ 0, in the unit of the state).
+  /// All are asked for this much more (≥ 0, in the unit of the constraint).
   void set_margin(double margin) { margin_ = margin; }
   [[nodiscard]] double margin() const { return margin_; }
 
  private:
-  struct Face {
-    Eigen::Index axis;
-    double sign;  ///< +1: x ≤ at; −1: x ≥ at
-    double at;
-  };
-  /// One face at one stage: as many constraints as particles.
+  /// One group at one stage.
   struct Block {
     Eigen::Index begin;
     Eigen::Index stage;
-    Eigen::Index particles;
-    int face;
+    Eigen::Index size;
+    const StageConstraint* constraint;
+    int group;
   };
 
   void values(const Eigen::VectorXd& z, Eigen::VectorXd& out);
@@ -46,8 +41,9 @@ class ParticleConstraints {
 
   HorizonCost& cost_;
   double margin_ = 0.0;
-  std::vector<Face> faces_;
+  std::vector<std::unique_ptr<const StageConstraint>> constraints_;
   std::vector<Block> blocks_;
+  StageSlope slope_;
   Eigen::VectorXd gradient_;
 };
 

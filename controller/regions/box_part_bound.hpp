@@ -1,24 +1,13 @@
-// Upper bounds of P(z + e ∈ part) for one face or obstacle of the unsafe set, z Gaussian and e an
+// Upper bounds of P(z + e ∈ part) for a half-space or a box, z Gaussian and e an
 // error of known mean square in each coordinate: bounds C3 and C4 of docs/theory/surrogate.md.
 #pragma once
-
-#include <vector>
 
 #include <Eigen/Core>
 
 #include "controller/measure/measures.hpp"
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/box_part.hpp"
 
 namespace qsmpc::controller {
-
-/// A part of the unsafe set: a closed box, and the coordinates in which it is bounded.
-struct UnsafeRegion {
-  Box box;
-  std::vector<Eigen::Index> axes;
-};
-
-/// The parts whose union is the unsafe set: a half-space for every finite bound, and the obstacles.
-[[nodiscard]] std::vector<UnsafeRegion> unsafe_regions(const SafeSet& safe_set);
 
 /// z ~ law, |e_a| of root mean square at most error_a, and n ~ N(0, smoothing) a part of z that is
 /// independent of z − n and of e.
@@ -29,22 +18,22 @@ struct PerturbedGaussian {
 };
 
 /// C3: min over t of E|e|²/t² + E(1 − d(z, part)²/t²)₊, with e in the part's coordinates only.
-[[nodiscard]] double markov_region_bound(const PerturbedGaussian& state, const UnsafeRegion& part);
+[[nodiscard]] double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part);
 
 /// C3 by a norm of higher order: min over τ of |axes| τ^−p + P(z ∈ part widened by τ · norms),
 /// since P(|e_a| > τ ‖e_a‖_p) ≤ τ^−p in each of the part's coordinates. norms: bounds of ‖e_a‖_p
 /// (dim).
 [[nodiscard]] double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                                       const UnsafeRegion& part);
+                                       const BoxPart& part);
 
 /// The same with the one τ that leaves half of `enough` (> 0) to the tails: as good as a search
 /// where the result is at most `enough`. 1 where the part is so near that this τ is of no use.
 [[nodiscard]] double far_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                                      const UnsafeRegion& part, double enough);
+                                      const BoxPart& part, double enough);
 
 /// C4: P(z ∈ part) and the first two orders in e of the probability smoothed by n,
 ///     P(z ∈ part) + Σ_a error_a ‖∂_a h‖ + 0.242 E[eᵀ N⁻¹ e],  h(y) = P(y + n ∈ part),
 /// the least over the part's coordinates and pairs of them.
-[[nodiscard]] double smooth_region_bound(const PerturbedGaussian& state, const UnsafeRegion& part);
+[[nodiscard]] double smooth_region_bound(const PerturbedGaussian& state, const BoxPart& part);
 
 }  // namespace qsmpc::controller

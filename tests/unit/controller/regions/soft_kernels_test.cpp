@@ -1,4 +1,4 @@
-#include "controller/certification/smoothed_kernels.hpp"
+#include "controller/regions/soft_kernels.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 
 #include "controller/certification/smoothed_bound.hpp"
 #include "controller/measure/normal/bivariate_normal.hpp"
+#include "controller/regions/soft_part.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 

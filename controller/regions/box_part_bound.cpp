@@ -1,4 +1,4 @@
-#include "controller/certification/unsafe_region_bound.hpp"
+#include "controller/regions/box_part_bound.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,9 +7,9 @@
 
 #include <Eigen/LU>
 
-#include "controller/certification/smoothed_bound.hpp"
 #include "controller/measure/normal/bivariate_normal.hpp"
 #include "controller/measure/normal/normal_distribution.hpp"
+#include "controller/regions/soft_part.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::controller {
@@ -54,7 +54,7 @@ double slab_probability(const Gaussian& law, const Box& box, Eigen::Index axis) 
 }
 
 /// C4 on one coordinate: the slab of the part.
-double smooth_slab(const PerturbedGaussian& state, const UnsafeRegion& part, Eigen::Index axis) {
+double smooth_slab(const PerturbedGaussian& state, const BoxPart& part, Eigen::Index axis) {
   const double mean = state.law.mean[axis];
   const double variance = state.law.covariance(axis, axis);
   const double lower = part.box.lower[axis];
@@ -99,8 +99,8 @@ double mean_square_slope(const Eigen::Vector2d& mean, const Eigen::Matrix2d& res
 }
 
 /// C4 on two coordinates: the part's rectangle.
-double smooth_rectangle(const PerturbedGaussian& state, const UnsafeRegion& part,
-                        Eigen::Index first, Eigen::Index second) {
+double smooth_rectangle(const PerturbedGaussian& state, const BoxPart& part, Eigen::Index first,
+                        Eigen::Index second) {
   const std::vector<Eigen::Index> pair = {first, second};
   const Eigen::Vector2d mean = state.law.mean(pair);
   const Eigen::Matrix2d covariance = state.law.covariance(pair, pair);
@@ -142,7 +142,7 @@ double smooth_rectangle(const PerturbedGaussian& state, const UnsafeRegion& part
 /// A part of the unsafe set that is moved outwards by τ norms, in units of a law's deviations.
 class WidenedPart {
  public:
-  WidenedPart(const Gaussian& law, const Eigen::VectorXd& norms, const UnsafeRegion& part)
+  WidenedPart(const Gaussian& law, const Eigen::VectorXd& norms, const BoxPart& part)
       : law_(law), norms_(norms), axes_(part.axes), part_(part.box), box_(part.box) {}
 
   /// What may be outside of the widened part of e, |axes| τ^−p.
@@ -224,7 +224,7 @@ class WidenedPart {
   Box box_;  ///< widened
 };
 
-bool usable(const Gaussian& law, const Eigen::VectorXd& norms, const UnsafeRegion& part) {
+bool usable(const Gaussian& law, const Eigen::VectorXd& norms, const BoxPart& part) {
   const bool known = std::all_of(part.axes.begin(), part.axes.end(),
                                  [&](Eigen::Index axis) { return std::isfinite(norms[axis]); });
   return known && !part.axes.empty() && law.mean.allFinite() && law.covariance.allFinite();
@@ -304,38 +304,7 @@ double least_on_logarithmic_scale(const Value& value, double first, double ratio
 
 }  // namespace
 
-std::vector<UnsafeRegion> unsafe_regions(const SafeSet& safe_set) {
-  std::vector<UnsafeRegion> parts;
-  const Eigen::Index dim = safe_set.dim();
-  const UnsafeRegion everything{.box = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
-                                        .upper = Eigen::VectorXd::Constant(dim, kInfinity)},
-                                .axes = {}};
-  for (Eigen::Index axis = 0; axis < dim; ++axis) {
-    UnsafeRegion part = everything;
-    part.axes = {axis};
-    if (std::isfinite(safe_set.bounds.lower[axis])) {
-      part.box.upper[axis] = safe_set.bounds.lower[axis];
-      parts.push_back(part);
-      part.box.upper[axis] = kInfinity;
-    }
-    if (std::isfinite(safe_set.bounds.upper[axis])) {
-      part.box.lower[axis] = safe_set.bounds.upper[axis];
-      parts.push_back(part);
-    }
-  }
-  for (const Box& obstacle : safe_set.obstacles) {
-    UnsafeRegion part{.box = obstacle, .axes = {}};
-    for (Eigen::Index axis = 0; axis < dim; ++axis) {
-      if (std::isfinite(obstacle.lower[axis]) || std::isfinite(obstacle.upper[axis])) {
-        part.axes.push_back(axis);
-      }
-    }
-    parts.push_back(std::move(part));
-  }
-  return parts;
-}
-
-double markov_region_bound(const PerturbedGaussian& state, const UnsafeRegion& part) {
+double markov_region_bound(const PerturbedGaussian& state, const BoxPart& part) {
   double square = 0.0;
   for (const Eigen::Index axis : part.axes) square += state.error[axis] * state.error[axis];
   if (!std::isfinite(square) || !state.law.mean.allFinite() || !state.law.covariance.allFinite()) {
@@ -348,7 +317,7 @@ double markov_region_bound(const PerturbedGaussian& state, const UnsafeRegion& p
 }
 
 double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                         const UnsafeRegion& part) {
+                         const BoxPart& part) {
   if (!usable(law, norms, part)) return 1.0;
   WidenedPart widened(law, norms, part);
   const double ratio = least_on_logarithmic_scale(
@@ -358,7 +327,7 @@ double tail_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int 
 }
 
 double far_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int order,
-                        const UnsafeRegion& part, double enough) {
+                        const BoxPart& part, double enough) {
   if (!usable(law, norms, part)) return 1.0;
   const double axes = static_cast<double>(part.axes.size());
   const double ratio = std::pow(2.0 * axes / enough, 1.0 / order);
@@ -367,7 +336,7 @@ double far_region_bound(const Gaussian& law, const Eigen::VectorXd& norms, int o
   return std::min(1.0, widened.tails(ratio, order) + widened.probability(ratio));
 }
 
-double smooth_region_bound(const PerturbedGaussian& state, const UnsafeRegion& part) {
+double smooth_region_bound(const PerturbedGaussian& state, const BoxPart& part) {
   double best = 1.0;
   for (std::size_t i = 0; i < part.axes.size(); ++i) {
     best = std::min(best, smooth_slab(state, part, part.axes[i]));

@@ -1,10 +1,11 @@
-#include "controller/planning/safe_set.hpp"
+#include "controller/regions/safe_set.hpp"
 
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "controller/regions/unsafe_set.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
 

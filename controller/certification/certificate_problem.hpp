@@ -1,0 +1,43 @@
+// What the bounds of one motion are worked out from, and what several of them need.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/certification/certificate.hpp"
+
+namespace qsmpc::controller {
+
+/// Refers to all of its arguments, which must outlive it.
+class CertificateProblem {
+ public:
+  CertificateProblem(const PredictedMotion& motion, const UnsafeSet& unsafe,
+                     const std::vector<StageBudget>& budgets, CertificateEffort effort,
+                     const Executor& run);
+
+  [[nodiscard]] const PredictedMotion& motion() const { return motion_; }
+  [[nodiscard]] const UnsafeSet& unsafe() const { return unsafe_; }
+  /// Stages 0 … horizon.
+  [[nodiscard]] const std::vector<StageBudget>& budgets() const { return budgets_; }
+  [[nodiscard]] CertificateEffort effort() const { return effort_; }
+  [[nodiscard]] const Executor& run() const { return run_; }
+
+  /// Of the particles of stage k + 1 from the unsafe set.
+  [[nodiscard]] const Eigen::VectorXd& clearance(std::size_t k) const { return clearances_[k]; }
+  /// C3 and C4 of stages 1 … horizon, which come from one search. Worked out by the first who asks;
+  /// not to be asked side by side.
+  [[nodiscard]] const std::vector<RegionProbability>& surrogate_bounds() const;
+
+ private:
+  const PredictedMotion& motion_;
+  const UnsafeSet& unsafe_;
+  const std::vector<StageBudget>& budgets_;
+  CertificateEffort effort_;
+  const Executor& run_;
+  std::vector<Eigen::VectorXd> clearances_;
+  mutable std::optional<std::vector<RegionProbability>> surrogate_bounds_;
+};
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,27 @@
+// What the table of certificate_entries() is made of. What they return refers to the problem.
+#pragma once
+
+#include "controller/certification/certificate.hpp"
+
+namespace qsmpc::controller {
+
+/// C1: the worst case over the W2 ball about the particles.
+[[nodiscard]] StageFigure particle_bound(const CertificateProblem& problem);
+
+/// C2: the same before the last noise, which stays Gaussian.
+[[nodiscard]] StageFigure mixture_bound(const CertificateProblem& problem);
+
+/// C3: a Gaussian surrogate of the state, with a bound of what separates the two; 1 where nothing
+/// is known of the derivatives.
+[[nodiscard]] StageFigure surrogate_bound(const CertificateProblem& problem);
+
+/// C4: the same, smoothed by noise that is independent of this error; never above C3.
+[[nodiscard]] StageFigure smoothed_surrogate_bound(const CertificateProblem& problem);
+
+/// What the thesis would say (published_certificate.hpp): NOT a bound.
+[[nodiscard]] StageFigure published_probability(const CertificateProblem& problem);
+
+/// Weight of the particles that are unsafe: NOT a bound.
+[[nodiscard]] StageFigure unsafe_mass(const CertificateProblem& problem);
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,19 @@
+#include <algorithm>
+
+#include "controller/certification/certificate_problem.hpp"
+#include "controller/certification/figures/figures.hpp"
+#include "controller/certification/worst_case.hpp"
+
+namespace qsmpc::controller {
+
+StageFigure particle_bound(const CertificateProblem& problem) {
+  return [&problem](std::size_t k, double /*least*/) {
+    const StageBudget& budget = problem.budgets()[k + 1];
+    const double nearest =
+        worst_case_probability(problem.clearance(k).cwiseMax(0.0),
+                               problem.motion().prediction.stages[k + 1].weights, budget.total);
+    return std::min(1.0, budget.leaving + nearest);
+  };
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,56 @@
+// The parts of the expected cost (Eq. 4-21), by name.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace qsmpc::controller {
+
+/// What one or more terms of the cost (cost_terms.hpp) add up to, as files, pages and charts name
+/// it.
+struct CostPartEntry {
+  std::string name;   ///< of the column, e.g. "terminal"
+  std::string words;  ///< e.g. "distance at the plan's end"
+};
+
+/// The parts in the order in which they are summed and written.
+[[nodiscard]] const std::vector<CostPartEntry>& cost_parts();
+
+/// The place of the part called `name` among cost_parts(). Throws std::invalid_argument if there is
+/// none.
+[[nodiscard]] std::size_t cost_part(std::string_view name);
+
+/// A number for each part, 0 unless set.
+class CostParts {
+ public:
+  /// Room for as many parts as there may be, so that no cost allocates.
+  static constexpr std::size_t kMost = 8;
+
+  CostParts() = default;
+  /// Throws std::invalid_argument on an unknown name.
+  CostParts(std::initializer_list<std::pair<std::string_view, double>> parts);
+  /// The same number for every part.
+  [[nodiscard]] static CostParts all(double value);
+
+  [[nodiscard]] double operator[](std::size_t part) const { return values_[part]; }
+  double& operator[](std::size_t part) { return values_[part]; }
+  /// Throws std::invalid_argument on an unknown name.
+  [[nodiscard]] double of(std::string_view name) const { return values_[cost_part(name)]; }
+
+  void add(const CostParts& other) {
+    for (std::size_t part = 0; part < kMost; ++part) values_[part] += other.values_[part];
+  }
+
+  /// The sum of all parts, in their order.
+  [[nodiscard]] double total() const;
+
+ private:
+  std::array<double, kMost> values_{};
+};
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,60 @@
+// The terms of the expected cost.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/planning/cost/cost_parts.hpp"
+#include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/cost/stage_term.hpp"
+#include "controller/regions/safe_set.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::controller {
+
+/// Weights of Eq. 4-18 and 4-19 about a target state r.
+struct QuadraticCost {
+  Eigen::MatrixXd state;     ///< Q, state_dim x state_dim
+  Eigen::MatrixXd input;     ///< R, input_dim x input_dim
+  Eigen::MatrixXd terminal;  ///< Q_term, state_dim x state_dim
+  Eigen::VectorXd target;    ///< r, state_dim
+  /// States whose target is meant modulo 2π. A planner shifts the target, for each plan, to what is
+  /// nearest to the belief's mean; HorizonCost takes it as it is.
+  std::vector<int> angles{};
+};
+
+/// What the cost depends on besides the prediction; refers to objects that must outlive it.
+struct HorizonCostTerms {
+  const models::Dynamics& dynamics;
+  const SafeSet& safe_set;
+  const QuadraticCost& cost;
+  const Penalty& penalty;
+  const Eigen::MatrixXd& noise_covariance;   ///< zero where the prediction leaves the noise out
+  const Eigen::MatrixXd& within_covariance;  ///< of the belief's quantiser, for stage 0
+};
+
+/// One term; a new one is a file with a class, a line in the table and, where it is a part of its
+/// own, one among cost_parts().
+struct CostTermEntry {
+  std::string name;
+  std::string part;  ///< a name from cost_parts()
+  /// nullptr where the problem has no such term. Refers to what `terms` refers to.
+  std::unique_ptr<StageTerm> (*make)(const HorizonCostTerms& terms) = nullptr;
+};
+
+/// The table of terms, in the order in which they are added at one place.
+[[nodiscard]] const std::vector<CostTermEntry>& cost_terms();
+
+// The makers of the table, one file each but for the quadratic ones.
+[[nodiscard]] std::unique_ptr<StageTerm> make_state_term(const HorizonCostTerms& terms);
+[[nodiscard]] std::unique_ptr<StageTerm> make_input_term(const HorizonCostTerms& terms);
+[[nodiscard]] std::unique_ptr<StageTerm> make_terminal_term(const HorizonCostTerms& terms);
+[[nodiscard]] std::unique_ptr<StageTerm> make_bounds_term(const HorizonCostTerms& terms);
+[[nodiscard]] std::unique_ptr<StageTerm> make_obstacle_term(const HorizonCostTerms& terms);
+[[nodiscard]] std::unique_ptr<StageTerm> make_printed_bounds_term(const HorizonCostTerms& terms);
+[[nodiscard]] std::unique_ptr<StageTerm> make_printed_obstacle_term(const HorizonCostTerms& terms);
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,112 @@
+// The quadratic terms: states and inputs along the horizon (Eq. 4-18) and the last state (Eq.
+// 4-19).
+//
+// States are taken where the step leads to, before the compression, which would lose a part of the
+// second moment:
+//     ½ E|x − r|²_Q = ½ Σ_i ρ_i |f_i − r|²_Q + ½ tr(Q Σ_w),
+// and the terminal cost likewise, without the ½. The traces, and the belief's own cost, are what no
+// decision changes.
+#include "controller/planning/cost/cost_terms.hpp"
+#include "controller/planning/cost/stage_kernels.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+/// factor · E|x − centre|²_W at one place.
+class QuadraticTerm : public StageTerm {
+ public:
+  [[nodiscard]] TermPlace place() const override { return place_; }
+
+  double add(const TermBatch& batch, const Executor& /*run*/) override {
+    return weighted_quadratic(form_, factor_, batch.points, batch.weights, batch.range,
+                              batch.gradient,
+                              batch.blank ? GradientUse::kOverwrite : GradientUse::kAdd);
+  }
+
+ protected:
+  QuadraticTerm(TermPlace place, double factor, const Eigen::MatrixXd& weight,
+                const Eigen::VectorXd& centre)
+      : place_(place), factor_(factor), form_(weight, centre) {}
+
+  [[nodiscard]] QuadraticForm& form() { return form_; }
+
+ private:
+  TermPlace place_;
+  double factor_;
+  QuadraticForm form_;
+};
+
+class InputTerm final : public QuadraticTerm {
+ public:
+  explicit InputTerm(const Eigen::MatrixXd& weight)
+      : QuadraticTerm(TermPlace::kInputs, 1.0, weight, Eigen::VectorXd::Zero(weight.rows())) {}
+};
+
+class StateTerm final : public QuadraticTerm {
+ public:
+  explicit StateTerm(const QuadraticCost& cost)
+      : QuadraticTerm(TermPlace::kStepped, 0.5, cost.state, cost.target), cost_(cost) {}
+
+  [[nodiscard]] bool acts(Eigen::Index stage, Eigen::Index horizon) const override {
+    return stage < horizon;
+  }
+
+  void freeze(const FrozenHorizon& frozen) override {
+    form().centre = cost_.target;
+    const Points& points = frozen.belief.locations;
+    unused_.resize(points.rows(), points.cols());
+    double belief = 0.0;
+    for (Eigen::Index i = 0; i < points.cols(); i += kChunk) {
+      belief += weighted_quadratic(form(), 0.5, points, frozen.belief.weights,
+                                   chunk_range(static_cast<int>(i / kChunk), points.cols()),
+                                   unused_, GradientUse::kOverwrite);
+    }
+    const double noise = cost_.state.cwiseProduct(frozen.noise_covariance).sum();
+    fixed_ = belief + 0.5 * (cost_.state.cwiseProduct(frozen.within_covariance).sum() +
+                             static_cast<double>(frozen.horizon - 1) * noise);
+  }
+
+  [[nodiscard]] double fixed() const override { return fixed_; }
+
+ private:
+  const QuadraticCost& cost_;
+  Points unused_;  // gradient of the belief's cost
+  double fixed_ = 0.0;
+};
+
+class TerminalTerm final : public QuadraticTerm {
+ public:
+  explicit TerminalTerm(const QuadraticCost& cost)
+      : QuadraticTerm(TermPlace::kStepped, 1.0, cost.terminal, cost.target), cost_(cost) {}
+
+  [[nodiscard]] bool acts(Eigen::Index stage, Eigen::Index horizon) const override {
+    return stage == horizon;
+  }
+
+  void freeze(const FrozenHorizon& frozen) override {
+    form().centre = cost_.target;
+    fixed_ = cost_.terminal.cwiseProduct(frozen.noise_covariance).sum();
+  }
+
+  [[nodiscard]] double fixed() const override { return fixed_; }
+
+ private:
+  const QuadraticCost& cost_;
+  double fixed_ = 0.0;
+};
+
+}  // namespace
+
+std::unique_ptr<StageTerm> make_state_term(const HorizonCostTerms& terms) {
+  return std::make_unique<StateTerm>(terms.cost);
+}
+
+std::unique_ptr<StageTerm> make_input_term(const HorizonCostTerms& terms) {
+  return std::make_unique<InputTerm>(terms.cost.input);
+}
+
+std::unique_ptr<StageTerm> make_terminal_term(const HorizonCostTerms& terms) {
+  return std::make_unique<TerminalTerm>(terms.cost);
+}
+
+}  // namespace qsmpc::controller

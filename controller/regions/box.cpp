@@ -1,0 +1,70 @@
+// A closed box: an obstacle.
+#include <algorithm>
+
+#include "controller/regions/box_part.hpp"
+#include "controller/regions/penalty_kernels.hpp"
+#include "controller/regions/shapes.hpp"
+#include "controller/regions/soft_part.hpp"
+#include "controller/regions/soft_region.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+class BoxRegion final : public UnsafeRegion {
+ public:
+  explicit BoxRegion(const Box& box) : part_(box_part(box)), intervals_(bounded_axes(box)) {}
+
+  [[nodiscard]] double signed_distance(
+      Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& point) const override {
+    const double depth = depth_in_box(point, part_.box);
+    return depth >= 0.0 ? -depth : distance_to_box(point, part_.box);
+  }
+
+  void lower_to_distances(Eigen::Index /*stage*/, const Points& points,
+                          Eigen::ArrayXd& least) const override {
+    const BoxDistances to(points, intervals_);
+    least = least.min((to.depth >= 0.0).select(-to.depth, to.squares.sqrt()));
+  }
+
+  double add_penalty(Eigen::Index /*stage*/, const PenaltyBatch& batch) const override {
+    return box_penalty(intervals_, batch);
+  }
+
+  void add_probability(Eigen::Index /*stage*/, const SurrogateLaw& state,
+                       RegionProbability& sum) const override {
+    add_part_probability(state, part_, sum);
+  }
+
+  [[nodiscard]] double soft_probability(Eigen::Index /*stage*/,
+                                        const Eigen::Ref<const Eigen::VectorXd>& mean,
+                                        const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                                        double t) const override {
+    return soft_part_probability(mean, covariance, part_.box, t);
+  }
+
+  [[nodiscard]] std::unique_ptr<const SoftRegion> soften(
+      Eigen::Index /*stage*/, const GaussianCentres& centres) const override {
+    return soft_box(part_.box, centres);
+  }
+
+  [[nodiscard]] Outline outline(Eigen::Index /*stage*/, Eigen::Index x,
+                                Eigen::Index y) const override {
+    const auto is_other = [&](const AxisInterval& interval) {
+      return interval.axis != x && interval.axis != y;
+    };
+    return {.corners = rectangle_corners(part_.box, x, y),
+            .depends_on_others = std::any_of(intervals_.begin(), intervals_.end(), is_other)};
+  }
+
+ private:
+  BoxPart part_;
+  std::vector<AxisInterval> intervals_;
+};
+
+}  // namespace
+
+RegionPointer make_box(const Box& intervals) {
+  return std::make_shared<const BoxRegion>(intervals);
+}
+
+}  // namespace qsmpc::controller

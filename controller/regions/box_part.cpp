@@ -1,0 +1,88 @@
+#include "controller/regions/box_part.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "controller/regions/box_part_bound.hpp"
+#include "models/constants.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// What a part of the unsafe set may add without being worked out further.
+constexpr double kNegligible = 1e-8;
+
+}  // namespace
+
+std::vector<BoxPart> half_spaces(const Box& bounds) {
+  std::vector<BoxPart> parts;
+  const Eigen::Index dim = bounds.lower.size();
+  const BoxPart everything{.box = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
+                                   .upper = Eigen::VectorXd::Constant(dim, kInfinity)},
+                           .axes = {}};
+  for (Eigen::Index axis = 0; axis < dim; ++axis) {
+    BoxPart part = everything;
+    part.axes = {axis};
+    if (std::isfinite(bounds.lower[axis])) {
+      part.box.upper[axis] = bounds.lower[axis];
+      parts.push_back(part);
+      part.box.upper[axis] = kInfinity;
+    }
+    if (std::isfinite(bounds.upper[axis])) {
+      part.box.lower[axis] = bounds.upper[axis];
+      parts.push_back(part);
+    }
+  }
+  return parts;
+}
+
+BoxPart box_part(const Box& box) {
+  BoxPart part{.box = box, .axes = {}};
+  for (const AxisInterval& interval : bounded_axes(box)) part.axes.push_back(interval.axis);
+  return part;
+}
+
+void add_part_probability(const SurrogateLaw& state, const BoxPart& part, RegionProbability& sum) {
+  // One value of the highest order settles the parts that are far away.
+  const std::size_t highest = kHigherOrders.size() - 1;
+  double markov =
+      far_region_bound(state.law, state.higher[highest], kHigherOrders[highest], part, kNegligible);
+  double smooth = markov;
+  if (markov > kNegligible) {
+    const Eigen::MatrixXd smoothing = state.smoothing(part.axes);
+    const PerturbedGaussian perturbed{
+        .law = state.law, .error = state.error, .smoothing = smoothing};
+    markov = std::min(markov, markov_region_bound(perturbed, part));
+    smooth = std::min(markov, smooth_region_bound(perturbed, part));
+  }
+  // Searches in two coordinates are dear: only where they can matter.
+  for (std::size_t k = kHigherOrders.size(); k-- > 0 && smooth > state.worthwhile;) {
+    markov =
+        std::min(markov, tail_region_bound(state.law, state.higher[k], kHigherOrders[k], part));
+    smooth = std::min(smooth, markov);
+  }
+  sum.markov += markov;
+  sum.smooth += smooth;
+}
+
+BoxDistances::BoxDistances(const Points& points, const std::vector<AxisInterval>& intervals)
+    : depth(Eigen::ArrayXd::Constant(points.cols(), kInfinity)),
+      squares(Eigen::ArrayXd::Zero(points.cols())) {
+  for (const AxisInterval& interval : intervals) {
+    const Eigen::Map<const Eigen::ArrayXd> x(points.data() + interval.axis * points.cols(),
+                                             points.cols());
+    depth = depth.min(x - interval.lower).min(interval.upper - x);
+    squares += (interval.lower - x).max(x - interval.upper).max(0.0).square();
+  }
+}
+
+Eigen::Matrix2Xd rectangle_corners(const Box& box, Eigen::Index x, Eigen::Index y) {
+  const auto lower = [&](Eigen::Index axis) { return axis < 0 ? -kInfinity : box.lower[axis]; };
+  const auto upper = [&](Eigen::Index axis) { return axis < 0 ? kInfinity : box.upper[axis]; };
+  Eigen::Matrix2Xd corners(2, 4);
+  corners << lower(x), upper(x), upper(x), lower(x),  //
+      lower(y), lower(y), upper(y), upper(y);
+  return corners;
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,40 @@
+// Closed boxes and half-spaces, which walls and boxes are made of, as certificates see them.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/regions/safe_set.hpp"
+#include "controller/regions/unsafe_region.hpp"
+
+namespace qsmpc::controller {
+
+/// A closed box, and the coordinates in which it is bounded.
+struct BoxPart {
+  Box box;
+  std::vector<Eigen::Index> axes;
+};
+
+/// The half-spaces beyond the finite ends of `bounds`.
+[[nodiscard]] std::vector<BoxPart> half_spaces(const Box& bounds);
+
+[[nodiscard]] BoxPart box_part(const Box& box);
+
+/// Adds bounds of P(z + e in the part), the least of those in box_part_bound.hpp, to the sums.
+void add_part_probability(const SurrogateLaw& state, const BoxPart& part, RegionProbability& sum);
+
+/// Of many points from a box, which is bounded in the given intervals: how deep each is inside
+/// (less than 0 outside, infinite where there is no interval), and the squared distance of those
+/// outside.
+struct BoxDistances {
+  BoxDistances(const Points& points, const std::vector<AxisInterval>& intervals);
+  Eigen::ArrayXd depth;
+  Eigen::ArrayXd squares;
+};
+
+/// The corners of a box in the plane of two of its coordinates, counterclockwise; one that is -1 is
+/// unbounded.
+[[nodiscard]] Eigen::Matrix2Xd rectangle_corners(const Box& box, Eigen::Index x, Eigen::Index y);
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,51 @@
+#include "controller/regions/safe_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "models/constants.hpp"
+
+namespace qsmpc::controller {
+
+SafeSet unbounded_safe_set(Eigen::Index dim) {
+  return {.bounds = {.lower = Eigen::VectorXd::Constant(dim, -kInfinity),
+                     .upper = Eigen::VectorXd::Constant(dim, kInfinity)},
+          .obstacles = {}};
+}
+
+void check_box(const Box& box, Eigen::Index dim, const std::string& name) {
+  if (box.lower.size() != dim || box.upper.size() != dim) {
+    throw std::invalid_argument(name + ": lower and upper need " + std::to_string(dim) +
+                                " entries each");
+  }
+  if (!(box.lower.array() < box.upper.array()).all()) {
+    throw std::invalid_argument(name + ": lower must be less than upper in every coordinate");
+  }
+}
+
+void check_safe_set(const SafeSet& safe_set) {
+  check_box(safe_set.bounds, safe_set.dim(), "safe set bounds");
+  for (const Box& obstacle : safe_set.obstacles) {
+    check_box(obstacle, safe_set.dim(), "obstacle");
+  }
+}
+
+double distance_to_box(const Eigen::Ref<const Eigen::VectorXd>& point, const Box& box) {
+  return (box.lower - point).cwiseMax(point - box.upper).cwiseMax(0.0).norm();
+}
+
+double depth_in_box(const Eigen::Ref<const Eigen::VectorXd>& point, const Box& box) {
+  return std::min((point - box.lower).minCoeff(), (box.upper - point).minCoeff());
+}
+
+std::vector<AxisInterval> bounded_axes(const Box& box) {
+  std::vector<AxisInterval> intervals;
+  for (Eigen::Index axis = 0; axis < box.lower.size(); ++axis) {
+    if (std::isinf(box.lower[axis]) && std::isinf(box.upper[axis])) continue;
+    intervals.push_back({static_cast<int>(axis), box.lower[axis], box.upper[axis]});
+  }
+  return intervals;
+}
+
+}  // namespace qsmpc::controller
