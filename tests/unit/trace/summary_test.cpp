@@ -1,5 +1,6 @@
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -111,6 +112,12 @@ TEST(Summary, mismatch_is_what_the_model_and_the_disturbance_leave) {
   EXPECT_NEAR(summary.mismatch_mean[1], -0.005, 1e-15);
   EXPECT_NEAR(summary.mismatch_rmse[1], 0.01 / std::sqrt(2.0), 1e-15);
   EXPECT_NEAR(summary.mismatch_covariance(1, 1), 0.005 * 0.005, 1e-15);
+}
+
+TEST(EpisodeView, of_a_trace_without_residuals_is_refused) {
+  Trace trace = straight_trace(2);
+  trace.steps[1].residual.resize(0);
+  EXPECT_THROW((void)EpisodeView(trace), std::invalid_argument);
 }
 
 TEST(Summary, json_has_every_documented_key) {

@@ -171,6 +171,7 @@ TEST_F(TraceFile, a_description_that_contradicts_the_scenario_or_itself_is_refus
   const auto refusal_of = [this](models::SystemDescription system) {
     Trace trace = testing::example_trace({.steps = 0});
     trace.system = std::move(system);
+    trace.final_state.resize(0);
     write_trace(path(), trace);
     return refusal(path());
   };
@@ -181,6 +182,10 @@ TEST_F(TraceFile, a_description_that_contradicts_the_scenario_or_itself_is_refus
   system = unlike_any_system();
   system.input_upper.setZero(2);
   EXPECT_THAT(refusal_of(system), HasSubstr("/system/inputs@upper"));
+  system = unlike_any_system();
+  system.position_x = -1;
+  system.states.pop_back();
+  EXPECT_THAT(refusal_of(system), HasSubstr("/system/states@names"));
 }
 
 TEST_F(TraceFile, an_episode_without_steps_and_one_without_a_mujoco_model_are_read_back) {
