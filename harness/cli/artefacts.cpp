@@ -69,14 +69,14 @@ EpisodeVideoOptions video_options(const Scenario& scenario) {
   return options;
 }
 
-void make_video(const Trace& trace, const VideoFiles& files, const EpisodeVideoOptions& options,
-                const VideoTalk& talk) {
+void make_video(const EpisodeView& view, const VideoFiles& files,
+                const EpisodeVideoOptions& options, const VideoTalk& talk) {
   remove_file(files.numbers);  // those of an earlier video
   const int before = interrupts();
   VideoTimings timings;
   try {
     Progress progress("rendering", talk.quiet);
-    timings = write_episode_video(trace, options, files.video, [&](int done, int total) {
+    timings = write_episode_video(view, options, files.video, [&](int done, int total) {
       progress.update(done, total, "frames");
       return interrupts() == before;
     });
@@ -87,10 +87,10 @@ void make_video(const Trace& trace, const VideoFiles& files, const EpisodeVideoO
   if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n{}\n", timings.gl, video_line(timings));
 }
 
-void make_still(const Trace& trace, const std::string& path, const EpisodeVideoOptions& options,
-                double time, const VideoTalk& talk) {
+void make_still(const EpisodeView& view, const std::string& path,
+                const EpisodeVideoOptions& options, double time, const VideoTalk& talk) {
   try {
-    write_episode_still(trace, options, time, path);
+    write_episode_still(view, options, time, path);
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
   }
@@ -151,16 +151,6 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
   if (with_video) text += row("video", in_folder(folder, kVideoFile));
   text += row("trace", in_folder(folder, kTraceFile));
   return text;
-}
-
-Trace read_folder(const std::string& folder) {
-  const std::string path = in_folder(folder, kTraceFile);
-  const std::string partial = partial_path_of(path);
-  std::error_code ignored;
-  if (!std::filesystem::exists(path, ignored) && std::filesystem::exists(partial, ignored)) {
-    return read_trace(partial);
-  }
-  return read_trace(path);
 }
 
 }  // namespace qsmpc::harness

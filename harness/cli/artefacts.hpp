@@ -39,12 +39,12 @@ struct VideoTalk {
 
 /// Renders the video with a progress bar; another Ctrl-C ends it early and keeps what is rendered.
 /// Throws IoError.
-void make_video(const Trace& trace, const VideoFiles& files, const EpisodeVideoOptions& options,
-                const VideoTalk& talk);
+void make_video(const EpisodeView& view, const VideoFiles& files,
+                const EpisodeVideoOptions& options, const VideoTalk& talk);
 
 /// Renders the picture at `time` (s) into the PNG file at `path`. Throws IoError.
-void make_still(const Trace& trace, const std::string& path, const EpisodeVideoOptions& options,
-                double time, const VideoTalk& talk);
+void make_still(const EpisodeView& view, const std::string& path,
+                const EpisodeVideoOptions& options, double time, const VideoTalk& talk);
 
 /// Writes summary.json. Throws IoError.
 void write_summary(const EpisodeView& view, const std::string& folder, bool with_video);
@@ -55,8 +55,5 @@ void write_page(const EpisodeView& view, const std::string& folder, bool with_vi
 /// The summary as a table for a terminal, with the paths of the files.
 [[nodiscard]] std::string summary_table(const EpisodeView& view, const std::string& folder,
                                         bool with_video);
-
-/// Reads the trace in `folder`, or its partial file where an episode was killed. Throws InputError.
-[[nodiscard]] Trace read_folder(const std::string& folder);
 
 }  // namespace qsmpc::harness

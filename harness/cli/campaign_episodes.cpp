@@ -104,8 +104,8 @@ ListedEpisode listed(const StoreReader& store, const EpisodeRow& row, const std:
 }
 
 /// Says so where an episode did not end as it did in the campaign.
-void compare_with_store(const Trace& trace, const EpisodeRow& stored) {
-  const EpisodeRow now = episode_row(EpisodeView(trace), stored.variant);
+void compare_with_store(const EpisodeView& view, const EpisodeRow& stored) {
+  const EpisodeRow now = episode_row(view, stored.variant);
   const auto same = [](double one, double other) {
     return one == other || (std::isnan(one) && std::isnan(other));
   };
@@ -143,23 +143,21 @@ std::optional<Trace> drive_again(const StoredVariant& variant, const EpisodeRow&
   make_durable_folder(target, folder);
   discard_artefacts(target);
   write_trace(target + "/" + kTraceFile, trace);
-  compare_with_store(trace, row);
   return trace;
 }
 
-/// Summary, page and video of `trace` in the folder `target`.
-void make_artefacts(const Trace& trace, const std::string& target, bool quiet) {
+/// Summary, page and video of an episode in the folder `target`.
+void make_artefacts(const EpisodeView& view, const std::string& target, bool quiet) {
   bool with_video = is_there(target + "/" + kVideoFile);
-  const std::string no_video = why_not_drawn(trace.scenario);
+  const std::string no_video = why_not_drawn(view);
   if (!no_video.empty()) {
     std::cerr << "qsmpc: no video: " << no_video << '\n';
-  } else if (!with_video && !trace.steps.empty()) {
-    make_video(trace,
+  } else if (!with_video && !view.trace().steps.empty()) {
+    make_video(view,
                {.video = target + "/" + kVideoFile, .numbers = target + "/" + kVideoNumbersFile},
-               video_options(trace.scenario), {.quiet = quiet});
+               video_options(view.scenario()), {.quiet = quiet});
     with_video = true;
   }
-  const EpisodeView view(trace);
   write_summary(view, target, with_video);
   write_page(view, target, with_video);
 }
@@ -187,11 +185,13 @@ bool make_worst_episodes(const std::string& folder, std::size_t count, bool quie
                                worst.size(), row.variant + 1, row.seed);
     }
     const std::string target = folder + "/" + folder_of(row);
+    const bool kept = has_trace(store, row, folder);
     const std::optional<Trace> trace =
-        has_trace(store, row, folder) ? read_folder(target)
-                                      : drive_again(variant_of(store, row), row, folder, quiet);
+        kept ? read_folder(target) : drive_again(variant_of(store, row), row, folder, quiet);
     if (!trace) return false;
-    make_artefacts(*trace, target, quiet);
+    const EpisodeView view(*trace);
+    if (!kept) compare_with_store(view, row);
+    make_artefacts(view, target, quiet);
   }
   return interrupts() == 0;
 }

@@ -16,6 +16,7 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
+#include "harness/trace/trace_file.hpp"
 #include "render/gl/gl_library.hpp"
 
 namespace qsmpc::harness {
@@ -97,9 +98,9 @@ EpisodeVideoOptions chosen_options(const RenderArguments& arguments, const Scena
 }
 
 /// Throws InputError where --from, --to or --still lie outside of the longer episode.
-void check_times(const RenderArguments& arguments, const Trace& trace, const Trace* beside) {
-  const double end =
-      std::max(episode_duration(trace), beside == nullptr ? 0.0 : episode_duration(*beside));
+void check_times(const RenderArguments& arguments, const EpisodeView& view,
+                 const EpisodeView* beside) {
+  const double end = std::max(view.duration(), beside == nullptr ? 0.0 : beside->duration());
   const auto check = [end](const char* key, double time, double first) {
     if (time >= first && time <= end) return;
     throw InputError({.key = key,
@@ -129,21 +130,23 @@ void check_still(const RenderArguments& arguments) {
 int render(const RenderArguments& arguments) {
   check_still(arguments);
   const Trace trace = read_folder(arguments.folder);
-  std::optional<Trace> beside;
-  if (arguments.beside) beside = read_folder(*arguments.beside);
-  check_times(arguments, trace, beside ? &*beside : nullptr);
-  EpisodeVideoOptions options = chosen_options(arguments, trace.scenario);
+  const EpisodeView view(trace);
+  std::optional<Trace> other;
+  std::optional<EpisodeView> beside;
+  if (arguments.beside) beside.emplace(other.emplace(read_folder(*arguments.beside)));
+  EpisodeVideoOptions options = chosen_options(arguments, view.scenario());
   if (beside) options.beside = &*beside;
+  check_times(arguments, view, options.beside);
   choose_gl(arguments.gl);
   const std::string path = output_path(arguments, options);
   const VideoTalk talk{.quiet = arguments.quiet, .verbose = arguments.verbose};
   if (arguments.still) {
-    make_still(trace, path, options, *arguments.still, talk);
+    make_still(view, path, options, *arguments.still, talk);
   } else {
     const bool is_the_episodes = path == arguments.folder + "/" + kVideoFile;
     const std::string numbers =
         is_the_episodes ? arguments.folder + "/" + kVideoNumbersFile : path + ".json";
-    make_video(trace, {.video = path, .numbers = numbers}, options, talk);
+    make_video(view, {.video = path, .numbers = numbers}, options, talk);
   }
   print_result(path + "\n");
   return interrupts() > 0 ? kInterruptedExit : kDone;

@@ -19,6 +19,7 @@
 #include "harness/mismatch/comparison_file.hpp"
 #include "harness/report/comparison_page.hpp"
 #include "harness/report/figure_files.hpp"
+#include "harness/trace/trace_file.hpp"
 
 namespace qsmpc::harness {
 namespace {

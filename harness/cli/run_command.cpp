@@ -89,12 +89,12 @@ int run(const RunArguments& arguments) {
     std::cerr << "qsmpc: the plant broke: " << printable(trace.fault, 1000) << '\n';
   }
   // An episode that ended before it began, e.g. because its plant's file is broken, shows nothing.
-  std::string no_video = why_not_drawn(scenario);
+  std::string no_video = why_not_drawn(view);
   if (arguments.video && no_video.empty()) no_video = why_no_gl();
   if (arguments.video && !no_video.empty()) std::cerr << "qsmpc: no video: " << no_video << '\n';
   const bool with_video = arguments.video && no_video.empty() && !trace.steps.empty();
   if (with_video) {
-    make_video(trace,
+    make_video(view,
                {.video = folder + "/" + kVideoFile, .numbers = folder + "/" + kVideoNumbersFile},
                video_options(scenario), {.quiet = arguments.quiet, .verbose = arguments.verbose});
     write_summary(view, folder, with_video);

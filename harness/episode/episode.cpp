@@ -18,6 +18,7 @@
 #include "harness/plant/plant_registry.hpp"
 #include "harness/random/random_numbers.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/residuals.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/version.hpp"
 #include "models/constants.hpp"
@@ -35,6 +36,18 @@ constexpr double kMilliseconds = 1000.0;  // in a second
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+Trace header_of(const Scenario& scenario, const models::SystemDescription& system,
+                std::uint64_t seed) {
+  Trace trace;
+  trace.scenario = scenario;
+  trace.scenario.seed = seed;
+  trace.scenario_text = to_yaml(trace.scenario);
+  trace.system = system;
+  trace.seed = seed;
+  trace.version = kVersion;
+  return trace;
 }
 
 bool at_target(const Scenario& scenario, const models::SystemDescription& description,
@@ -73,7 +86,7 @@ class EpisodeDriver::Loop {
     options_ = options;
     controller_->reset();
     belief_ = first_belief();
-    Trace trace = trace_header(scenario_, options_.seed);
+    Trace trace = header_of(scenario_, model_->description(), options_.seed);
     const GaussianSampler initial(belief_.mean, belief_.covariance);
     state_ = initial.sample({.seed = options_.seed, .stream = RandomStream::kInitialState});
     try {
@@ -121,6 +134,7 @@ class EpisodeDriver::Loop {
     const auto start = Clock::now();
     PlantStep result = plant_->advance(record.input, record.disturbance);
     record.timing.simulate = milliseconds_since(start);
+    if (!result.fault) record.residual = one_step_residual(*model_, record, result.state);
     trace.motion.insert(trace.motion.end(), std::make_move_iterator(result.motion.begin()),
                         std::make_move_iterator(result.motion.end()));
     if (options_.writer != nullptr) {
@@ -167,6 +181,7 @@ class EpisodeDriver::Loop {
                         .stream = RandomStream::kDisturbance,
                         .step = static_cast<std::uint64_t>(k)};
     record.disturbance = disturbance_.sample(key);
+    record.residual = unknown_residual(state_.size());
     return record;
   }
 
@@ -249,13 +264,7 @@ class EpisodeDriver::Loop {
 };
 
 Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
-  Trace trace;
-  trace.scenario = scenario;
-  trace.scenario.seed = seed;
-  trace.scenario_text = to_yaml(trace.scenario);
-  trace.seed = seed;
-  trace.version = kVersion;
-  return trace;
+  return header_of(scenario, model_of(scenario)->description(), seed);
 }
 
 EpisodeDriver::EpisodeDriver(const Scenario& scenario) : loop_(std::make_unique<Loop>(scenario)) {}

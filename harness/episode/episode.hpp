@@ -35,7 +35,7 @@ struct EpisodeOptions {
   TraceWriter* writer = nullptr;
 };
 
-/// The header of the trace of `scenario`: scenario, its text, seed, version.
+/// The header of the trace of `scenario`: scenario, its text, its system, seed, version.
 [[nodiscard]] Trace trace_header(const Scenario& scenario, std::uint64_t seed);
 
 /// Drives episodes of one scenario, one after the other. Each is what a driver of its own would

@@ -63,8 +63,6 @@ std::string folder_of(const std::string& path) {
 
 }  // namespace
 
-std::string partial_path_of(const std::string& path) { return path + ".partial"; }
-
 void commit_file(const std::string& partial_path, const std::string& path) {
   publish(partial_path, path);
   sync_path(folder_of(path), O_DIRECTORY);

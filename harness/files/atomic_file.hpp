@@ -11,7 +11,9 @@
 namespace qsmpc::harness {
 
 /// Where the file `path` stands while it is being written: `PATH.partial`.
-[[nodiscard]] std::string partial_path_of(const std::string& path);
+[[nodiscard]] inline std::string partial_path_of(const std::string& path) {
+  return path + ".partial";
+}
 
 /// Makes the finished file at `partial_path_of(path)` durable and gives it the name `path`,
 /// replacing what stood there. Throws IoError on any failure; `path` then still holds what it held

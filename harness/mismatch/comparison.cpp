@@ -75,6 +75,7 @@ class Comparing {
     belief_ = {.mean = scenario.initial_state.mean,
                .covariance = scenario.initial_state.covariance};
     result_.scenario = scenario;
+    result_.system = model_->description();
     result_.scenario_text = to_yaml(scenario);
     result_.version = kVersion;
     result_.paths = options.paths;

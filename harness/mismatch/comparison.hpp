@@ -27,6 +27,7 @@
 #include "harness/mismatch/residual_statistics.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "harness/threads/shared_work.hpp"
+#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 
@@ -61,7 +62,8 @@ struct PlantComparison {
 
 struct Comparison {
   Scenario scenario;
-  std::string scenario_text;  ///< the resolved scenario as YAML
+  models::SystemDescription system;  ///< of the scenario's model
+  std::string scenario_text;         ///< the resolved scenario as YAML
   std::string version;
   std::int64_t paths = 0;
   std::int64_t w2_paths = 0;                           ///< of them, how many enter W2

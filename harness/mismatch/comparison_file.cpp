@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cctype>
-#include <memory>
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/mismatch/comparison_json.hpp"
@@ -31,9 +29,8 @@ struct ComparisonSizes {
 };
 
 ComparisonSizes comparison_sizes(const Comparison& comparison) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
-  return {.states = labels_of(model->description().states),
-          .inputs = labels_of(model->description().inputs),
+  return {.states = labels_of(comparison.system.states),
+          .inputs = labels_of(comparison.system.inputs),
           .paths = static_cast<std::size_t>(comparison.paths)};
 }
 

@@ -1,9 +1,7 @@
 #include "harness/mismatch/comparison_json.hpp"
 
 #include <cstddef>
-#include <memory>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
@@ -16,10 +14,9 @@ double rate_of(std::int64_t events, std::int64_t trials) {
   return static_cast<double>(events) / static_cast<double>(trials);
 }
 
-Json states_json(const Scenario& scenario) {
+Json states_json(const models::SystemDescription& system) {
   Json states = Json::array();
-  const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
-  for (const models::Coordinate& state : model->description().states) {
+  for (const models::Coordinate& state : system.states) {
     states.push_back({{"name", state.name}, {"unit", state.unit}});
   }
   return states;
@@ -128,7 +125,7 @@ std::string comparison_json(const Comparison& comparison) {
   json["scenario"] = comparison.scenario.name;
   json["seed"] = comparison.scenario.seed;
   json["version"] = comparison.version;
-  json["states"] = states_json(comparison.scenario);
+  json["states"] = states_json(comparison.system);
   json["plants"] = Json::object();
   for (const PlantComparison& plant : comparison.plants) {
     json["plants"][plant.name] = plant_json(comparison, plant);

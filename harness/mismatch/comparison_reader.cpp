@@ -93,7 +93,8 @@ void ComparisonReader::read_header() {
   comparison_.scenario = parse_scenario(
       comparison_.scenario_text,
       {.file = path, .folder = path.substr(0, path.rfind('/') + 1), .files_must_exist = false});
-  state_dim_ = static_cast<std::size_t>(comparison_.scenario.initial_state.mean.size());
+  comparison_.system = model_of(comparison_.scenario)->description();
+  state_dim_ = comparison_.system.states.size();
   horizon_ = static_cast<std::size_t>(comparison_.scenario.controller.horizon);
   const std::vector<std::string> names = file_.texts("/plants", "names");
   groups_ = file_.texts("/plants", "groups");

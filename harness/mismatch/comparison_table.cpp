@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
@@ -176,8 +174,7 @@ std::string certificate_section(const Comparison& comparison) {
 }  // namespace
 
 std::string comparison_table(const Comparison& comparison) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
-  const models::SystemDescription& system = model->description();
+  const models::SystemDescription& system = comparison.system;
   return fmt::format("{}: plants beside the model {}, seed {}\n",
                      printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
          closed_loop_section(comparison) + one_step_section(comparison, system) +

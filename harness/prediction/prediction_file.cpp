@@ -1,10 +1,8 @@
 #include "harness/prediction/prediction_file.hpp"
 
 #include <cstddef>
-#include <memory>
 #include <utility>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/prediction/prediction_json.hpp"
@@ -223,9 +221,8 @@ void write_hdf5(const PredictionReport& report, const std::string& path) {
 }  // namespace
 
 std::vector<DatasetSpec> prediction_layout(const PredictionReport& report) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(report.scenario);
-  const Labels labels{.states = labels_of(model->description().states),
-                      .inputs = labels_of(model->description().inputs)};
+  const Labels labels{.states = labels_of(report.system.states),
+                      .inputs = labels_of(report.system.inputs)};
   Layout layout;
   add_plan(layout, labels);
   add_particles(layout, labels);

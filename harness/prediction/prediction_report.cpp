@@ -19,6 +19,7 @@ PredictionReport predict_scenario(const Scenario& scenario, const PredictionOpti
 
   PredictionReport report;
   report.scenario = scenario;
+  report.system = model->description();
   report.scenario_text = to_yaml(scenario);
   report.version = kVersion;
   report.inputs_given = options.inputs.has_value();

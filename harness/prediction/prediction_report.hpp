@@ -21,6 +21,7 @@
 #include "harness/prediction/monte_carlo.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "harness/statistics/binomial_interval.hpp"
+#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 
@@ -32,7 +33,8 @@ struct PredictionOptions {
 
 struct PredictionReport {
   Scenario scenario;
-  std::string scenario_text;  ///< the resolved scenario as YAML
+  models::SystemDescription system;  ///< of the scenario's model
+  std::string scenario_text;         ///< the resolved scenario as YAML
   std::string version;
   bool inputs_given = false;
   std::string solver_status;  ///< of planned inputs; empty where they were given

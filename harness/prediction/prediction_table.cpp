@@ -2,12 +2,10 @@
 
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
@@ -93,14 +91,13 @@ std::string total_row(const PredictionReport& report, std::size_t states) {
 }  // namespace
 
 std::string prediction_table(const PredictionReport& report) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(report.scenario);
-  const std::vector<int> states = shown_states(model->description());
+  const std::vector<int> states = shown_states(report.system);
   std::string text = fmt::format(
       "{}: {} stages of {:.3g} s, inputs {}, expected cost {:.5g}\n",
       printable(report.scenario.name), report.certificates.size(), report.scenario.time_step,
       report.inputs_given ? "given" : "planned (" + report.solver_status + ")",
       report.cost.total());
-  text += head(report, model->description(), states);
+  text += head(report, report.system, states);
   for (std::size_t stage = 1; stage < report.prediction.stages.size(); ++stage) {
     text += stage_row(report, stage, states);
   }

@@ -184,11 +184,13 @@ std::string figures(const CampaignStatistics& statistics) {
 std::string campaign_page(const CampaignStatistics& statistics,
                           const std::vector<ListedEpisode>& worst) {
   const std::string name = escape_html(statistics.campaign.name);
-  return table_page_head(statistics.campaign.name) + "<h1>" + name + "</h1>\n" +
-         kicker(statistics) + verdict_html(verdict(statistics)) + outcomes_table(statistics) +
-         certificates_table(statistics) + differences_table(statistics) +
-         worst_table(statistics, worst) + figures(statistics) +
-         page_foot(statistics.campaign.version);
+  return framed_page({.title = statistics.campaign.name,
+                      .version = statistics.campaign.version,
+                      .kind = PageKind::kTables},
+                     "<h1>" + name + "</h1>\n" + kicker(statistics) +
+                         verdict_html(verdict(statistics)) + outcomes_table(statistics) +
+                         certificates_table(statistics) + differences_table(statistics) +
+                         worst_table(statistics, worst) + figures(statistics));
 }
 
 }  // namespace qsmpc::harness

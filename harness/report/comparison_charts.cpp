@@ -1,12 +1,10 @@
 #include "harness/report/comparison_charts.hpp"
 
 #include <cstddef>
-#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
 
 namespace qsmpc::harness {
@@ -174,8 +172,7 @@ Chart certificate_chart(const Comparison& comparison, const PlantComparison& pla
 }  // namespace
 
 std::vector<ComparisonFigure> comparison_figures(const Comparison& comparison) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
-  const models::SystemDescription& system = model->description();
+  const models::SystemDescription& system = comparison.system;
   ComparisonFigure certificates{.file = "certificates.svg", .charts = {}};
   for (const PlantComparison& plant : comparison.plants) {
     certificates.charts.push_back(certificate_chart(comparison, plant));

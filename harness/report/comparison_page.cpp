@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <memory>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_verdict.hpp"
@@ -214,11 +212,10 @@ std::string certificate_section(const Comparison& comparison, const ComparisonFi
 }  // namespace
 
 std::string comparison_page(const Comparison& comparison) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(comparison.scenario);
-  const models::SystemDescription& system = model->description();
+  const models::SystemDescription& system = comparison.system;
   const std::vector<ComparisonFigure> all = comparison_figures(comparison);
-  std::string html = table_page_head(comparison.scenario.name + ": comparison of plants");
-  html += "<h1>" + escape_html(comparison.scenario.name) + ": plants beside the model</h1>\n";
+  std::string html =
+      "<h1>" + escape_html(comparison.scenario.name) + ": plants beside the model</h1>\n";
   html += kicker(comparison) + verdict_html(comparison_verdict(comparison));
   html += closed_loop_section(comparison);
   html += certificate_section(comparison, all[kCertificateFigure]);
@@ -226,7 +223,10 @@ std::string comparison_page(const Comparison& comparison) {
   html += plan_section(comparison, system, all);
   html += "<details>\n<summary>The scenario, with every default filled in</summary>\n<pre>" +
           escape_html(comparison.scenario_text) + "</pre>\n</details>\n";
-  return html + page_foot(comparison.version);
+  return framed_page({.title = comparison.scenario.name + ": comparison of plants",
+                      .version = comparison.version,
+                      .kind = PageKind::kTables},
+                     html);
 }
 
 }  // namespace qsmpc::harness

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <string>
 #include <utility>
 
@@ -36,15 +35,16 @@ Series series_of(const Trace& trace, const std::string& name, int colour, const 
   return series;
 }
 
-Chart input_chart(const Trace& trace, const models::SystemDescription& system, Eigen::Index input) {
-  const models::Coordinate& coordinate = system.inputs[static_cast<std::size_t>(input)];
+Chart input_chart(const EpisodeView& view, Eigen::Index input) {
+  const Trace& trace = view.trace();
+  const models::Coordinate& coordinate = view.system().inputs[static_cast<std::size_t>(input)];
   const Scenario::Controller& controller = trace.scenario.controller;
   Series series = series_of(trace, "applied", kBlue, [input](const StepRecord& step) {
     return input < step.input.size() ? step.input[input] : kNotANumber;
   });
   series.mark = Mark::kSteps;
   if (!series.x.empty()) {  // held to the end of the last period
-    series.x.push_back(series.x.back() + trace.scenario.time_step);
+    series.x.push_back(view.duration());
     series.y.push_back(series.y.back());
   }
   Chart chart{.title = "Input: " + coordinate.name,
@@ -113,12 +113,12 @@ Chart clearance_chart(const EpisodeView& view) {
     if (trace.steps.empty()) {
       series.y.clear();
     } else {
-      series.x.push_back(series.x.back() + trace.scenario.time_step);
+      series.x.push_back(view.duration());
     }
   }
   return {.title = "Clearance: distance to the unsafe set",
           .x_label = kTimeLabel,
-          .y_label = "clearance (" + clearance_unit(trace.scenario.safe_set, view.system()) + ")",
+          .y_label = "clearance (" + view.clearance_unit() + ")",
           .series = {std::move(series)},
           .rules = {{"edge of the unsafe set", 0.0}}};
 }
@@ -246,7 +246,7 @@ std::vector<Chart> episode_charts(const EpisodeView& view) {
   charts.push_back(certificate_chart(view));
   charts.push_back(clearance_chart(view));
   for (Eigen::Index input = 0; input < std::ssize(system.inputs); ++input) {
-    charts.push_back(input_chart(trace, system, input));
+    charts.push_back(input_chart(view, input));
   }
   charts.push_back(timing_chart(trace));
   if (view.parts().cost) charts.push_back(cost_chart(trace));
@@ -255,20 +255,6 @@ std::vector<Chart> episode_charts(const EpisodeView& view) {
   for (Chart& chart : charts) chart.x_includes = {0.0, end};
   charts.push_back(solve_time_histogram(trace));
   return charts;
-}
-
-std::string clearance_unit(const controller::SafeSet& safe_set,
-                           const models::SystemDescription& system) {
-  std::set<std::string> units;
-  const auto add = [&](const controller::Box& box) {
-    for (Eigen::Index i = 0; i < std::min(box.lower.size(), std::ssize(system.states)); ++i) {
-      if (!std::isfinite(box.lower[i]) && !std::isfinite(box.upper[i])) continue;
-      units.insert(system.states[static_cast<std::size_t>(i)].unit);
-    }
-  };
-  add(safe_set.bounds);
-  for (const controller::Box& obstacle : safe_set.obstacles) add(obstacle);
-  return units.size() == 1 ? *units.begin() : "state units";
 }
 
 }  // namespace qsmpc::harness

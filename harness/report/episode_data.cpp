@@ -4,12 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 
 #include <nlohmann/json.hpp>
 
 #include "controller/certification/certificate.hpp"
 #include "harness/assembly/assembly.hpp"
-#include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
 #include "harness/text/json_text.hpp"
@@ -79,15 +79,7 @@ class EpisodeData {
 
   [[nodiscard]] std::size_t stages() const { return static_cast<std::size_t>(horizon_) + 1; }
 
-  /// The states at the control instants, and the last one.
-  [[nodiscard]] std::vector<Eigen::VectorXd> states() const {
-    std::vector<Eigen::VectorXd> states;
-    for (const StepRecord& step : trace_.steps) states.push_back(step.state);
-    states.push_back(trace_.final_state);
-    return states;
-  }
-
-  /// Of the states above.
+  /// Of the states at the control instants, and of the last one.
   [[nodiscard]] std::string clearances() const {
     std::vector<double> values(view_.clearances().begin(), view_.clearances().end());
     values.resize(trace_.steps.size() + 1, kNotANumber);
@@ -167,7 +159,9 @@ class EpisodeData {
 
   [[nodiscard]] std::string poses() const {
     std::vector<double> values;
-    for (const Eigen::VectorXd& state : states()) add_pose(state, values);
+    for (const auto& state : view_.states().colwise()) add_pose(state, values);
+    const bool end_is_known = view_.states().cols() > std::ssize(trace_.steps);
+    if (!end_is_known) add_pose(Eigen::VectorXd(), values);
     return packed_floats(values);
   }
 

@@ -20,30 +20,20 @@ constexpr int kLastStageColour = kOrange;
 
 class EpisodeMap {
  public:
-  explicit EpisodeMap(const EpisodeView& view) : trace_(view.trace()), system_(view.system()) {}
+  explicit EpisodeMap(const EpisodeView& view)
+      : states_(view.states()), trace_(view.trace()), system_(view.system()) {}
 
-  [[nodiscard]] PlaneMap map() const {
-    PlaneMap map = ground();
-    map.area = drive_area();
-    map.paths.push_back(driven_path());
-    add_snapshots(map);
-    return map;
-  }
-
-  [[nodiscard]] PlaneMap ground_of_drive() const {
-    PlaneMap map = ground();
-    map.area = drive_area();
-    return map;
+  [[nodiscard]] EpisodeMaps maps() const {
+    EpisodeMaps maps{.drive = ground(), .ground = ground()};
+    maps.drive.paths.push_back(driven_path());
+    // The axes are about the drive: a prediction that runs away does not make it small.
+    maps.drive.area = map_area(maps.drive);
+    maps.ground.area = maps.drive.area;
+    add_snapshots(maps.drive);
+    return maps;
   }
 
  private:
-  /// The axes are about the drive: a prediction that runs away does not make it small.
-  [[nodiscard]] MapRectangle drive_area() const {
-    PlaneMap map = ground();
-    map.paths.push_back(driven_path());
-    return map_area(map);
-  }
-
   [[nodiscard]] MapPoint point_of(const Eigen::Ref<const Eigen::VectorXd>& state) const {
     return map_point(state, system_);
   }
@@ -54,8 +44,7 @@ class EpisodeMap {
                  .start_mark = MapMark::kDot,
                  .end_mark = MapMark::kSquare,
                  .arrow_period = snapshot_period()};
-    for (const StepRecord& step : trace_.steps) path.points.push_back(point_of(step.state));
-    if (trace_.final_state.size() > 0) path.points.push_back(point_of(trace_.final_state));
+    for (const auto& state : states_.colwise()) path.points.push_back(point_of(state));
     return path;
   }
 
@@ -123,22 +112,16 @@ class EpisodeMap {
     map.paths.insert(map.paths.begin(), plans.begin(), plans.end());
   }
 
+  const Eigen::MatrixXd& states_;
   const Trace& trace_;
   const models::SystemDescription& system_;
 };
 
 }  // namespace
 
-PlaneMap episode_ground(const EpisodeView& view) { return EpisodeMap(view).ground_of_drive(); }
-
-std::optional<PlaneMap> episode_plane_map(const EpisodeView& view) {
+std::optional<EpisodeMaps> episode_maps(const EpisodeView& view) {
   if (!has_position(view.system())) return std::nullopt;
-  return EpisodeMap(view).map();
-}
-
-std::string episode_map(const EpisodeView& view) {
-  const std::optional<PlaneMap> map = episode_plane_map(view);
-  return map ? map_figure(*map) : std::string();
+  return EpisodeMap(view).maps();
 }
 
 }  // namespace qsmpc::harness

@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "harness/assembly/assembly.hpp"
-#include "harness/figures/ground_map.hpp"
 #include "harness/figures/plane_map.hpp"
 #include "harness/figures/svg_chart.hpp"
 #include "harness/report/episode_charts.hpp"
@@ -157,31 +156,31 @@ std::string ending(const Trace& trace) {
 }  // namespace
 
 std::string episode_page(const EpisodeView& view, const EpisodePageOptions& options) {
+  // First what there is to show, then the page about it.
   const Trace& trace = view.trace();
-  const std::vector<Chart> charts =
-      trace.steps.empty() ? std::vector<Chart>{} : episode_charts(view);
-  std::optional<PlaneMap> map;
-  if (has_position(view.system())) map = episode_ground(view);
-  const PlaneMap* const shown = map ? &*map : nullptr;
+  const bool moves = !trace.steps.empty();
+  const KeyFigures figures = key_figures(view);
+  const std::vector<Chart> charts = moves ? episode_charts(view) : std::vector<Chart>{};
+  const std::optional<EpisodeMaps> maps = episode_maps(view);
+  const PlaneMap* const ground = maps ? &maps->ground : nullptr;
+  const std::string data = moves ? episode_data(view, {.charts = charts,
+                                                       .map = ground,
+                                                       .video_from = options.video_from,
+                                                       .video_speed = options.video_speed})
+                                 : std::string();
 
-  std::string html = page_head(trace.scenario.name + ": episode", PageScripts::kEpisode);
-  html += introduction(trace);
-  html += outcome_html(view);
-  html += key_figures_html(view);
-  html += drive(view, shown, options);
-  html += charts_html(charts, episode_map(view));
+  std::string html = introduction(trace) + figures.outcome + figures.tiles;
+  html += drive(view, ground, options);
+  html += charts_html(charts, maps ? map_figure(maps->drive) : std::string());
   html += kMismatchNote;
-  html += mismatch_html(view);
-  html += ending(trace);
-  if (!trace.steps.empty()) {
-    html += "<script type=\"application/json\" id=\"episode-data\">" +
-            episode_data(view, {.charts = charts,
-                                .map = shown,
-                                .video_from = options.video_from,
-                                .video_speed = options.video_speed}) +
-            "</script>\n" + page_scripts();
+  html += figures.mismatch + ending(trace);
+  if (moves) {
+    html += "<script type=\"application/json\" id=\"episode-data\">" + data + "</script>\n";
   }
-  return html + page_foot(trace.version);
+  return framed_page({.title = trace.scenario.name + ": episode",
+                      .version = trace.version,
+                      .kind = moves ? PageKind::kEpisode : PageKind::kPlain},
+                     html);
 }
 
 }  // namespace qsmpc::harness

@@ -75,8 +75,8 @@ std::string figure_name(const std::string& title) {
 
 std::vector<FigureFile> episode_figures(const EpisodeView& view) {
   std::vector<FigureFile> figures;
-  if (std::optional<PlaneMap> map = episode_plane_map(view)) {
-    figures.push_back({.name = "map", .panels = {std::move(*map)}});
+  if (std::optional<EpisodeMaps> maps = episode_maps(view)) {
+    figures.push_back({.name = "map", .panels = {std::move(maps->drive)}});
   }
   for (Chart& chart : episode_charts(view)) {
     const std::string name = free_name(figures, figure_name(chart.title));

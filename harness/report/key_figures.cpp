@@ -5,7 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/report/episode_charts.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
 
@@ -46,9 +45,7 @@ std::string tile_html(const Tile& tile) {
   return html + "</div>\n";
 }
 
-bool has_true_state(const Trace& trace) {
-  return !trace.steps.empty() || trace.final_state.size() > 0;
-}
+bool has_true_state(const EpisodeView& view) { return view.states().cols() > 0; }
 
 std::string seconds(double value) { return format_short(value, 4) + " s"; }
 
@@ -60,9 +57,10 @@ Tile time_tile(const Summary& summary) {
           .verdict = reached ? Verdict::kGood : Verdict::kWarn};
 }
 
-Tile unsafe_tile(const Trace& trace, const Summary& summary) {
+Tile unsafe_tile(const EpisodeView& view) {
+  const Summary& summary = view.summary();
   constexpr const char* kHint = "true state at the control instants";
-  if (!has_true_state(trace)) {
+  if (!has_true_state(view)) {
     return {.name = "Entered the unsafe set", .value = kNone, .hint = "no state is known"};
   }
   Verdict verdict = summary.collision ? Verdict::kBad : Verdict::kGood;
@@ -73,14 +71,13 @@ Tile unsafe_tile(const Trace& trace, const Summary& summary) {
           .verdict = verdict};
 }
 
-Tile clearance_tile(const Trace& trace, const Summary& summary,
-                    const models::SystemDescription& system) {
+Tile clearance_tile(const EpisodeView& view) {
+  const Summary& summary = view.summary();
   Tile tile{.name = "Minimum clearance",
             .value = kNone,
             .hint = "distance to the unsafe set; negative inside"};
-  if (!has_true_state(trace)) return tile;
-  tile.value =
-      format_number(summary.min_clearance) + " " + clearance_unit(trace.scenario.safe_set, system);
+  if (!has_true_state(view)) return tile;
+  tile.value = format_number(summary.min_clearance) + " " + view.clearance_unit();
   if (summary.collision) tile.verdict = Verdict::kBad;
   return tile;
 }
@@ -168,16 +165,15 @@ Ending ending_of(const Trace& trace, const Summary& summary) {
   return {Verdict::kWarn, "Interrupted" + after};
 }
 
-std::string safety_sentence(const Trace& trace, const Summary& summary) {
+std::string safety_sentence(const EpisodeView& view) {
+  const Summary& summary = view.summary();
   if (summary.steps == 0) return "No control step was made.";
-  if (!has_true_state(trace)) return {};
+  if (!has_true_state(view)) return {};
   if (summary.collision) {
     return "The true state entered the unsafe set at one control instant or more.";
   }
   return "The true state was outside of the unsafe set at every control instant.";
 }
-
-}  // namespace
 
 std::string outcome_html(const EpisodeView& view) {
   const Trace& trace = view.trace();
@@ -189,19 +185,18 @@ std::string outcome_html(const EpisodeView& view) {
   std::string html =
       fmt::format("<section class=\"outcome{}\">\n<h1><span class=\"badge\">{} {}</span></h1>\n",
                   verdict_class(ending.verdict), sign, escape_html(ending.text));
-  html += "<p>" + escape_html(safety_sentence(trace, summary)) + "</p>\n";
+  html += "<p>" + escape_html(safety_sentence(view)) + "</p>\n";
   if (!trace.fault.empty()) {
     html += "<p>The simulator's words:</p>\n<pre>" + escape_html(trace.fault) + "</pre>\n";
   }
   return html + "</section>\n";
 }
 
-std::string key_figures_html(const EpisodeView& view) {
+std::string tiles_html(const EpisodeView& view) {
   const Trace& trace = view.trace();
   const Summary& summary = view.summary();
   const controller::DecisionParts& parts = view.parts();
-  std::vector<Tile> tiles = {time_tile(summary), unsafe_tile(trace, summary),
-                             clearance_tile(trace, summary, view.system()),
+  std::vector<Tile> tiles = {time_tile(summary), unsafe_tile(view), clearance_tile(view),
                              bound_tile(summary, "Largest next-step certificate",
                                         summary.next_step_max, "upper bound of a probability"),
                              bound_tile(summary, "Sum of next-step certificates",
@@ -244,6 +239,13 @@ std::string mismatch_html(const EpisodeView& view) {
         format_number(std::sqrt(summary.mismatch_covariance(i, i))), escape_html(state.unit));
   }
   return html + "</tbody></table></div>\n";
+}
+
+}  // namespace
+
+KeyFigures key_figures(const EpisodeView& view) {
+  return {
+      .outcome = outcome_html(view), .tiles = tiles_html(view), .mismatch = mismatch_html(view)};
 }
 
 }  // namespace qsmpc::harness

@@ -4,17 +4,15 @@
 #include <string>
 
 #include "harness/trace/episode_view.hpp"
-#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 
-/// How the episode ended, in one sentence, with the simulator's words where it broke.
-[[nodiscard]] std::string outcome_html(const EpisodeView& view);
+struct KeyFigures {
+  std::string outcome;   ///< how the episode ended, with the simulator's words where it broke
+  std::string tiles;     ///< the key numbers as a list
+  std::string mismatch;  ///< the plant's one-step mismatch as a table, a state a row
+};
 
-/// The key numbers as a list of tiles.
-[[nodiscard]] std::string key_figures_html(const EpisodeView& view);
-
-/// The plant's one-step mismatch as a table, a state a row; a sentence where there is none.
-[[nodiscard]] std::string mismatch_html(const EpisodeView& view);
+[[nodiscard]] KeyFigures key_figures(const EpisodeView& view);
 
 }  // namespace qsmpc::harness

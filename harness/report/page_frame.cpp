@@ -9,32 +9,33 @@
 namespace qsmpc::harness {
 namespace {
 
-std::string policy(PageScripts scripts) {
+std::string policy(PageKind kind) {
   std::string text =
       "default-src 'none'; style-src 'sha256-" + base64_of_hex(page_style_sha256()) + "'; ";
-  if (scripts == PageScripts::kEpisode) {
+  if (kind == PageKind::kEpisode) {
     text += "script-src 'sha256-" + base64_of_hex(page_script_sha256()) + "'; ";
   }
   return text + "media-src 'self' file:; base-uri 'none'; form-action 'none'";
 }
 
-}  // namespace
-
-std::string page_head(const std::string& title, PageScripts scripts) {
+std::string head(const PageFrame& frame) {
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"referrer\" content=\"no-referrer\">\n"
-      "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n",
-      policy(scripts), escape_html(title), page_style());
+      "<title>{}</title>\n<style>{}</style>\n</head>\n{}\n",
+      policy(frame.kind), escape_html(frame.title), page_style(),
+      frame.kind == PageKind::kTables ? "<body class=\"tables\">" : "<body>");
 }
 
-std::string page_scripts() { return fmt::format("<script>{}</script>\n", page_script()); }
+}  // namespace
 
-std::string page_foot(const std::string& version) {
-  return fmt::format("<footer>Made by qsmpc {}.</footer>\n</body>\n</html>\n",
-                     escape_html(version));
+std::string framed_page(const PageFrame& frame, const std::string& body) {
+  std::string html = head(frame) + body;
+  if (frame.kind == PageKind::kEpisode) html += fmt::format("<script>{}</script>\n", page_script());
+  return html + fmt::format("<footer>Made by qsmpc {}.</footer>\n</body>\n</html>\n",
+                            escape_html(frame.version));
 }
 
 }  // namespace qsmpc::harness

@@ -5,20 +5,21 @@
 
 namespace qsmpc::harness {
 
-enum class PageScripts {
-  kNone,     ///< the page runs nothing
-  kEpisode,  ///< it ends with page_scripts()
+enum class PageKind {
+  kPlain,    ///< it runs nothing
+  kTables,   ///< the same, with the style of tables, on paper too
+  kEpisode,  ///< it ends with the scripts of an episode's page
 };
 
-/// From the doctype to the start of the body: title, style, and a policy by which the page loads
-/// nothing but a video beside it and uses no style and no script but the one that it came with.
-[[nodiscard]] std::string page_head(const std::string& title,
-                                    PageScripts scripts = PageScripts::kNone);
+struct PageFrame {
+  std::string title;
+  std::string version;  ///< that made the page
+  PageKind kind = PageKind::kPlain;
+};
 
-/// The scripts, which go before the end of the body of a page whose head allows them.
-[[nodiscard]] std::string page_scripts();
-
-/// The footer, which says which version made the page, and the end of the body.
-[[nodiscard]] std::string page_foot(const std::string& version);
+/// The page about `body`, which is HTML: title, style, and a policy by which the page loads nothing
+/// but a video beside it and uses no style and no script but the one that it came with; at its end
+/// the scripts, and a footer that says which version made it.
+[[nodiscard]] std::string framed_page(const PageFrame& frame, const std::string& body);
 
 }  // namespace qsmpc::harness

@@ -2,25 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include <fmt/format.h>
 
-#include "harness/report/page_frame.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
 
 namespace qsmpc::harness {
-namespace {
-
-constexpr std::string_view kBody = "<body>";
-
-}  // namespace
-
-std::string table_page_head(const std::string& title) {
-  std::string head = page_head(title);
-  return head.replace(head.rfind(kBody), kBody.size(), "<body class=\"tables\">");
-}
 
 std::string verdict_html(const PageVerdict& verdict) {
   std::string html = fmt::format("<div class=\"outcome {}\"><span class=\"badge\">{} {}</span>",

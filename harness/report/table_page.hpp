@@ -1,7 +1,9 @@
 // Pages of tables and figures that nothing moves in: of comparisons and campaigns.
 //
-//   table_page_head("Plants") + verdict_html({.is_good = true, .title = "All is well"}) +
-//       table_html({.label = "Outcomes", .heads = {"plant", "reached"}, .rows = {{"car", "8"}}})
+//   framed_page({.title = "Plants", .version = kVersion, .kind = PageKind::kTables},
+//               verdict_html({.is_good = true, .title = "All is well"}) +
+//                   table_html({.label = "Outcomes", .heads = {"plant", "reached"},
+//                               .rows = {{"car", "8"}}}));
 //
 // What is called HTML is put on the page as it is; everything else is escaped.
 #pragma once
@@ -13,9 +15,6 @@
 #include "harness/statistics/binomial_interval.hpp"
 
 namespace qsmpc::harness {
-
-/// As page_head, with the style of the tables, on paper too.
-[[nodiscard]] std::string table_page_head(const std::string& title);
 
 /// What is to be known before everything else.
 struct PageVerdict {

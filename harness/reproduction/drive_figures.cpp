@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <functional>
-#include <memory>
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/figures/ground_map.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/reproduction/published_way.hpp"
@@ -115,8 +113,7 @@ Chart mean_chart(const std::string& title, const std::vector<NamedSample>& sampl
 }  // namespace
 
 PlaneMap drive_map(const std::string& title, const Sample& sample) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(sample.scenario);
-  const models::SystemDescription& system = model->description();
+  const models::SystemDescription& system = sample.first.system;
   PlaneMap map = ground_map(sample.scenario, system);
   map.title = title;
   for (std::size_t n = 1; n < sample.episodes.size(); ++n) {
@@ -144,8 +141,8 @@ Chart coordinate_chart(const std::string& kind, const models::Coordinate& coordi
 }
 
 std::vector<Chart> input_charts(const std::vector<NamedSample>& samples) {
-  const Scenario& scenario = samples.front().sample->scenario;
-  const std::vector<models::Coordinate> inputs = model_of(scenario)->description().inputs;
+  const Sample& sample = *samples.front().sample;
+  const std::vector<models::Coordinate>& inputs = sample.first.system.inputs;
   std::vector<Chart> charts;
   for (std::size_t i = 0; i < inputs.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -153,15 +150,15 @@ std::vector<Chart> input_charts(const std::vector<NamedSample>& samples) {
     chart.series = first_drives(samples, Mark::kSteps, [&](const EpisodeDigest& episode) {
       return row_of(episode.inputs, row);
     });
-    chart.rules = {{.name = "bounds", .value = scenario.controller.input_lower[row]},
-                   {.name = "", .value = scenario.controller.input_upper[row]}};
+    chart.rules = {{.name = "bounds", .value = sample.scenario.controller.input_lower[row]},
+                   {.name = "", .value = sample.scenario.controller.input_upper[row]}};
   }
   return charts;
 }
 
 std::vector<Chart> state_charts(const std::vector<NamedSample>& samples) {
-  const Scenario& scenario = samples.front().sample->scenario;
-  const std::vector<models::Coordinate> states = model_of(scenario)->description().states;
+  const Sample& sample = *samples.front().sample;
+  const std::vector<models::Coordinate>& states = sample.first.system.states;
   std::vector<Chart> charts;
   for (std::size_t i = 0; i < states.size(); ++i) {
     const auto row = static_cast<Eigen::Index>(i);
@@ -169,7 +166,7 @@ std::vector<Chart> state_charts(const std::vector<NamedSample>& samples) {
     chart.series = first_drives(samples, Mark::kLine, [&](const EpisodeDigest& episode) {
       return row_of(episode.states, row);
     });
-    chart.rules = {{.name = "target", .value = scenario.target.state[row]}};
+    chart.rules = {{.name = "target", .value = sample.scenario.target.state[row]}};
   }
   return charts;
 }

@@ -76,8 +76,8 @@ std::string experiment_html(const ExperimentResult& experiment) {
 }  // namespace
 
 std::string results_page(const Reproduction& reproduction) {
-  std::string html = page_head("The thesis’s experiments, reproduced");
-  html += "<h1>The thesis’s experiments, reproduced</h1>\n";
+  const std::string title = "The thesis’s experiments, reproduced";
+  std::string html = "<h1>" + title + "</h1>\n";
   html += fmt::format("<p class=\"kicker\">{}</p>\n", escape_html(circumstances(reproduction)));
   if (!reproduction.complete) {
     html += "<p class=\"outcome\">Not all that was asked for is here yet.</p>\n";
@@ -86,7 +86,7 @@ std::string results_page(const Reproduction& reproduction) {
   for (const ExperimentResult& experiment : reproduction.experiments) {
     html += experiment_html(experiment);
   }
-  return html + page_foot(reproduction.version);
+  return framed_page({.title = title, .version = reproduction.version}, html);
 }
 
 }  // namespace qsmpc::harness

@@ -1,18 +1,57 @@
 #include "harness/trace/episode_view.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <set>
+#include <stdexcept>
+
 #include "controller/regions/unsafe_set.hpp"
 #include "harness/assembly/assembly.hpp"
-#include "harness/trace/residuals.hpp"
 
 namespace qsmpc::harness {
+namespace {
+
+double duration_of(const Trace& trace) {
+  return trace.steps.empty() ? 0.0 : trace.steps.back().time + trace.scenario.time_step;
+}
+
+std::string clearance_unit_of(const controller::SafeSet& safe_set,
+                              const models::SystemDescription& system) {
+  std::set<std::string> units;
+  const auto add = [&](const controller::Box& box) {
+    for (Eigen::Index i = 0; i < std::min(box.lower.size(), std::ssize(system.states)); ++i) {
+      if (!std::isfinite(box.lower[i]) && !std::isfinite(box.upper[i])) continue;
+      units.insert(system.states[static_cast<std::size_t>(i)].unit);
+    }
+  };
+  add(safe_set.bounds);
+  for (const controller::Box& obstacle : safe_set.obstacles) add(obstacle);
+  return units.size() == 1 ? *units.begin() : "state units";
+}
+
+Eigen::MatrixXd residuals_of(const Trace& trace) {
+  const Eigen::Index dim = std::ssize(trace.system.states);
+  Eigen::MatrixXd residuals(dim, completed_periods(trace));
+  for (Eigen::Index k = 0; k < residuals.cols(); ++k) {
+    const Eigen::VectorXd& residual = trace.steps[static_cast<std::size_t>(k)].residual;
+    if (residual.size() != dim) throw std::invalid_argument("a step has no residual");
+    residuals.col(k) = residual;
+  }
+  return residuals;
+}
+
+}  // namespace
 
 EpisodeView::EpisodeView(const Trace& trace)
     : trace_(trace),
-      model_(model_of(trace.scenario)),
       parts_(decision_parts(trace.scenario)),
+      duration_(duration_of(trace)),
+      clearance_unit_(clearance_unit_of(trace.scenario.safe_set, trace.system)),
       states_(true_states(trace)),
       clearances_(states_.cols()),
-      residuals_(one_step_residuals(trace, *model_)) {
+      residuals_(residuals_of(trace)) {
   const controller::UnsafeSet unsafe(trace.scenario.safe_set);
   for (Eigen::Index k = 0; k < states_.cols(); ++k) {
     clearances_[k] = controller::clearance(states_.col(k), unsafe);

@@ -5,7 +5,7 @@
 //   view.summary().outcome;
 #pragma once
 
-#include <memory>
+#include <string>
 
 #include <Eigen/Core>
 
@@ -19,19 +19,24 @@ namespace qsmpc::harness {
 /// Refers to the trace, which must outlive it.
 class EpisodeView {
  public:
-  /// Throws std::invalid_argument if the trace's system is unknown.
+  /// Throws std::invalid_argument on a trace that is not whole, which no reader returns.
   explicit EpisodeView(const Trace& trace);
 
   [[nodiscard]] const Trace& trace() const { return trace_; }
   [[nodiscard]] const Scenario& scenario() const { return trace_.scenario; }
-  [[nodiscard]] const models::SystemDescription& system() const { return model_->description(); }
+  [[nodiscard]] const models::SystemDescription& system() const { return trace_.system; }
   /// What the controller's decisions have.
   [[nodiscard]] const controller::DecisionParts& parts() const { return parts_; }
   [[nodiscard]] const Summary& summary() const { return summary_; }
 
+  /// s, from the start to the end of the last control period; 0 without steps.
+  [[nodiscard]] double duration() const { return duration_; }
   /// The true states at the control instants: state_dim x (steps + 1), or as many columns as there
   /// are steps where the state after the last one is not known.
   [[nodiscard]] const Eigen::MatrixXd& states() const { return states_; }
+  /// The unit of distances to the unsafe set: that of the states which the safe set restricts, or
+  /// "state units" where they differ.
+  [[nodiscard]] const std::string& clearance_unit() const { return clearance_unit_; }
   /// Of each of these states from the unsafe set.
   [[nodiscard]] const Eigen::VectorXd& clearances() const { return clearances_; }
   /// How many periods the plant came through: those of which the state at the end is a result.
@@ -43,8 +48,9 @@ class EpisodeView {
 
  private:
   const Trace& trace_;
-  std::unique_ptr<const models::Dynamics> model_;
   controller::DecisionParts parts_;
+  double duration_ = 0.0;
+  std::string clearance_unit_;
   Eigen::MatrixXd states_;
   Eigen::VectorXd clearances_;
   Eigen::MatrixXd residuals_;

@@ -65,6 +65,9 @@ class Hdf5File {
   void set_text(const std::string& object, const std::string& name, const std::string& value);
   void set_texts(const std::string& object, const std::string& name,
                  const std::vector<std::string>& values);
+  /// At least one.
+  void set_numbers(const std::string& object, const std::string& name,
+                   std::span<const double> values);
   void set_integer(const std::string& object, const std::string& name, std::int64_t value);
   void set_unsigned(const std::string& object, const std::string& name, std::uint64_t value);
 
@@ -93,9 +96,14 @@ class Hdf5File {
   /// What set_texts wrote.
   [[nodiscard]] std::vector<std::string> texts(const std::string& object,
                                                const std::string& name) const;
+  /// What set_numbers wrote.
+  [[nodiscard]] std::vector<double> numbers(const std::string& object,
+                                            const std::string& name) const;
   [[nodiscard]] std::int64_t integer(const std::string& object, const std::string& name) const;
   [[nodiscard]] std::uint64_t unsigned_integer(const std::string& object,
                                                const std::string& name) const;
+  /// A group in the root.
+  [[nodiscard]] bool has_group(const std::string& path) const;
   [[nodiscard]] bool has_dataset(const std::string& path) const;
   /// Lengths of a dataset's dimensions.
   [[nodiscard]] std::vector<std::size_t> shape(const std::string& path) const;

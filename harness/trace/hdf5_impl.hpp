@@ -85,7 +85,8 @@ struct Hdf5File::Impl {
   }
   void read_attribute(const std::string& object, const std::string& name, hid_t type, hsize_t count,
                       void* values) const;
-  [[nodiscard]] hsize_t attribute_length(const std::string& object, const std::string& name) const;
+  [[nodiscard]] hsize_t attribute_length(const std::string& object, const std::string& name,
+                                         std::size_t element_bytes) const;
   [[nodiscard]] std::size_t text_bytes(const std::string& object, const std::string& name) const;
   void append_rows(const std::string& name, hid_t type, const void* values, std::size_t count);
   [[nodiscard]] hsize_t readable_elements(const std::string& name, H5T_class_t wanted);

@@ -41,17 +41,20 @@ void Hdf5File::Impl::read_attribute(const std::string& object, const std::string
     throw InputError({.file = path,
                       .key = what,
                       .found = "another type of attribute",
-                      .expected = H5Tget_class(type) == H5T_STRING ? "one text" : "one integer"});
+                      .expected = H5Tget_class(type) == H5T_STRING  ? "one text"
+                                  : H5Tget_class(type) == H5T_FLOAT ? "floating-point numbers"
+                                                                    : "one integer"});
   }
   check(H5Aread(attribute.get(), type, values), what);
 }
 
 /// At most as many as may be read; `read_attribute` refuses where there are others.
-hsize_t Hdf5File::Impl::attribute_length(const std::string& object, const std::string& name) const {
+hsize_t Hdf5File::Impl::attribute_length(const std::string& object, const std::string& name,
+                                         std::size_t element_bytes) const {
   const Handle attribute = attribute_of(object, name);
   const Handle space = checked(H5Aget_space(attribute.get()), H5Sclose, object + "@" + name);
-  const hsize_t most = kElementLimit / text_bytes(object, name);
-  return std::min(most, static_cast<hsize_t>(H5Sget_simple_extent_npoints(space.get())));
+  return std::min(kElementLimit / element_bytes,
+                  static_cast<hsize_t>(H5Sget_simple_extent_npoints(space.get())));
 }
 
 std::size_t Hdf5File::Impl::text_bytes(const std::string& object, const std::string& name) const {
@@ -96,6 +99,8 @@ bool Hdf5File::has_attribute(const std::string& object, const std::string& name)
   return H5Aexists_by_name(impl_->file.get(), object.c_str(), name.c_str(), H5P_DEFAULT) > 0;
 }
 
+bool Hdf5File::has_group(const std::string& path) const { return has_dataset(path); }
+
 bool Hdf5File::has_dataset(const std::string& path) const {
   const Lock lock;
   return H5Lexists(impl_->file.get(), path.c_str(), H5P_DEFAULT) > 0;
@@ -113,10 +118,17 @@ std::string Hdf5File::text(const std::string& object, const std::string& name) c
 std::vector<std::string> Hdf5File::texts(const std::string& object, const std::string& name) const {
   const Lock lock;
   const std::size_t bytes = impl_->text_bytes(object, name);
-  const hsize_t count = impl_->attribute_length(object, name);
+  const hsize_t count = impl_->attribute_length(object, name, bytes);
   std::string padded(count * bytes, '\0');
   impl_->read_attribute(object, name, text_type(bytes).get(), count, padded.data());
   return texts_in(padded, bytes);
+}
+
+std::vector<double> Hdf5File::numbers(const std::string& object, const std::string& name) const {
+  const Lock lock;
+  std::vector<double> values(impl_->attribute_length(object, name, sizeof(double)));
+  impl_->read_attribute(object, name, H5T_NATIVE_DOUBLE, values.size(), values.data());
+  return values;
 }
 
 std::int64_t Hdf5File::integer(const std::string& object, const std::string& name) const {

@@ -139,6 +139,14 @@ void Hdf5File::set_texts(const std::string& object, const std::string& name,
   impl_->set_attribute(object, name, type.get(), space.get(), padded.data());
 }
 
+void Hdf5File::set_numbers(const std::string& object, const std::string& name,
+                           std::span<const double> values) {
+  const Lock lock;
+  const hsize_t count = values.size();
+  const Handle space(H5Screate_simple(1, &count, nullptr), H5Sclose);
+  impl_->set_attribute(object, name, H5T_IEEE_F64LE, space.get(), values.data());
+}
+
 void Hdf5File::set_integer(const std::string& object, const std::string& name, std::int64_t value) {
   const Lock lock;
   const Handle space(H5Screate(H5S_SCALAR), H5Sclose);

@@ -1,42 +1,33 @@
 #include "harness/trace/residuals.hpp"
 
 #include <cstddef>
+#include <iterator>
+
+#include "models/constants.hpp"
 
 namespace qsmpc::harness {
 
-Eigen::MatrixXd true_states(const Trace& trace) {
-  const bool ended = trace.final_state.size() > 0;
-  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
-  const Eigen::Index dim = ended       ? trace.final_state.size()
-                           : steps > 0 ? trace.steps.front().state.size()
-                                       : 0;
-  Eigen::MatrixXd states(dim, steps + (ended ? 1 : 0));
-  for (Eigen::Index k = 0; k < steps; ++k) {
-    states.col(k) = trace.steps[static_cast<std::size_t>(k)].state;
-  }
-  if (ended) states.col(steps) = trace.final_state;
-  return states;
+Eigen::VectorXd one_step_residual(const models::Dynamics& model, const StepRecord& step,
+                                  const Eigen::VectorXd& next_state) {
+  const models::StateBatch state = step.state;
+  const models::StateBatch input = step.input;
+  models::StateBatch predicted(model.state_dim(), 1);
+  model.step(state, input, predicted);
+  return next_state - step.disturbance - predicted.col(0);
 }
 
-Eigen::Index completed_periods(const Trace& trace) {
-  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
-  const bool end_is_known = trace.final_state.size() > 0 && trace.outcome != Outcome::kFault;
-  return end_is_known || steps == 0 ? steps : steps - 1;
+Eigen::VectorXd unknown_residual(Eigen::Index state_dim) {
+  return Eigen::VectorXd::Constant(state_dim, kNotANumber);
 }
 
-Eigen::MatrixXd one_step_residuals(const Trace& trace, const models::Dynamics& model) {
+void add_residuals(Trace& trace, const models::Dynamics& model) {
   const Eigen::MatrixXd states = true_states(trace);
   const Eigen::Index periods = completed_periods(trace);
-  Eigen::MatrixXd residuals(model.state_dim(), periods);
-  models::StateBatch predicted(model.state_dim(), 1);
-  for (Eigen::Index k = 0; k < periods; ++k) {
-    const StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
-    const models::StateBatch state = states.col(k);
-    const models::StateBatch input = step.input;
-    model.step(state, input, predicted);
-    residuals.col(k) = states.col(k + 1) - step.disturbance - predicted.col(0);
+  for (Eigen::Index k = 0; k < std::ssize(trace.steps); ++k) {
+    StepRecord& step = trace.steps[static_cast<std::size_t>(k)];
+    step.residual = k < periods ? one_step_residual(model, step, states.col(k + 1))
+                                : unknown_residual(model.state_dim());
   }
-  return residuals;
 }
 
 }  // namespace qsmpc::harness

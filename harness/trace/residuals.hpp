@@ -8,16 +8,17 @@
 
 namespace qsmpc::harness {
 
-/// The true states at the control instants, in their units: state_dim x (steps + 1), or as many
-/// columns as there are steps where the state after the last one is not known.
-[[nodiscard]] Eigen::MatrixXd true_states(const Trace& trace);
+/// x_{k+1} − w_k − f(x_k, u_k) of the period of `step`, in the units of the states: state_dim. w is
+/// the disturbance that was added, so that an exact model leaves only rounding. `model` is f, and
+/// `next_state` x_{k+1}.
+[[nodiscard]] Eigen::VectorXd one_step_residual(const models::Dynamics& model,
+                                                const StepRecord& step,
+                                                const Eigen::VectorXd& next_state);
 
-/// How many periods the plant came through: those of which the state at the end is a result.
-[[nodiscard]] Eigen::Index completed_periods(const Trace& trace);
+/// Of a period whose end is not known: not a number, `state_dim` times.
+[[nodiscard]] Eigen::VectorXd unknown_residual(Eigen::Index state_dim);
 
-/// x_{k+1} − w_k − f(x_k, u_k) of every period that the plant came through, one a column, in the
-/// units of the states: state_dim x periods. w is the disturbance that was added, so that an exact
-/// model leaves only rounding. `model` is f.
-[[nodiscard]] Eigen::MatrixXd one_step_residuals(const Trace& trace, const models::Dynamics& model);
+/// Gives every step of `trace` its residual, for a trace that was recorded without them.
+void add_residuals(Trace& trace, const models::Dynamics& model);
 
 }  // namespace qsmpc::harness

@@ -1,6 +1,7 @@
 #include "harness/trace/trace.hpp"
 
 #include <array>
+#include <cstddef>
 #include <stdexcept>
 #include <utility>
 
@@ -30,6 +31,26 @@ Outcome outcome_from_name(const std::string& name) {
   }
   throw std::invalid_argument(
       "\"" + name + "\" is no outcome: reached, timeout, left_safe_set, fault or interrupted");
+}
+
+Eigen::MatrixXd true_states(const Trace& trace) {
+  const bool ended = trace.final_state.size() > 0;
+  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
+  const Eigen::Index dim = ended       ? trace.final_state.size()
+                           : steps > 0 ? trace.steps.front().state.size()
+                                       : 0;
+  Eigen::MatrixXd states(dim, steps + (ended ? 1 : 0));
+  for (Eigen::Index k = 0; k < steps; ++k) {
+    states.col(k) = trace.steps[static_cast<std::size_t>(k)].state;
+  }
+  if (ended) states.col(steps) = trace.final_state;
+  return states;
+}
+
+Eigen::Index completed_periods(const Trace& trace) {
+  const auto steps = static_cast<Eigen::Index>(trace.steps.size());
+  const bool end_is_known = trace.final_state.size() > 0 && trace.outcome != Outcome::kFault;
+  return end_is_known || steps == 0 ? steps : steps - 1;
 }
 
 }  // namespace qsmpc::harness

@@ -14,6 +14,7 @@
 #include "controller/planning/cost/horizon_cost.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/scenario/scenario.hpp"
+#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 
@@ -38,6 +39,9 @@ struct StepRecord {
   Eigen::VectorXd observation;  ///< what the planner sees of it, state_dim
   Eigen::VectorXd input;        ///< input that is applied, input_dim
   Eigen::VectorXd disturbance;  ///< added at the end of the period, state_dim
+  /// x_{k+1} − w_k − f(x_k, u_k): what of the state at the end neither the model f nor the
+  /// disturbance w explains, state_dim; not a number where that state is no result of the plant.
+  Eigen::VectorXd residual;
   Eigen::VectorXd belief_mean;  ///< what the plan was made for, state_dim
   Eigen::MatrixXd belief_covariance;
   // Of the plan; empty where the controller makes none.
@@ -64,9 +68,11 @@ enum class Outcome { kReached, kTimeout, kLeftSafeSet, kFault, kInterrupted };
 /// The inverse of `outcome_name`; throws std::invalid_argument.
 [[nodiscard]] Outcome outcome_from_name(const std::string& name);
 
+/// A trace is whole: whoever reads it needs no model to say what its numbers are.
 struct Trace {
   Scenario scenario;
-  std::string scenario_text;  ///< the resolved scenario as YAML
+  models::SystemDescription system;  ///< of the scenario's model
+  std::string scenario_text;         ///< the resolved scenario as YAML
   std::uint64_t seed = 0;
   std::string version;
   std::vector<StepRecord> steps;
@@ -75,5 +81,12 @@ struct Trace {
   Outcome outcome = Outcome::kTimeout;
   std::string fault;  ///< the simulator's words where the outcome is kFault
 };
+
+/// The true states at the control instants, in their units: state_dim x (steps + 1), or as many
+/// columns as there are steps where the state after the last one is not known.
+[[nodiscard]] Eigen::MatrixXd true_states(const Trace& trace);
+
+/// How many periods the plant came through: those of which the state at the end is a result.
+[[nodiscard]] Eigen::Index completed_periods(const Trace& trace);
 
 }  // namespace qsmpc::harness

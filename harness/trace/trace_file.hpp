@@ -26,7 +26,7 @@ inline constexpr const char* kTraceFile = "episode.h5";
 /// which `read_trace` reads as an interrupted episode; whatever stood under PATH stays.
 class TraceWriter {
  public:
-  /// `header`: scenario, scenario_text, seed and version are used, the rest is not.
+  /// `header`: scenario, scenario_text, system, seed and version are used, the rest is not.
   /// Throws IoError when the file cannot be made.
   explicit TraceWriter(std::string path, const Trace& header);
 
@@ -69,5 +69,9 @@ void write_trace(const std::string& path, const Trace& trace);
 /// final_state empty. Throws InputError on a file that is missing, damaged, not a trace or of
 /// another schema, and IoError where the system refuses to read it.
 [[nodiscard]] Trace read_trace(const std::string& path);
+
+/// Reads the trace in `folder`, or its partial file where an episode was killed. Throws as
+/// `read_trace`.
+[[nodiscard]] Trace read_folder(const std::string& folder);
 
 }  // namespace qsmpc::harness

@@ -30,15 +30,13 @@ struct TraceSizes {
   CoordinateLabels inputs;
 };
 
-TraceSizes trace_sizes(const Scenario& scenario) {
-  const auto dynamics =
-      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+TraceSizes trace_sizes(const Scenario& scenario, const models::SystemDescription& system) {
   const controller::DecisionParts parts = decision_parts(scenario);
   return {.parts = parts,
           .horizon = static_cast<std::size_t>(parts.stages),
           .certified = static_cast<std::size_t>(certified_stages(parts)),
-          .states = labels_of(dynamics->description().states),
-          .inputs = labels_of(dynamics->description().inputs)};
+          .states = labels_of(system.states),
+          .inputs = labels_of(system.inputs)};
 }
 
 void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
@@ -70,6 +68,14 @@ void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .units = n.states.units,
                     .columns = n.states.names,
                     .comment = "added to the state at the end of the period"});
+  layout.push_back({.path = kResidualPath,
+                    .row_shape = {n.states.names.size()},
+                    .axes = {"step", "state"},
+                    .units = n.states.units,
+                    .columns = n.states.names,
+                    .comment = "what of the state at the end of the period neither the planner's "
+                               "model nor the disturbance explains; not a number where the plant "
+                               "broke"});
   layout.push_back({.path = "/plant/final_state",
                     .axes = {"state"},
                     .units = n.states.units,
@@ -185,8 +191,9 @@ void add_timing(std::vector<DatasetSpec>& layout) {
 
 }  // namespace
 
-std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
-  const TraceSizes sizes = trace_sizes(scenario);
+std::vector<DatasetSpec> trace_layout(const Scenario& scenario,
+                                      const models::SystemDescription& system) {
+  const TraceSizes sizes = trace_sizes(scenario, system);
   std::vector<DatasetSpec> layout;
   add_plant(layout, sizes);
   add_belief(layout, sizes);
@@ -199,8 +206,8 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario) {
 }
 
 bool may_be_missing(std::string_view path) {
-  return path == kObservationPath || path == kGainsPath || path == kDynamicsPath ||
-         path == kModelErrorPath || path == "/certificate/smoothed";
+  return path == kObservationPath || path == kResidualPath || path == kGainsPath ||
+         path == kDynamicsPath || path == kModelErrorPath || path == "/certificate/smoothed";
 }
 
 }  // namespace qsmpc::harness

@@ -8,6 +8,7 @@
 
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/hdf5_file.hpp"
+#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 
@@ -17,13 +18,17 @@ inline constexpr std::int64_t kTraceSchema = 1;
 /// Of what the planner saw. Traces without it are of planners that saw the state itself.
 inline constexpr const char* kObservationPath = "/plant/observation";
 
+/// Of the residuals. For traces without it the reader works them out.
+inline constexpr const char* kResidualPath = "/plant/residual";
+
 /// Of the policies' gains.
 inline constexpr const char* kGainsPath = "/plan/gains";
 
-/// The datasets of a trace of `scenario`. A dataset whose first axis is "step" has one row a
-/// control period; what the scenario's controller does not have is not among them. Throws
-/// std::invalid_argument on an unknown system.
-[[nodiscard]] std::vector<DatasetSpec> trace_layout(const Scenario& scenario);
+/// The datasets of a trace of `scenario` and `system`, which describes its model. A dataset whose
+/// first axis is "step" has one row a control period; what the scenario's controller does not have
+/// is not among them.
+[[nodiscard]] std::vector<DatasetSpec> trace_layout(const Scenario& scenario,
+                                                    const models::SystemDescription& system);
 
 /// Whether the dataset came to the schema after the first traces were written: a trace without it
 /// is read all the same.

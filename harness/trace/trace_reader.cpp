@@ -1,15 +1,20 @@
 // read_trace: the reading side of trace_file.hpp.
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/atomic_file.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/cost_fields.hpp"
+#include "harness/trace/residuals.hpp"
+#include "harness/trace/system_group.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
 #include "models/constants.hpp"
@@ -32,6 +37,7 @@ class TraceReader {
     throw InputError({.file = file_.path(), .key = key, .found = found, .expected = expected});
   }
   void read_header();
+  void read_description();
   void check_shapes();
   void read_motion();
   void read_final_state();
@@ -63,6 +69,7 @@ class TraceReader {
 
 Trace TraceReader::read() {
   read_header();
+  read_description();
   check_shapes();
   read_motion();
   read_final_state();
@@ -73,6 +80,7 @@ Trace TraceReader::read() {
   read_budgets();
   read_certificates();
   read_timing();
+  if (!file_.has_dataset(kResidualPath)) add_residuals(trace_, *model_of(trace_.scenario));
   return std::move(trace_);
 }
 
@@ -98,16 +106,27 @@ void TraceReader::read_header() {
   trace_.scenario = parse_scenario(
       trace_.scenario_text,
       {.file = path, .folder = path.substr(0, path.rfind('/') + 1), .files_must_exist = false});
-  state_dim_ = trace_.scenario.initial_state.mean.size();
-  input_dim_ = trace_.scenario.controller.input_lower.size();
   parts_ = decision_parts(trace_.scenario);
   stages_ = static_cast<std::size_t>(certified_stages(parts_));
+}
+
+/// Of a trace from before it was recorded, from its scenario.
+void TraceReader::read_description() {
+  const Scenario& scenario = trace_.scenario;
+  trace_.system = has_system(file_) ? read_system(file_) : model_of(scenario)->description();
+  state_dim_ = std::ssize(trace_.system.states);
+  input_dim_ = std::ssize(trace_.system.inputs);
+  const auto expect = [this](const char* key, Eigen::Index found, Eigen::Index expected) {
+    if (found != expected) refuse(key, std::to_string(found), std::to_string(expected));
+  };
+  expect("/system/states@names", state_dim_, scenario.initial_state.mean.size());
+  expect("/system/inputs@names", input_dim_, scenario.controller.input_lower.size());
 }
 
 void TraceReader::check_shapes() {
   const auto shape_of_time = file_.shape("/plant/time");
   const std::size_t steps = shape_of_time.empty() ? 0 : shape_of_time.front();
-  for (const DatasetSpec& spec : trace_layout(trace_.scenario)) {
+  for (const DatasetSpec& spec : trace_layout(trace_.scenario, trace_.system)) {
     if (may_be_missing(spec.path) && !file_.has_dataset(spec.path)) continue;
     const std::vector<std::size_t> found = file_.shape(spec.path);
     if (found.size() != spec.row_shape.size() + 1) {
@@ -159,6 +178,7 @@ void TraceReader::read_plant_and_belief() {
   const auto seen = doubles_if_there(kObservationPath);
   const auto inputs = file_.doubles("/plant/input");
   const auto disturbances = file_.doubles("/plant/disturbance");
+  const auto residuals = doubles_if_there(kResidualPath);
   const auto means = file_.doubles("/belief/mean");
   const auto covariances = file_.doubles("/belief/covariance");
   using Vector = Eigen::Map<const Eigen::VectorXd>;
@@ -169,6 +189,9 @@ void TraceReader::read_plant_and_belief() {
     step.observation = Vector(row_of(seen.empty() ? states : seen, k, state_dim_), state_dim_);
     step.input = Vector(row_of(inputs, k, input_dim_), input_dim_);
     step.disturbance = Vector(row_of(disturbances, k, state_dim_), state_dim_);
+    if (!residuals.empty()) {
+      step.residual = Vector(row_of(residuals, k, state_dim_), state_dim_);
+    }
     step.belief_mean = Vector(row_of(means, k, state_dim_), state_dim_);
     step.belief_covariance = Eigen::Map<const RowMajor>(
         row_of(covariances, k, state_dim_ * state_dim_), state_dim_, state_dim_);
@@ -311,5 +334,14 @@ void TraceReader::read_timing() {
 }  // namespace
 
 Trace read_trace(const std::string& path) { return TraceReader(path).read(); }
+
+Trace read_folder(const std::string& folder) {
+  const std::string path = folder + "/" + kTraceFile;
+  const std::string partial = partial_path_of(path);
+  std::error_code ignored;
+  const bool killed =
+      !std::filesystem::exists(path, ignored) && std::filesystem::exists(partial, ignored);
+  return read_trace(killed ? partial : path);
+}
 
 }  // namespace qsmpc::harness

@@ -11,6 +11,7 @@
 #include "harness/trace/cost_fields.hpp"
 #include "harness/trace/file_header.hpp"
 #include "harness/trace/rows.hpp"
+#include "harness/trace/system_group.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/trace/trace_layout.hpp"
 
@@ -37,12 +38,15 @@ void write_trace_header(Hdf5File& file, const Trace& header) {
 TraceWriter::TraceWriter(std::string path, const Trace& header)
     : path_(std::move(path)),
       file_(Hdf5File::create(partial_path_of(path_))),
-      state_dim_(header.scenario.initial_state.mean.size()),
-      input_dim_(header.scenario.controller.input_lower.size()),
+      state_dim_(std::ssize(header.system.states)),
+      input_dim_(std::ssize(header.system.inputs)),
       parts_(decision_parts(header.scenario)),
       stages_(certified_stages(parts_)) {
   write_trace_header(file_, header);
-  for (const DatasetSpec& spec : trace_layout(header.scenario)) file_.create_dataset(spec);
+  write_system(file_, header.system);
+  for (const DatasetSpec& spec : trace_layout(header.scenario, header.system)) {
+    file_.create_dataset(spec);
+  }
   file_.flush();
   file_.begin_streaming();
 }
@@ -70,6 +74,7 @@ void TraceWriter::check_sizes(const StepRecord& record) const {
   require(record.observation.size() == state_dim_, "observation is not state_dim");
   require(record.input.size() == input_dim_, "input is not input_dim");
   require(record.disturbance.size() == state_dim_, "disturbance is not state_dim");
+  require(record.residual.size() == state_dim_, "residual is not state_dim");
   require(record.belief_mean.size() == state_dim_, "belief_mean is not state_dim");
   require(record.belief_covariance.rows() == state_dim_ &&
               record.belief_covariance.cols() == state_dim_,
@@ -122,6 +127,7 @@ void TraceWriter::append_vectors(const StepRecord& record) {
   file_.append(kObservationPath, by_rows(record.observation));
   file_.append("/plant/input", by_rows(record.input));
   file_.append("/plant/disturbance", by_rows(record.disturbance));
+  file_.append(kResidualPath, by_rows(record.residual));
   file_.append("/belief/mean", by_rows(record.belief_mean));
   file_.append("/belief/covariance", by_rows(record.belief_covariance));
 }

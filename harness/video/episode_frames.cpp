@@ -33,8 +33,8 @@ render::PlanarRectangle planar_sides(const models::SystemDescription& system,
   return {lower.x(), upper.x(), lower.y(), upper.y()};
 }
 
-std::string banner(const Trace& trace, double time) {
-  switch (trace.outcome) {
+std::string banner(Outcome outcome, double time) {
+  switch (outcome) {
     case Outcome::kReached:
       return fmt::format("target reached after {:.1f} s", time);
     case Outcome::kTimeout:
@@ -66,19 +66,18 @@ std::string every_nth(std::size_t every) { return fmt::format("1 of {}", every);
 
 }  // namespace
 
-EpisodeFrames::EpisodeFrames(const Trace& trace, const Overlays& overlays)
-    : trace_(trace),
+EpisodeFrames::EpisodeFrames(const EpisodeView& view, const Overlays& overlays)
+    : view_(view),
+      steps_(view.trace().steps),
       overlays_(overlays),
-      dynamics_(models::make_dynamics(trace.scenario.model.system, trace.scenario.model.parameters,
-                                      trace.scenario.time_step)),
-      track_(trace, dynamics_->description()),
+      track_(view),
       planar_unsafe_(planar_safe_set(world())),
-      ranges_(chart_ranges(trace)) {
-  if (overlays_.raw) raw_.emplace(trace_.scenario, *dynamics_);
+      ranges_(chart_ranges(view)) {
+  if (overlays_.raw) raw_.emplace(view.scenario());
 }
 
 std::string EpisodeFrames::heading() const {
-  const Scenario& scenario = trace_.scenario;
+  const Scenario& scenario = view_.scenario();
   const bool closed = scenario.controller.policy == "closed_loop";
   const bool planned = scenario.controller.kind == controller::controllers().front().name;
   return fmt::format("{}, {} plant, {}", scenario.name, scenario.plant.kind,
@@ -88,8 +87,8 @@ std::string EpisodeFrames::heading() const {
 }
 
 render::World EpisodeFrames::world() const {
-  const models::SystemDescription& system = dynamics_->description();
-  const Scenario& scenario = trace_.scenario;
+  const models::SystemDescription& system = view_.system();
+  const Scenario& scenario = view_.scenario();
   render::World world;
   const controller::UnsafeSet unsafe(scenario.safe_set);
   world.bounds = planar_sides(system, unsafe.walls(), std::numeric_limits<double>::infinity());
@@ -111,12 +110,11 @@ render::PlanarRectangle EpisodeFrames::region() const {
 
 double EpisodeFrames::longest_plan() const {
   double longest = 0.0;
-  for (const StepRecord& step : trace_.steps) {
+  for (const StepRecord& step : steps_) {
     double length = 0.0;
     for (Eigen::Index i = 1; i < step.plan_states.cols(); ++i) {
-      const render::PlanarPose from =
-          planar_pose(dynamics_->description(), step.plan_states.col(i - 1));
-      const render::PlanarPose to = planar_pose(dynamics_->description(), step.plan_states.col(i));
+      const render::PlanarPose from = planar_pose(view_.system(), step.plan_states.col(i - 1));
+      const render::PlanarPose to = planar_pose(view_.system(), step.plan_states.col(i));
       length += std::hypot(to.x - from.x, to.y - from.y);
     }
     longest = std::max(longest, length);
@@ -126,9 +124,9 @@ double EpisodeFrames::longest_plan() const {
 
 std::size_t EpisodeFrames::step_at(double time) const {
   const auto later =
-      std::upper_bound(trace_.steps.begin(), trace_.steps.end(), time + kTimeTolerance,
+      std::upper_bound(steps_.begin(), steps_.end(), time + kTimeTolerance,
                        [](double t, const StepRecord& step) { return t < step.time; });
-  const auto index = static_cast<std::size_t>(later - trace_.steps.begin());
+  const auto index = static_cast<std::size_t>(later - steps_.begin());
   return index == 0 ? 0 : index - 1;
 }
 
@@ -136,11 +134,11 @@ render::Frame EpisodeFrames::at(double time) const {
   const double now = std::clamp(time, 0.0, duration());
   render::Frame frame;
   frame.time = now;
-  frame.title = trace_.scenario.name;
+  frame.title = view_.scenario().name;
   frame.qpos = track_.qpos(now);
   frame.pose = track_.pose(now);
-  if (trace_.steps.empty()) {
-    frame.banner = banner(trace_, now);
+  if (steps_.empty()) {
+    frame.banner = banner(view_.trace().outcome, now);
     return frame;
   }
   frame.followed = track_.smooth_pose(now);
@@ -152,19 +150,19 @@ render::Frame EpisodeFrames::at(double time) const {
     }
   }
   const std::size_t step = step_at(now);
-  frame.hud = hud_rows(trace_.steps[step], now, speed(now));
-  add_plan(trace_.steps[step], frame);
-  add_belief(trace_.steps[step], frame);
+  frame.hud = hud_rows(steps_[step], now, speed(now));
+  add_plan(steps_[step], frame);
+  add_belief(steps_[step], frame);
   if (overlays_.ghost) frame.ghost = ghost(step, now);
-  frame.charts = strip_charts(trace_, dynamics_->description(), ranges_, step);
+  frame.charts = strip_charts(view_, ranges_, step);
   if (time >= duration() - kTimeTolerance) {
-    frame.banner = banner(trace_, duration());
+    frame.banner = banner(view_.trace().outcome, duration());
   }
   return frame;
 }
 
 void EpisodeFrames::add_plan(const StepRecord& step, render::Frame& frame) const {
-  const models::SystemDescription& system = dynamics_->description();
+  const models::SystemDescription& system = view_.system();
   for (Eigen::Index i = 0; i < step.plan_states.cols(); ++i) {
     const render::PlanarPose pose = planar_pose(system, step.plan_states.col(i));
     frame.planned_path.push_back({pose.x, pose.y});
@@ -174,7 +172,7 @@ void EpisodeFrames::add_plan(const StepRecord& step, render::Frame& frame) const
 render::ParticleStage EpisodeFrames::planar(const controller::DiscreteMeasure& measure) const {
   render::ParticleStage stage;
   for (Eigen::Index i = 0; i < measure.size(); ++i) {
-    const render::PlanarPose pose = planar_pose(dynamics_->description(), measure.locations.col(i));
+    const render::PlanarPose pose = planar_pose(view_.system(), measure.locations.col(i));
     stage.points.push_back({pose.x, pose.y});
     stage.weights.push_back(measure.weights[i]);
   }
@@ -224,19 +222,19 @@ void EpisodeFrames::add_raw_points(const StepRecord& step, render::Frame& frame)
 
 // From the plan of the period before; in the first period, or without one, from its own.
 std::optional<render::PlanarPose> EpisodeFrames::ghost(std::size_t step, double time) const {
-  const bool known_before = step > 0 && trace_.steps[step - 1].plan_states.cols() > 2;
-  const Eigen::MatrixXd& states = trace_.steps[known_before ? step - 1 : step].plan_states;
+  const bool known_before = step > 0 && steps_[step - 1].plan_states.cols() > 2;
+  const Eigen::MatrixXd& states = steps_[known_before ? step - 1 : step].plan_states;
   const Eigen::Index stage = known_before ? 1 : 0;
   if (states.cols() < stage + 2) return std::nullopt;
-  const models::SystemDescription& system = dynamics_->description();
+  const models::SystemDescription& system = view_.system();
   const double share =
-      std::clamp((time - trace_.steps[step].time) / trace_.scenario.time_step, 0.0, 1.0);
+      std::clamp((time - steps_[step].time) / view_.scenario().time_step, 0.0, 1.0);
   return between(planar_pose(system, states.col(stage)), planar_pose(system, states.col(stage + 1)),
                  share);
 }
 
 double EpisodeFrames::speed(double time) const {
-  const models::ParameterMap& parameters = trace_.scenario.model.parameters;
+  const models::ParameterMap& parameters = view_.scenario().model.parameters;
   const auto constant = parameters.find("speed");
   return constant != parameters.end() ? constant->second : track_.smooth_speed(time);
 }

@@ -1,33 +1,32 @@
-// What an episode's pictures show, from its trace alone.
+// What an episode's pictures show, from the view of its trace alone.
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "controller/regions/unsafe_set.hpp"
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "harness/video/episode_hud.hpp"
 #include "harness/video/episode_track.hpp"
 #include "harness/video/overlays.hpp"
 #include "harness/video/raw_points.hpp"
-#include "models/dynamics/dynamics.hpp"
 #include "render/frame.hpp"
 
 namespace qsmpc::harness {
 
-/// Frames of one trace; const functions may be called from several threads at once.
+/// Frames of one episode; const functions may be called from several threads at once.
 class EpisodeFrames {
  public:
-  /// `trace` must outlive it. Throws std::invalid_argument when the trace's system is unknown.
-  explicit EpisodeFrames(const Trace& trace, const Overlays& overlays = {});
+  /// `view` must outlive it.
+  explicit EpisodeFrames(const EpisodeView& view, const Overlays& overlays = {});
 
   /// s, from the start to the end of the last control period.
   [[nodiscard]] double duration() const { return track_.duration(); }
 
   /// The vehicle's XML.
-  [[nodiscard]] const std::string& vehicle() const { return trace_.scenario.plant.mjcf; }
+  [[nodiscard]] const std::string& vehicle() const { return view_.scenario().plant.mjcf; }
 
   /// Scenario, plant and policy in one line.
   [[nodiscard]] std::string heading() const;
@@ -59,9 +58,9 @@ class EpisodeFrames {
   [[nodiscard]] double speed(double time) const;
   [[nodiscard]] render::ParticleStage planar(const controller::DiscreteMeasure& measure) const;
 
-  const Trace& trace_;
+  const EpisodeView& view_;
+  const std::vector<StepRecord>& steps_;
   Overlays overlays_;
-  std::unique_ptr<const models::Dynamics> dynamics_;
   EpisodeTrack track_;
   controller::UnsafeSet planar_unsafe_;
   std::optional<RawPoints> raw_;  // where they are drawn

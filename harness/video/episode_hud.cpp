@@ -101,11 +101,12 @@ render::StripChart solve_time_chart(const History& history, const Scenario& scen
 
 }  // namespace
 
-ChartRanges chart_ranges(const Trace& trace) {
+ChartRanges chart_ranges(const EpisodeView& view) {
   constexpr double kLowestFloor = 1e-9;
+  const Trace& trace = view.trace();
   ChartRanges ranges;
   if (trace.steps.empty()) return ranges;
-  ranges.time = trace.steps.back().time + trace.scenario.time_step;
+  ranges.time = view.duration();
   double least = std::numeric_limits<double>::infinity();
   double largest = -least;
   for (const StepRecord& step : trace.steps) {
@@ -131,10 +132,11 @@ ChartRanges united(const ChartRanges& a, const ChartRanges& b) {
           .largest_solve_time = std::max(a.largest_solve_time, b.largest_solve_time)};
 }
 
-std::vector<render::StripChart> strip_charts(const Trace& trace,
-                                             const models::SystemDescription& system,
-                                             const ChartRanges& ranges, std::size_t step) {
-  const Scenario& scenario = trace.scenario;
+std::vector<render::StripChart> strip_charts(const EpisodeView& view, const ChartRanges& ranges,
+                                             std::size_t step) {
+  const Trace& trace = view.trace();
+  const Scenario& scenario = view.scenario();
+  const models::SystemDescription& system = view.system();
   const History history(trace, ranges, step);
   std::vector<render::StripChart> charts;
   if (!trace.steps[step].certificates.empty()) {

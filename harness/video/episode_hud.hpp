@@ -4,8 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "harness/trace/trace.hpp"
-#include "models/dynamics/dynamics.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "render/frame.hpp"
 
 namespace qsmpc::harness {
@@ -19,8 +18,8 @@ struct ChartRanges {
   double largest_solve_time = 1.0;  ///< ms
 };
 
-/// The ranges that hold all of `trace`.
-[[nodiscard]] ChartRanges chart_ranges(const Trace& trace);
+/// The ranges that hold the whole episode.
+[[nodiscard]] ChartRanges chart_ranges(const EpisodeView& view);
 
 /// The ranges that hold both: for episodes that are shown side by side.
 [[nodiscard]] ChartRanges united(const ChartRanges& a, const ChartRanges& b);
@@ -28,8 +27,7 @@ struct ChartRanges {
 /// Histories up to step `step` of the certificate, the first input, the plan's cost, the planning
 /// time against its deadline (without one: the control period), and the second input. They hold up
 /// to 20 s; longer episodes scroll.
-[[nodiscard]] std::vector<render::StripChart> strip_charts(const Trace& trace,
-                                                           const models::SystemDescription& system,
+[[nodiscard]] std::vector<render::StripChart> strip_charts(const EpisodeView& view,
                                                            const ChartRanges& ranges,
                                                            std::size_t step);
 

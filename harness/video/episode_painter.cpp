@@ -3,33 +3,30 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "models/dynamics/dynamics.hpp"
-
 namespace qsmpc::harness {
 namespace {
 
 constexpr double kPlansInView = 2.8;  // chase camera's distance in lengths of the longest plan
 
-const Trace& drawable(const Trace& trace) {
-  const std::string reason = why_not_drawn(trace.scenario);
+const EpisodeView& drawable(const EpisodeView& view) {
+  const std::string reason = why_not_drawn(view);
   if (!reason.empty()) throw std::runtime_error("no video: " + reason);
-  return trace;
+  return view;
 }
 
 }  // namespace
 
-std::string why_not_drawn(const Scenario& scenario) {
-  const auto model =
-      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const models::SystemDescription& system = model->description();
+std::string why_not_drawn(const EpisodeView& view) {
+  const models::SystemDescription& system = view.system();
   if (system.position_x < 0 || system.position_y < 0) {
     return system.name + " has no position in the plane";
   }
-  return scenario.plant.mjcf.empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
+  return view.scenario().plant.mjcf.empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
 }
 
-EpisodePictures::EpisodePictures(const Trace& trace, const VideoLayout& layout, const Trace* beside)
-    : layout_(layout), frames_(drawable(trace), layout.overlays) {
+EpisodePictures::EpisodePictures(const EpisodeView& view, const VideoLayout& layout,
+                                 const EpisodeView* beside)
+    : layout_(layout), frames_(drawable(view), layout.overlays) {
   if (beside == nullptr) return;
   beside_.emplace(drawable(*beside), layout.overlays);
   const ChartRanges ranges = united(frames_.ranges(), beside_->ranges());

@@ -1,6 +1,6 @@
 // Pictures of one episode, or of two side by side, at any time.
 //
-//   const EpisodePictures pictures(trace, {.camera = "split"});   // shared by all drawing threads
+//   const EpisodePictures pictures(view, {.camera = "split"});   // shared by all drawing threads
 //   EpisodePainter painter(pictures);                             // on each drawing thread
 //   painter.draw(/*time=*/1.5, image);
 #pragma once
@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/overlays.hpp"
 #include "render/frame.hpp"
@@ -29,10 +29,10 @@ struct VideoLayout {
 /// threads at once.
 class EpisodePictures {
  public:
-  /// `trace` (and `beside`, shown on its right, if not null) must outlive it. Throws
-  /// std::invalid_argument when a trace's system is unknown, std::runtime_error when an episode
-  /// cannot be drawn, see `why_not_drawn`.
-  EpisodePictures(const Trace& trace, const VideoLayout& layout, const Trace* beside = nullptr);
+  /// `view` (and `beside`, shown on its right, if not null) must outlive it. Throws
+  /// std::runtime_error when an episode cannot be drawn, see `why_not_drawn`.
+  EpisodePictures(const EpisodeView& view, const VideoLayout& layout,
+                  const EpisodeView* beside = nullptr);
 
   /// s, of the longer episode.
   [[nodiscard]] double duration() const;
@@ -63,8 +63,8 @@ class EpisodePainter {
   render::Renderer renderer_;
 };
 
-/// Why an episode of this scenario cannot be drawn, e.g. "double_integrator has no position in the
-/// plane"; empty if it has a position and a vehicle.
-[[nodiscard]] std::string why_not_drawn(const Scenario& scenario);
+/// Why an episode cannot be drawn, e.g. "double_integrator has no position in the plane"; empty if
+/// it has a position and a vehicle.
+[[nodiscard]] std::string why_not_drawn(const EpisodeView& view);
 
 }  // namespace qsmpc::harness

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -56,29 +57,30 @@ render::PlanarPose between(const render::PlanarPose& a, const render::PlanarPose
           a.heading + share * (b.heading - a.heading)};
 }
 
-EpisodeTrack::EpisodeTrack(const Trace& trace, const models::SystemDescription& system) {
-  if (trace.steps.empty()) {
+EpisodeTrack::EpisodeTrack(const EpisodeView& view) : duration_(view.duration()) {
+  if (view.trace().steps.empty()) {
     return;
   }
-  duration_ = trace.steps.back().time + trace.scenario.time_step;
-  add_poses(trace, system);
-  add_motion(trace);
+  add_poses(view);
+  add_motion(view.trace());
 }
 
-void EpisodeTrack::add_poses(const Trace& trace, const models::SystemDescription& system) {
+void EpisodeTrack::add_poses(const EpisodeView& view) {
+  const Trace& trace = view.trace();
+  const models::SystemDescription& system = view.system();
+  const Eigen::MatrixXd& states = view.states();
   const auto add_instant = [this](double time, render::PlanarPose pose) {
     if (!instants_.empty()) {
       pose.heading = unwrapped(pose.heading, instants_.back().pose.heading);
     }
     instants_.push_back({time, pose});
   };
-  for (const StepRecord& step : trace.steps) {
-    add_instant(step.time, planar_pose(system, step.state));
+  for (std::size_t k = 0; k < trace.steps.size(); ++k) {
+    add_instant(trace.steps[k].time, planar_pose(system, states.col(static_cast<Eigen::Index>(k))));
   }
   // A killed episode has no last state: its vehicle stands still for the last period.
-  const bool end_is_known = trace.final_state.size() > 0;
-  add_instant(duration_,
-              planar_pose(system, end_is_known ? trace.final_state : trace.steps.back().state));
+  const bool end_is_known = states.cols() > std::ssize(trace.steps);
+  add_instant(duration_, planar_pose(system, states.rightCols<1>()));
 
   // Within a period: from the state at its beginning to the one at its end before the disturbance.
   const double ease_share = std::min(kEaseTime / trace.scenario.time_step, 0.5);

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "render/frame.hpp"
 
@@ -29,8 +29,8 @@ class EpisodeTrack {
  public:
   static constexpr double kEaseTime = 0.04;  ///< s
 
-  /// Takes what it needs from `trace`.
-  EpisodeTrack(const Trace& trace, const models::SystemDescription& system);
+  /// Takes what it needs from `view`.
+  explicit EpisodeTrack(const EpisodeView& view);
 
   /// s, the end of the last control period; 0 without steps.
   [[nodiscard]] double duration() const { return duration_; }
@@ -63,7 +63,7 @@ class EpisodeTrack {
     render::PlanarPose slope;
   };
 
-  void add_poses(const Trace& trace, const models::SystemDescription& system);
+  void add_poses(const EpisodeView& view);
   void add_motion(const Trace& trace);
   [[nodiscard]] LocalLine local_line(double time) const;
 

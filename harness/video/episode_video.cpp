@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 
 #include "harness/files/atomic_file.hpp"
-#include "harness/video/episode_frames.hpp"
 #include "harness/video/ordered_drawing.hpp"
 #include "harness/video/video_file.hpp"
 #include "render/gl/gl_library.hpp"
@@ -85,18 +84,14 @@ double mean_simulation_ms(const Trace& trace) {
 
 }  // namespace
 
-double episode_duration(const Trace& trace) {
-  return trace.steps.empty() ? 0.0 : trace.steps.back().time + trace.scenario.time_step;
-}
-
-VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& options,
+VideoTimings write_episode_video(const EpisodeView& view, const EpisodeVideoOptions& options,
                                  const std::string& path,
                                  const std::function<bool(int done, int total)>& progress) {
   if (options.threads < 1) {
     throw std::invalid_argument("video: at least one thread must draw");
   }
   const Clock::time_point begin = Clock::now();
-  const EpisodePictures pictures(trace, layout_of(options), options.beside);
+  const EpisodePictures pictures(view, layout_of(options), options.beside);
   const Timetable timetable(options, pictures.duration());
   const render::VideoFormat format =
       options.format ? *options.format : render::known_video_format(path);
@@ -113,7 +108,7 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
                        .width = options.width,
                        .height = options.height,
                        .codec = render::video_codec(format),
-                       .simulation_ms = mean_simulation_ms(trace)};
+                       .simulation_ms = mean_simulation_ms(view.trace())};
   double encoding = 0.0;
   render::Image image;
   bool go_on = true;
@@ -136,13 +131,9 @@ VideoTimings write_episode_video(const Trace& trace, const EpisodeVideoOptions& 
   return timings;
 }
 
-render::Frame episode_frame(const Trace& trace, double time) {
-  return EpisodeFrames(trace).at(time);
-}
-
-void write_episode_still(const Trace& trace, const EpisodeVideoOptions& options, double time,
+void write_episode_still(const EpisodeView& view, const EpisodeVideoOptions& options, double time,
                          const std::string& path) {
-  const EpisodePictures pictures(trace, layout_of(options), options.beside);
+  const EpisodePictures pictures(view, layout_of(options), options.beside);
   EpisodePainter painter(pictures);
   render::Image image;
   painter.draw(time, image);

@@ -18,8 +18,10 @@ controller::DiscreteMeasure noise_points(const Scenario& scenario) {
 
 }  // namespace
 
-RawPoints::RawPoints(const Scenario& scenario, const models::Dynamics& dynamics)
-    : dynamics_(dynamics), settings_(planner_settings(scenario)), noise_(noise_points(scenario)) {}
+RawPoints::RawPoints(const Scenario& scenario)
+    : model_(model_of(scenario)),
+      settings_(planner_settings(scenario)),
+      noise_(noise_points(scenario)) {}
 
 std::size_t RawPoints::count(const StepRecord& step) const {
   Eigen::Index count = 0;
@@ -36,9 +38,8 @@ controller::Policy RawPoints::policy_of(const StepRecord& step) const {
                             .bounds = settings_.bounds};
   if (!policy.gains.empty()) return policy;
   // An older trace, whose gains are those that belong to the inputs.
-  const Eigen::MatrixXd no_change =
-      Eigen::MatrixXd::Zero(dynamics_.input_dim(), dynamics_.state_dim());
-  controller::PolicyMaker(dynamics_, settings_)
+  const Eigen::MatrixXd no_change = Eigen::MatrixXd::Zero(model_->input_dim(), model_->state_dim());
+  controller::PolicyMaker(*model_, settings_)
       .make(step.plan_states.col(0), step.plan_inputs, no_change, policy);
   return policy;
 }
@@ -49,10 +50,10 @@ std::vector<controller::DiscreteMeasure> RawPoints::stages(const StepRecord& ste
   const controller::Policy policy = policy_of(step);
   for (std::size_t k = 0; k + 1 < step.particles.size(); ++k) {
     const controller::DiscreteMeasure& before = step.particles[k];
-    controller::Points inputs(dynamics_.input_dim(), before.size());
+    controller::Points inputs(model_->input_dim(), before.size());
     controller::Points stepped(before.dim(), before.size());
     controller::policy_inputs(policy, static_cast<Eigen::Index>(k), before.locations, inputs);
-    dynamics_.step(before.locations, inputs, stepped);
+    model_->step(before.locations, inputs, stepped);
     controller::DiscreteMeasure raw{controller::Points(before.dim(), before.size() * noise_.size()),
                                     Eigen::VectorXd(before.size() * noise_.size())};
     for (Eigen::Index j = 0; j < noise_.size(); ++j) {

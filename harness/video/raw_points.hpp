@@ -1,7 +1,9 @@
-// The points that a prediction compresses, stage by stage, made again from a trace: it holds only
-// what they were compressed to.
+// The points that a prediction compresses, stage by stage, made again for the one overlay that
+// shows them: a trace holds only what they were compressed to, for they are as many times more as
+// the noise has points. This alone of what draws an episode builds the planner's model.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "controller/measure/measures.hpp"
@@ -14,8 +16,8 @@ namespace qsmpc::harness {
 
 class RawPoints {
  public:
-  /// `dynamics`: the planner's model of `scenario`; must outlive it.
-  RawPoints(const Scenario& scenario, const models::Dynamics& dynamics);
+  /// Throws std::invalid_argument when the system of `scenario` is unknown.
+  explicit RawPoints(const Scenario& scenario);
 
   /// How many there are in all stages of `step`.
   [[nodiscard]] std::size_t count(const StepRecord& step) const;
@@ -29,7 +31,7 @@ class RawPoints {
  private:
   [[nodiscard]] controller::Policy policy_of(const StepRecord& step) const;
 
-  const models::Dynamics& dynamics_;
+  std::unique_ptr<const models::Dynamics> model_;
   controller::PlannerSettings settings_;
   controller::DiscreteMeasure noise_;
 };

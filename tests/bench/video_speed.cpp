@@ -26,6 +26,7 @@
 #include "render/palette.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/vehicle.hpp"
+#include "tests/support/described_trace.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc::harness {
@@ -97,13 +98,15 @@ Trace made_up_trace(const Options& options, int fps) {
     scenario.safe_set.obstacles.push_back(obstacle);
   }
   scenario.target = {Eigen::Vector3d(0.0, 10.0, 0.0), 0.5};
+  scenario.controller.cost = {Eigen::Matrix3d::Identity(), Eigen::MatrixXd::Identity(1, 1),
+                              Eigen::Matrix3d::Identity()};
   const int steps = std::max(1, static_cast<int>(std::ceil(options.frames / (fps * kPeriod))));
   for (int index = 0; index < steps; ++index) {
     trace.steps.push_back(step_at(index, options.points));
   }
   trace.final_state = state_at(kPeriod * steps);
   trace.outcome = Outcome::kReached;
-  return trace;
+  return testing::described(std::move(trace));
 }
 
 double seconds_of(clockid_t clock) {
@@ -217,7 +220,8 @@ bool run(const Options& options) {
   video.threads = options.threads;
   const testing::TemporaryFolder folder;
   const Trace trace = made_up_trace(options, video.fps);
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   {
     constexpr int kWarmUp = 3;  // pictures in which shaders are compiled
     constexpr int kMeasured = 40;
@@ -231,7 +235,7 @@ bool run(const Options& options) {
   }
   const double processor = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   const VideoTimings timings =
-      write_episode_video(trace, video, folder / ("whole." + options.format));
+      write_episode_video(view, video, folder / ("whole." + options.format));
   const double spent = seconds_of(CLOCK_PROCESS_CPUTIME_ID) - processor;
   std::cout << fmt::format("{}, {} points, {}, {} threads\n{}\n  {:.1f} ms of processor a frame\n",
                            options.size, options.points, options.format, options.threads,

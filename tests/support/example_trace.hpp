@@ -5,9 +5,11 @@
 #include <cmath>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/trace.hpp"
+#include "tests/support/described_trace.hpp"
 
 namespace qsmpc::testing {
 
@@ -173,7 +175,7 @@ inline harness::Trace example_trace(const ExampleTraceOptions& options = {}) {
   }
   trace.final_state = state;
   trace.outcome = harness::Outcome::kReached;
-  return trace;
+  return described(std::move(trace));
 }
 
 }  // namespace qsmpc::testing

@@ -14,6 +14,8 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/episode_view.hpp"
+#include "harness/trace/residuals.hpp"
+#include "tests/unit/trace/trace_matchers.hpp"
 
 namespace qsmpc::harness {
 namespace episode_test {
@@ -138,6 +140,21 @@ TEST(Episode, the_analytic_plant_moves_as_the_model_says) {
     EXPECT_EQ(trace.steps[k + 1].belief_mean, next.col(0));
     // One addition apart: exact to rounding of numbers of order 1.
     EXPECT_TRUE(trace.steps[k + 1].state.isApprox(next.col(0) + step.disturbance, 1e-14));
+  }
+}
+
+TEST(Episode, leaves_a_whole_trace_with_what_the_model_does_not_explain) {
+  const Scenario scenario = small_scenario({"plant.kind=mujoco", "limit.steps=3"});
+  const Trace trace = run_episode(scenario, {.seed = 3});
+  const auto model = model_of(scenario);
+  testing::expect_same_system(trace.system, model->description());
+  testing::expect_same_system(trace_header(scenario, 3).system, model->description());
+  Trace again = trace;
+  add_residuals(again, *model);
+  ASSERT_EQ(trace.steps.size(), 3U);
+  for (std::size_t k = 0; k < trace.steps.size(); ++k) {
+    EXPECT_TRUE(testing::same_bits(trace.steps[k].residual, again.steps[k].residual));
+    EXPECT_FALSE(trace.steps[k].residual.isZero(1e-6));  // another plant than the model
   }
 }
 
@@ -374,6 +391,9 @@ TEST(Episode, a_plant_that_breaks_is_an_outcome_with_the_simulators_words) {
   EXPECT_EQ(trace.outcome, Outcome::kFault);
   EXPECT_FALSE(trace.fault.empty());
   EXPECT_TRUE(trace.final_state.allFinite());
+  ASSERT_FALSE(trace.steps.empty());
+  EXPECT_TRUE(trace.steps.back().residual.array().isNaN().all());
+  EXPECT_EQ(trace.steps.back().residual.size(), 3);
 }
 
 TEST(Episode, an_xml_file_that_mujoco_refuses_is_a_fault_in_its_own_words) {

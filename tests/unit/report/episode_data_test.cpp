@@ -48,7 +48,7 @@ std::vector<Number> numbers_of(const nlohmann::json& text) {
 nlohmann::json data_of(const Trace& trace) {
   const EpisodeView view(trace);
   const std::vector<Chart> charts = episode_charts(view);
-  const PlaneMap map = episode_ground(view);
+  const PlaneMap map = episode_maps(view)->ground;
   return nlohmann::json::parse(episode_data(view, {.charts = charts, .map = &map}));
 }
 

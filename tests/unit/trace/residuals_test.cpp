@@ -25,30 +25,36 @@ Trace biased_trace(const models::Dynamics& model, const Eigen::Vector2d& bias, i
   return trace;
 }
 
+bool is_known(const StepRecord& step) { return step.residual.allFinite(); }
+
 TEST(OneStepResiduals, are_what_the_plant_adds_to_model_and_disturbance) {
   const auto model = models::make_dynamics("double_integrator", {}, 0.1);
   const Eigen::Vector2d bias(0.02, -0.003);
-  const Eigen::MatrixXd residuals = one_step_residuals(biased_trace(*model, bias, 5), *model);
-  ASSERT_EQ(residuals.cols(), 5);
+  Trace trace = biased_trace(*model, bias, 5);
+  add_residuals(trace, *model);
   // Rounding of states of size 1.
-  for (const auto& residual : residuals.colwise()) EXPECT_TRUE(residual.isApprox(bias, 1e-12));
+  for (const StepRecord& step : trace.steps) EXPECT_TRUE(step.residual.isApprox(bias, 1e-12));
 }
 
-TEST(OneStepResiduals, leave_out_the_period_that_broke_and_one_without_an_end) {
+TEST(OneStepResiduals, of_the_period_that_broke_and_of_one_without_an_end_are_no_numbers) {
   const auto model = models::make_dynamics("double_integrator", {}, 0.1);
   Trace trace = biased_trace(*model, Eigen::Vector2d::Zero(), 3);
+  const auto last_is_known = [&] {
+    add_residuals(trace, *model);
+    EXPECT_TRUE(is_known(trace.steps[1]));
+    EXPECT_EQ(trace.steps[2].residual.size(), 2);
+    return is_known(trace.steps[2]);
+  };
   EXPECT_EQ(true_states(trace).cols(), 4);
+  EXPECT_TRUE(last_is_known());
   trace.outcome = Outcome::kFault;
-  EXPECT_EQ(one_step_residuals(trace, *model).cols(), 2);
+  EXPECT_FALSE(last_is_known());
+  EXPECT_EQ(completed_periods(trace), 2);
   trace.outcome = Outcome::kInterrupted;
   trace.final_state.resize(0);
-  EXPECT_EQ(one_step_residuals(trace, *model).cols(), 2);
+  EXPECT_FALSE(last_is_known());
+  EXPECT_EQ(completed_periods(trace), 2);
   EXPECT_EQ(true_states(trace).cols(), 3);
-}
-
-TEST(OneStepResiduals, of_nothing_are_none) {
-  const auto model = models::make_dynamics("double_integrator", {}, 0.1);
-  EXPECT_EQ(one_step_residuals(Trace(), *model).cols(), 0);
 }
 
 }  // namespace residuals_test

@@ -1,12 +1,15 @@
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/episode_view.hpp"
+#include "tests/support/described_trace.hpp"
 
 namespace qsmpc::harness {
 namespace summary_test {
@@ -39,7 +42,7 @@ Trace straight_trace(int steps) {
     trace.steps.push_back(step);
   }
   trace.final_state = Eigen::Vector3d(0.15 * steps, 0.0, 0.0);
-  return trace;
+  return testing::described(std::move(trace));
 }
 
 TEST(Summary, adds_the_stage_costs_of_the_true_states) {
@@ -105,10 +108,17 @@ TEST(Summary, mismatch_is_what_the_model_and_the_disturbance_leave) {
   // The second period ends 0.02 further in y, of which 0.03 was disturbance.
   trace.final_state[1] = 0.02;
   trace.steps[1].disturbance[1] = 0.03;
+  trace = testing::described(std::move(trace));
   const Summary summary = EpisodeView(trace).summary();
   EXPECT_NEAR(summary.mismatch_mean[1], -0.005, 1e-15);
   EXPECT_NEAR(summary.mismatch_rmse[1], 0.01 / std::sqrt(2.0), 1e-15);
   EXPECT_NEAR(summary.mismatch_covariance(1, 1), 0.005 * 0.005, 1e-15);
+}
+
+TEST(EpisodeView, of_a_trace_without_residuals_is_refused) {
+  Trace trace = straight_trace(2);
+  trace.steps[1].residual.resize(0);
+  EXPECT_THROW((void)EpisodeView(trace), std::invalid_argument);
 }
 
 TEST(Summary, json_has_every_documented_key) {

@@ -2,14 +2,18 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 #include <thread>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "harness/errors.hpp"
+#include "harness/trace/episode_view.hpp"
+#include "harness/trace/system_group.hpp"
 #include "harness/trace/trace_layout.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/unit/trace/trace_folder.hpp"
@@ -26,10 +30,24 @@ using testing::same_bits;
 
 class TraceFile : public testing::TraceFolder {};
 
+/// As large as the example's, and otherwise what no scenario would give.
+models::SystemDescription unlike_any_system() {
+  return {.name = "kite",
+          .summary = "a kite — on a line",
+          .states = {{"length", "m"}, {"elevation", "rad", true}, {"azimuth", "rad", true}},
+          .inputs = {{"pull", ""}},
+          .input_lower = Eigen::VectorXd::Constant(1, -HUGE_VAL),
+          .input_upper = Eigen::VectorXd::Constant(1, 0.1),
+          .position_x = 2,
+          .heading = 1};
+}
+
 TEST_F(TraceFile, reading_gives_back_what_was_written_bit_for_bit) {
   Trace trace = testing::example_trace();
   trace.fault = "it said \"bang\" — and stopped";
   trace.outcome = Outcome::kFault;
+  trace.system = unlike_any_system();
+  trace.steps[1].residual[2] = std::numeric_limits<double>::quiet_NaN();
   trace.steps[1].state[0] = std::bit_cast<double>(0x7FF800000000BEEFULL);  // NaN with a payload
   trace.steps[2].certificates[0].value = -0.0;
   trace.steps[3].timing.total = std::numeric_limits<double>::infinity();
@@ -43,6 +61,7 @@ TEST_F(TraceFile, reading_gives_back_what_was_written_bit_for_bit) {
   EXPECT_EQ(read.seed, trace.seed);
   EXPECT_EQ(read.scenario_text, trace.scenario_text);
   EXPECT_EQ(to_yaml(read.scenario), trace.scenario_text);
+  testing::expect_same_system(read.system, trace.system);
   EXPECT_EQ(read.outcome, trace.outcome);
   EXPECT_EQ(read.fault, trace.fault);
   EXPECT_TRUE(testing::same_bits(read.final_state, trace.final_state));
@@ -74,7 +93,7 @@ void copy_dataset(const Hdf5File& from, Hdf5File& to, const DatasetSpec& spec) {
   }
 }
 
-/// Writes `old`: the trace in `file` without some datasets.
+/// Writes `old_file`: the trace in `file` without some datasets, or the group /system.
 void copy_without(const std::string& file, const std::vector<std::string>& missing,
                   const std::string& old_file) {
   const Hdf5File written = Hdf5File::open(file);
@@ -85,7 +104,9 @@ void copy_without(const std::string& file, const std::vector<std::string>& missi
   }
   old.set_unsigned("/", "seed", written.unsigned_integer("/", "seed"));
   const Scenario scenario = parse_scenario(written.text("/", "scenario"));
-  for (const DatasetSpec& spec : trace_layout(scenario)) {
+  const models::SystemDescription system = read_system(written);
+  if (std::ranges::find(missing, "/system") == missing.end()) write_system(old, system);
+  for (const DatasetSpec& spec : trace_layout(scenario, system)) {
     if (std::ranges::find(missing, spec.path) == missing.end()) copy_dataset(written, old, spec);
   }
   old.close();
@@ -128,6 +149,47 @@ TEST_F(TraceFile, a_trace_from_before_measurement_noise_is_of_a_planner_that_saw
   }
 }
 
+TEST_F(TraceFile, a_trace_from_before_the_description_gets_it_and_the_residuals_from_its_scenario) {
+  const Trace trace = testing::example_trace();
+  write_trace(path("new.h5"), trace);
+  copy_without(path("new.h5"), {"/system", "/plant/residual"}, path("old.h5"));
+  const Trace read = read_trace(path("old.h5"));
+  testing::expect_same_system(read.system, trace.system);
+  ASSERT_EQ(read.steps.size(), trace.steps.size());
+  for (std::size_t k = 0; k < read.steps.size(); ++k) {
+    testing::expect_same_step(read.steps[k], trace.steps[k]);
+  }
+}
+
+TEST_F(TraceFile, residuals_are_the_recorded_ones_whatever_the_model_says) {
+  Trace trace = testing::example_trace();
+  trace.steps[2].residual << 7.0, 8.0, 9.0;
+  write_trace(path(), trace);
+  const Trace read = read_trace(path());
+  EXPECT_EQ(EpisodeView(read).residuals().col(2), trace.steps[2].residual);
+}
+
+TEST_F(TraceFile, a_description_that_contradicts_the_scenario_or_itself_is_refused) {
+  const auto refusal_of = [this](models::SystemDescription system) {
+    Trace trace = testing::example_trace({.steps = 0});
+    trace.system = std::move(system);
+    trace.final_state.resize(0);
+    write_trace(path(), trace);
+    return refusal(path());
+  };
+  models::SystemDescription system = unlike_any_system();
+  EXPECT_EQ(refusal_of(system), "");
+  system.heading = 3;
+  EXPECT_THAT(refusal_of(system), HasSubstr("/system@heading"));
+  system = unlike_any_system();
+  system.input_upper.setZero(2);
+  EXPECT_THAT(refusal_of(system), HasSubstr("/system/inputs@upper"));
+  system = unlike_any_system();
+  system.position_x = -1;
+  system.states.pop_back();
+  EXPECT_THAT(refusal_of(system), HasSubstr("/system/states@names"));
+}
+
 TEST_F(TraceFile, an_episode_without_steps_and_one_without_a_mujoco_model_are_read_back) {
   Trace trace = testing::example_trace({.steps = 0});
   trace.motion.clear();
@@ -156,7 +218,7 @@ TEST_F(TraceFile, every_dataset_says_its_units_and_names_every_axis) {
   const Trace trace = testing::example_trace();
   write_trace(path(), trace);
   const Hdf5File file = Hdf5File::open(path());
-  for (const DatasetSpec& spec : trace_layout(trace.scenario)) {
+  for (const DatasetSpec& spec : trace_layout(trace.scenario, trace.system)) {
     EXPECT_TRUE(file.has_attribute(spec.path, "units")) << spec.path;
     EXPECT_TRUE(file.has_attribute(spec.path, "axes")) << spec.path;
     EXPECT_EQ(spec.axes.size(), file.shape(spec.path).size()) << spec.path;

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,29 @@ template <class Matrix>
 
 [[nodiscard]] inline bool same_bits(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+}
+
+inline void expect_same_coordinates(const std::vector<models::Coordinate>& a,
+                                    const std::vector<models::Coordinate>& b) {
+  ASSERT_EQ(a.size(), b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    EXPECT_EQ(a[i].name, b[i].name);
+    EXPECT_EQ(a[i].unit, b[i].unit);
+    EXPECT_EQ(a[i].is_angle, b[i].is_angle) << a[i].name;
+  }
+}
+
+inline void expect_same_system(const models::SystemDescription& a,
+                               const models::SystemDescription& b) {
+  EXPECT_EQ(a.name, b.name);
+  EXPECT_EQ(a.summary, b.summary);
+  expect_same_coordinates(a.states, b.states);
+  expect_same_coordinates(a.inputs, b.inputs);
+  EXPECT_TRUE(same_bits(a.input_lower, b.input_lower));
+  EXPECT_TRUE(same_bits(a.input_upper, b.input_upper));
+  EXPECT_EQ(a.position_x, b.position_x);
+  EXPECT_EQ(a.position_y, b.position_y);
+  EXPECT_EQ(a.heading, b.heading);
 }
 
 inline void expect_same_stages(const harness::StepRecord& a, const harness::StepRecord& b) {
@@ -60,6 +84,7 @@ inline void expect_same_step(const harness::StepRecord& a, const harness::StepRe
   EXPECT_TRUE(same_bits(a.observation, b.observation));
   EXPECT_TRUE(same_bits(a.input, b.input));
   EXPECT_TRUE(same_bits(a.disturbance, b.disturbance));
+  EXPECT_TRUE(same_bits(a.residual, b.residual));
   EXPECT_TRUE(same_bits(a.belief_mean, b.belief_mean));
   EXPECT_TRUE(same_bits(a.belief_covariance, b.belief_covariance));
   EXPECT_TRUE(same_bits(a.plan_inputs, b.plan_inputs));

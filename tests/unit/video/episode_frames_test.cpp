@@ -28,7 +28,8 @@ std::string row_of(const render::Frame& frame, const std::string& name) {
 
 TEST(episode_frames, vehicle_drives_from_state_to_state_and_eases_the_disturbance) {
   const Trace trace = straight_trace();
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   // In the middle of the first period: half a stride, not yet kicked.
   EXPECT_NEAR(frames.at(0.05).pose.x, 0.5 * kStride, 1e-12);
   EXPECT_NEAR(frames.at(0.05).pose.y, 0.0, 1e-12);
@@ -42,7 +43,8 @@ TEST(episode_frames, vehicle_drives_from_state_to_state_and_eases_the_disturbanc
 
 TEST(episode_frames, camera_follows_smoothly_without_lag) {
   const Trace trace = straight_trace();
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   // The states lie on a line, which the smoothing must reproduce, at its ends too.
   for (const double time : {0.0, 0.13, 0.37, 0.6}) {
     const render::Frame frame = frames.at(time);
@@ -55,7 +57,8 @@ TEST(episode_frames, camera_follows_smoothly_without_lag) {
 TEST(episode_frames, a_killed_episode_is_drawn_as_far_as_it_came) {
   Trace trace = straight_trace();
   trace.final_state.resize(0);
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   const Eigen::VectorXd& last = trace.steps.back().state;
   EXPECT_DOUBLE_EQ(frames.at(frames.duration()).pose.x, last[0]);
 }
@@ -65,7 +68,8 @@ TEST(episode_frames, qpos_comes_from_the_recorded_motion) {
   trace.motion = {{0.0, {0.0, 0.0}},   {0.05, {1.0, 10.0}},
                   {0.1, {2.0, 20.0}},  {0.1, {2.5, 20.0}},  // the same instant after the kick
                   {0.12, {2.7, 22.0}}, {0.15, {3.0, 25.0}}};
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   EXPECT_THAT(frames.at(0.025).qpos, ::testing::ElementsAre(0.5, 5.0));
   EXPECT_THAT(frames.at(0.1).qpos, ::testing::ElementsAre(2.0, 20.0));
   EXPECT_THAT(frames.at(0.125).qpos, ::testing::ElementsAre(::testing::DoubleNear(2.5, 1e-9),
@@ -75,7 +79,8 @@ TEST(episode_frames, qpos_comes_from_the_recorded_motion) {
 
 TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   const Trace trace = straight_trace();
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   const render::Frame frame = frames.at(0.2);  // the third period begins
   ASSERT_EQ(frame.charts.size(), 4U);
   ASSERT_EQ(frame.planned_path.size(), 3U);
@@ -97,7 +102,7 @@ TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
   obstacle.lower.head(2) << 1.0, 0.5;
   obstacle.upper.head(2) << 1.5, 0.8;
   trace.scenario.safe_set.obstacles.push_back(obstacle);
-  const render::World world = EpisodeFrames(trace).world();
+  const render::World world = EpisodeFrames(EpisodeView(trace)).world();
   EXPECT_EQ(world.bounds.x_upper, 3.0);
   EXPECT_EQ(world.bounds.y_lower, -1.0);
   ASSERT_EQ(world.obstacles.size(), 1U);
@@ -106,10 +111,12 @@ TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
 }
 
 TEST(episode_frames, trace_without_steps_still_has_a_frame) {
-  Trace trace;
-  trace.scenario = straight_scenario();
+  Trace trace = straight_trace();
+  trace.steps.clear();
+  trace.final_state.resize(0);
   trace.outcome = Outcome::kInterrupted;
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   EXPECT_EQ(frames.duration(), 0.0);
   EXPECT_EQ(frames.at(0.0).banner, "interrupted");
 }
@@ -120,8 +127,6 @@ Trace cloudy_trace() {
   trace.scenario.disturbance.covariance = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
   trace.scenario.controller.policy = "open_loop";
   trace.scenario.controller.quantisation.noise = 9;
-  trace.scenario.controller.cost = {Eigen::Matrix3d::Identity(), Eigen::MatrixXd::Identity(1, 1),
-                                    Eigen::Matrix3d::Identity()};
   for (StepRecord& step : trace.steps) {
     step.plan_inputs = Eigen::MatrixXd::Zero(1, 2);
     for (StageParticles& stage : step.particles) {
@@ -137,7 +142,7 @@ Trace cloudy_trace() {
 
 TEST(episode_frames, ellipses_and_tube_are_those_of_the_particles_moments) {
   const Trace trace = cloudy_trace();
-  const render::Frame frame = EpisodeFrames(trace).at(0.2);
+  const render::Frame frame = EpisodeFrames(EpisodeView(trace)).at(0.2);
   ASSERT_EQ(frame.ellipses.size(), 3U);
   const double radius = std::sqrt(-2.0 * std::log(0.05));  // of 95 % of the standard Gaussian
   const render::PlanarEllipse& most = frame.ellipses[1].most;
@@ -156,7 +161,8 @@ TEST(episode_frames, ellipses_and_tube_are_those_of_the_particles_moments) {
 
 TEST(episode_frames, ghost_drives_along_the_plan_of_the_period_before) {
   const Trace trace = straight_trace();
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   const auto ghost = frames.at(0.25).ghost;
   ASSERT_TRUE(ghost);
   EXPECT_NEAR(ghost->x, 2.5 * kStride, 1e-12);
@@ -165,7 +171,7 @@ TEST(episode_frames, ghost_drives_along_the_plan_of_the_period_before) {
 
 TEST(episode_frames, clearance_of_the_driven_path_is_the_distance_to_the_unsafe_set) {
   const Trace trace = straight_trace();
-  const render::Frame frame = EpisodeFrames(trace).at(0.05);
+  const render::Frame frame = EpisodeFrames(EpisodeView(trace)).at(0.05);
   ASSERT_EQ(frame.clearances.size(), frame.driven_path.size());
   EXPECT_NEAR(frame.clearances.front(), 1.0, 1e-12);  // from the origin to the walls at -1
 }
@@ -174,7 +180,7 @@ TEST(episode_frames, raw_points_are_the_stepped_ones_with_the_noise) {
   const Trace trace = cloudy_trace();
   Overlays overlays;
   overlays.raw = true;
-  const render::Frame frame = EpisodeFrames(trace, overlays).at(0.2);
+  const render::Frame frame = EpisodeFrames(EpisodeView(trace), overlays).at(0.2);
   ASSERT_GT(frame.raw_points.size(), 2U * 4U);
   EXPECT_EQ(row_of(frame, "raw points drawn"), "all");
   render::PlanarPoint mean;
@@ -182,7 +188,7 @@ TEST(episode_frames, raw_points_are_the_stepped_ones_with_the_noise) {
   // Both stages step 0.15 m ahead; noise and clouds are symmetric and as heavy on either side.
   EXPECT_NEAR(mean.x / static_cast<double>(frame.raw_points.size()), (3.0 + 4.0) / 2.0 * kStride,
               1e-9);
-  EXPECT_TRUE(EpisodeFrames(trace).at(0.2).raw_points.empty());
+  EXPECT_TRUE(EpisodeFrames(EpisodeView(trace)).at(0.2).raw_points.empty());
 }
 
 TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
@@ -192,7 +198,8 @@ TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
     stage.locations = controller::Points::Random(3, kMany);
     stage.weights = Eigen::VectorXd::Constant(kMany, 1.0 / kMany);
   }
-  const EpisodeFrames frames(trace);
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
   const render::Frame frame = frames.at(0.0);
   EXPECT_EQ(frame.particles[0].points.size(), 3500U);
   EXPECT_EQ(row_of(frame, "particles drawn"), "1 of 2");
@@ -201,7 +208,8 @@ TEST(episode_frames, too_many_particles_are_thinned_and_a_row_says_so) {
 
 TEST(episode_frames, overlays_can_be_switched_off) {
   const Trace trace = cloudy_trace();
-  const render::Frame frame = EpisodeFrames(trace, parse_overlays("none", "--overlays")).at(0.2);
+  const render::Frame frame =
+      EpisodeFrames(EpisodeView(trace), parse_overlays("none", "--overlays")).at(0.2);
   EXPECT_TRUE(frame.particles.empty() && frame.ellipses.empty() && frame.tube.empty());
   EXPECT_TRUE(frame.raw_points.empty() && frame.clearances.empty() && !frame.ghost);
   EXPECT_FALSE(frame.planned_path.empty());
@@ -210,12 +218,13 @@ TEST(episode_frames, overlays_can_be_switched_off) {
 TEST(episode_frames, planning_time_has_the_deadline_as_its_limit) {
   Trace trace = straight_trace();
   const auto limit_of = [](const render::Frame& frame) { return frame.charts.at(3).limit.value(); };
-  EXPECT_EQ(limit_of(EpisodeFrames(trace).at(0.2)).value, 1000.0 * kPeriod);
-  EXPECT_THAT(limit_of(EpisodeFrames(trace).at(0.2)).label, HasSubstr("period"));
+  EXPECT_EQ(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).value, 1000.0 * kPeriod);
+  EXPECT_THAT(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).label, HasSubstr("period"));
   trace.scenario.controller.deadline = 0.05;
-  EXPECT_EQ(limit_of(EpisodeFrames(trace).at(0.2)).value, 50.0);
-  EXPECT_THAT(limit_of(EpisodeFrames(trace).at(0.2)).label, HasSubstr("deadline"));
-  EXPECT_FALSE(EpisodeFrames(trace).at(0.2).charts.at(0).limit);  // a scenario has none
+  EXPECT_EQ(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).value, 50.0);
+  EXPECT_THAT(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).label, HasSubstr("deadline"));
+  EXPECT_FALSE(
+      EpisodeFrames(EpisodeView(trace)).at(0.2).charts.at(0).limit);  // a scenario has none
 }
 
 TEST(episode_frames, a_long_history_scrolls) {
@@ -225,7 +234,7 @@ TEST(episode_frames, a_long_history_scrolls) {
     trace.steps.push_back(step);
     trace.steps.back().time = kPeriod * k;
   }
-  const render::Frame frame = EpisodeFrames(trace).at(29.95);
+  const render::Frame frame = EpisodeFrames(EpisodeView(trace)).at(29.95);
   EXPECT_EQ(frame.charts[0].slots, 200U);  // 20 s
   EXPECT_EQ(frame.charts[0].values.size(), 200U);
 }

@@ -32,8 +32,9 @@ int red_pixels(const render::Image& image, int x_begin, int x_end) {
 
 TEST(episode_painter, two_threads_draw_the_same_pictures_whatever_came_before) {
   const Trace trace = straight_trace();
+  const EpisodeView view(trace);
   for (const char* camera : {"chase", "split"}) {
-    const EpisodePictures pictures(trace, seen_by(camera));
+    const EpisodePictures pictures(view, seen_by(camera));
     render::Image images[2];
     const auto draw = [&pictures](double before, render::Image& image) {
       EpisodePainter painter(pictures);
@@ -50,8 +51,9 @@ TEST(episode_painter, two_threads_draw_the_same_pictures_whatever_came_before) {
 }
 
 TEST(episode_painter, shows_two_episodes_side_by_side) {
-  const Trace left = straight_trace();
-  const EpisodePictures pictures(left, kSmall, &left);
+  const Trace trace = straight_trace();
+  const EpisodeView view(trace);
+  const EpisodePictures pictures(view, kSmall, &view);
   EpisodePainter painter(pictures);
   render::Image image;
   painter.draw(0.3, image);
@@ -64,7 +66,9 @@ TEST(episode_painter, the_shorter_episode_stands_on_its_last_frame) {
   Trace right = straight_trace();
   right.steps.resize(3);
   right.final_state = state_at(3);
-  const EpisodePictures pictures(left, kSmall, &right);
+  const EpisodeView shown(left);
+  const EpisodeView beside(right);
+  const EpisodePictures pictures(shown, kSmall, &beside);
   EXPECT_DOUBLE_EQ(pictures.duration(), 0.6);
   const std::vector<render::Frame> frames = pictures.at(0.5);
   ASSERT_EQ(frames.size(), 2U);
@@ -78,14 +82,16 @@ TEST(episode_painter, the_shorter_episode_stands_on_its_last_frame) {
 
 TEST(episode_painter, headings_name_scenario_plant_and_policy) {
   const Trace trace = straight_trace();
-  const EpisodePictures pictures(trace, kSmall, &trace);
+  const EpisodeView view(trace);
+  const EpisodePictures pictures(view, kSmall, &view);
   EXPECT_EQ(pictures.scenes().at(1).heading, "straight, analytic plant, closed loop");
-  EXPECT_EQ(EpisodePictures(trace, kSmall).scenes().at(0).heading, "");
+  EXPECT_EQ(EpisodePictures(view, kSmall).scenes().at(0).heading, "");
 }
 
 TEST(episode_painter, refuses_cameras_that_are_none) {
   const Trace trace = straight_trace();
-  const EpisodePictures pictures(trace, seen_by("front"));
+  const EpisodeView view(trace);
+  const EpisodePictures pictures(view, seen_by("front"));
   EXPECT_THROW(EpisodePainter{pictures}, std::invalid_argument);
 }
 

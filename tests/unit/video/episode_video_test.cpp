@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -21,7 +22,7 @@ constexpr EpisodeVideoOptions kSmallVideo{.width = 320, .height = 180, .fps = 10
 TEST(episode_video, lasts_as_long_as_the_episode_and_a_second_more) {
   const std::string path = render::fresh_folder() / "episode.mp4";
   int calls = 0;
-  write_episode_video(straight_trace(), kSmallVideo, path, [&](int done, int total) {
+  write_episode_video(EpisodeView(straight_trace()), kSmallVideo, path, [&](int done, int total) {
     EXPECT_EQ(done, ++calls);
     EXPECT_EQ(total, 16);
     return true;
@@ -37,7 +38,8 @@ TEST(episode_video, does_not_depend_on_the_number_of_threads) {
   EpisodeVideoOptions options = kSmallVideo;
   for (const int threads : {1, 3}) {
     options.threads = threads;
-    write_episode_video(straight_trace(), options, folder / (std::to_string(threads) + ".mp4"));
+    write_episode_video(EpisodeView(straight_trace()), options,
+                        folder / (std::to_string(threads) + ".mp4"));
   }
   const render::DecodedVideo one = render::decode_video(folder / "1.mp4");
   const render::DecodedVideo three = render::decode_video(folder / "3.mp4");
@@ -55,7 +57,7 @@ TEST(episode_video, speed_shortens_the_episode_and_not_the_second_of_its_outcome
   const std::string path = render::fresh_folder() / "episode.mp4";
   EpisodeVideoOptions options = kSmallVideo;
   options.speed = 2.0;
-  const VideoTimings timings = write_episode_video(straight_trace(), options, path);
+  const VideoTimings timings = write_episode_video(EpisodeView(straight_trace()), options, path);
   EXPECT_EQ(timings.frames, 13);  // 0.3 s and 1 s at 10 frames a second
   EXPECT_EQ(render::decode_video(path).frames, 13);
 }
@@ -65,10 +67,10 @@ TEST(episode_video, part_of_an_episode_has_the_length_of_the_part) {
   EpisodeVideoOptions options = kSmallVideo;
   options.from = 0.2;
   options.to = 0.5;
-  write_episode_video(straight_trace(), options, folder / "part.mp4");
+  write_episode_video(EpisodeView(straight_trace()), options, folder / "part.mp4");
   EXPECT_EQ(render::decode_video(folder / "part.mp4").frames, 3);  // no outcome is shown
   // It begins where the whole one is then.
-  write_episode_still(straight_trace(), options, 0.2, folder / "still.png");
+  write_episode_still(EpisodeView(straight_trace()), options, 0.2, folder / "still.png");
   const render::Image begin = render::decode_video(folder / "part.mp4").first;
   const render::Image still = render::decode_video(folder / "still.png").first;
   double difference = 0.0;
@@ -85,8 +87,9 @@ TEST(episode_video, speeds_and_times_that_are_none_are_refused_and_leave_no_file
     options.speed = speed;
     options.from = from;
     options.to = to;
-    EXPECT_THROW(write_episode_video(straight_trace(), options, folder / "episode.mp4"),
-                 std::invalid_argument)
+    EXPECT_THROW(
+        write_episode_video(EpisodeView(straight_trace()), options, folder / "episode.mp4"),
+        std::invalid_argument)
         << speed << " " << from << " " << to;
   };
   refused(0.05, 0.0, 1.0);
@@ -102,7 +105,7 @@ TEST(episode_video, every_format_shows_the_whole_episode) {
   const auto folder = render::fresh_folder();
   for (const std::string name : {"webm", "gif"}) {
     const std::string path = folder / ("episode." + name);
-    write_episode_video(straight_trace(), kSmallVideo, path);
+    write_episode_video(EpisodeView(straight_trace()), kSmallVideo, path);
     const render::DecodedVideo video = render::decode_video(path);
     EXPECT_EQ(video.frames, 16) << name;
     EXPECT_NEAR(video.duration, 1.6, 0.02) << name;
@@ -116,7 +119,7 @@ TEST(episode_video, timings_say_what_was_made_and_what_it_cost) {
     step.timing.simulate = 2.5;
   }
   const VideoTimings timings =
-      write_episode_video(trace, kSmallVideo, render::fresh_folder() / "episode.mp4");
+      write_episode_video(EpisodeView(trace), kSmallVideo, render::fresh_folder() / "episode.mp4");
   EXPECT_EQ(timings.frames, 16);
   EXPECT_EQ(timings.codec, "h264");
   EXPECT_EQ(timings.width, 320);
@@ -134,7 +137,7 @@ TEST(episode_video, timings_say_what_was_made_and_what_it_cost) {
 
 TEST(episode_video, stopping_early_keeps_what_is_done) {
   const std::string path = render::fresh_folder() / "episode.mp4";
-  write_episode_video(straight_trace(), kSmallVideo, path,
+  write_episode_video(EpisodeView(straight_trace()), kSmallVideo, path,
                       [](int done, int /*total*/) { return done < 5; });
   EXPECT_EQ(render::decode_video(path).frames, 5);
 }
@@ -143,7 +146,7 @@ TEST(episode_video, vehicle_that_cannot_be_loaded_ends_it_without_a_video) {
   const std::string path = render::fresh_folder() / "episode.mp4";
   Trace trace = straight_trace();
   trace.scenario.plant.mjcf = "/nonexistent/car.xml";
-  EXPECT_THROW(write_episode_video(trace, kSmallVideo, path), std::runtime_error);
+  EXPECT_THROW(write_episode_video(EpisodeView(trace), kSmallVideo, path), std::runtime_error);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
@@ -152,15 +155,16 @@ TEST(episode_video, what_cannot_be_drawn_is_said_instead) {
   const auto message_of = [&path](const Scenario& scenario) -> std::string {
     Trace trace;
     trace.scenario = scenario;
+    trace = testing::described(std::move(trace));
     try {
-      write_episode_video(trace, kSmallVideo, path);
+      write_episode_video(EpisodeView(trace), kSmallVideo, path);
     } catch (const std::runtime_error& error) {
       return error.what();
     }
     return "nothing was refused";
   };
+  EXPECT_EQ(why_not_drawn(EpisodeView(straight_trace())), "");
   Scenario scenario = straight_scenario();
-  EXPECT_EQ(why_not_drawn(scenario), "");
   scenario.plant.mjcf = "";
   EXPECT_THAT(message_of(scenario), HasSubstr("names no vehicle"));
   scenario.model = {"double_integrator", {}};
@@ -172,13 +176,13 @@ TEST(episode_video, motion_of_another_vehicle_is_refused) {
   const std::string path = render::fresh_folder() / "episode.mp4";
   Trace trace = straight_trace();
   trace.motion = {{0.0, {1.0, 2.0}}, {0.6, {1.0, 2.0}}};
-  EXPECT_THROW(write_episode_video(trace, kSmallVideo, path), std::invalid_argument);
+  EXPECT_THROW(write_episode_video(EpisodeView(trace), kSmallVideo, path), std::invalid_argument);
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
 TEST(episode_video, still_is_a_picture_of_the_size_asked_for) {
   const std::string path = render::fresh_folder() / "still.png";
-  write_episode_still(straight_trace(), kSmallVideo, 0.3, path);
+  write_episode_still(EpisodeView(straight_trace()), kSmallVideo, 0.3, path);
   const render::DecodedVideo still = render::decode_video(path);
   EXPECT_EQ(still.width, 320);
   EXPECT_EQ(still.height, 180);

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 
-#include "harness/trace/trace.hpp"
+#include "harness/trace/episode_view.hpp"
+#include "tests/support/described_trace.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc::harness {
@@ -30,6 +32,8 @@ inline Scenario straight_scenario() {
   scenario.target = {Eigen::Vector3d(2.0, 1.0, 0.0), 0.3};
   scenario.controller.input_lower = Eigen::VectorXd::Constant(1, -2.0);
   scenario.controller.input_upper = Eigen::VectorXd::Constant(1, 2.0);
+  scenario.controller.cost = {Eigen::Matrix3d::Identity(), Eigen::MatrixXd::Identity(1, 1),
+                              Eigen::Matrix3d::Identity()};
   return scenario;
 }
 
@@ -56,7 +60,7 @@ inline Trace straight_trace() {
   }
   trace.final_state = state_at(kSteps);
   trace.outcome = Outcome::kReached;
-  return trace;
+  return testing::described(std::move(trace));
 }
 
 }  // namespace qsmpc::harness

@@ -1,0 +1,20 @@
+// A made-up trace gets what the reader and the episodes give to real ones.
+#pragma once
+
+#include <utility>
+
+#include "harness/assembly/assembly.hpp"
+#include "harness/trace/residuals.hpp"
+#include "harness/trace/trace.hpp"
+
+namespace qsmpc::testing {
+
+/// `trace` with the description of its scenario's system and the residuals of its periods.
+[[nodiscard]] inline harness::Trace described(harness::Trace trace) {
+  const auto model = harness::model_of(trace.scenario);
+  trace.system = model->description();
+  harness::add_residuals(trace, *model);
+  return trace;
+}
+
+}  // namespace qsmpc::testing
