@@ -36,6 +36,11 @@ LqrWeights curvature_of(const QuadraticCost& cost) {
   return {.state = cost.state, .input = 2.0 * cost.input, .terminal = 2.0 * cost.terminal};
 }
 
+template <class Inputs>
+void clamp(const InputBounds& bounds, Inputs&& inputs) {
+  inputs = inputs.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+}
+
 /// u = sat(u_0 + K (y − r)).
 class TargetRegulator final : public Controller {
  public:
@@ -48,10 +53,11 @@ class TargetRegulator final : public Controller {
 
   const Decision& decide(const Situation& situation) override {
     check_situation(situation, gain_.cols());
-    const Eigen::VectorXd offset =
-        target_offset(problem_.cost.target, problem_.cost.angles, situation.observation);
-    decision_.input =
-        (rest_ + gain_ * offset).cwiseMax(problem_.bounds.lower).cwiseMin(problem_.bounds.upper);
+    nearest_target(problem_.cost.target, problem_.cost.angles, situation.observation, nearest_);
+    offset_ = situation.observation - nearest_;
+    decision_.input = rest_;
+    decision_.input.noalias() += gain_ * offset_;
+    clamp(problem_.bounds, decision_.input);
     return decision_;
   }
 
@@ -75,6 +81,8 @@ class TargetRegulator final : public Controller {
   PlannerSettings problem_;
   Eigen::VectorXd rest_;
   Eigen::MatrixXd gain_;
+  Eigen::VectorXd nearest_;  // what means the target, nearest to what is observed
+  Eigen::VectorXd offset_;
   Decision decision_;
 };
 
@@ -99,7 +107,26 @@ class PathRegulator final : public Controller {
   }
 
  private:
-  [[nodiscard]] CostParts cost_of(const Policy& path) const;
+  [[nodiscard]] CostParts cost_of(const Policy& path);
+  /// Scratch of the sweeps, so that no period but the first allocates.
+  struct Sweep {
+    Eigen::MatrixXd a;
+    Eigen::MatrixXd b;
+    Eigen::MatrixXd value;  // of the cost to go: its Hessian …
+    Eigen::VectorXd slope;  // … and its slope on the path
+    Eigen::MatrixXd value_b;
+    Eigen::MatrixXd curvature;  // by the input
+    Eigen::LDLT<Eigen::MatrixXd> ldlt;
+    Eigen::VectorXd by_input;
+    Eigen::VectorXd step;
+    Eigen::VectorXd away;
+    Eigen::VectorXd next_slope;
+    Eigen::MatrixXd cross;
+    Eigen::MatrixXd closed;
+    Eigen::MatrixXd product;
+    Eigen::MatrixXd weighted;
+  };
+
   void linearise();
   [[nodiscard]] bool improve(int& evaluations);
 
@@ -113,20 +140,24 @@ class PathRegulator final : public Controller {
   Policy trial_;
   Eigen::MatrixXd steps_;  // input_dim x horizon: what a sweep adds to the inputs
   LqrScratch scratch_;
+  Sweep sweep_;
   Decision decision_;
 };
 
-CostParts PathRegulator::cost_of(const Policy& path) const {
+CostParts PathRegulator::cost_of(const Policy& path) {
   double state = 0.0;
   double input = 0.0;
   double terminal = 0.0;
   for (Eigen::Index k = 0; k <= path.horizon(); ++k) {
-    const Eigen::VectorXd away = path.states.col(k) - target_;
+    sweep_.away = path.states.col(k) - target_;
     if (k == path.horizon()) {
-      terminal = away.dot(problem_.cost.terminal * away);
+      sweep_.next_slope.noalias() = problem_.cost.terminal * sweep_.away;
+      terminal = sweep_.away.dot(sweep_.next_slope);
     } else {
-      state += 0.5 * away.dot(problem_.cost.state * away);
-      input += path.inputs.col(k).dot(problem_.cost.input * path.inputs.col(k));
+      sweep_.next_slope.noalias() = problem_.cost.state * sweep_.away;
+      state += 0.5 * sweep_.away.dot(sweep_.next_slope);
+      sweep_.by_input.noalias() = problem_.cost.input * path.inputs.col(k);
+      input += path.inputs.col(k).dot(sweep_.by_input);
     }
   }
   return {{"state", state}, {"input", input}, {"terminal", terminal}};
@@ -136,47 +167,64 @@ CostParts PathRegulator::cost_of(const Policy& path) const {
 void PathRegulator::linearise() {
   const Eigen::Index dim = policy_.states.rows();
   const Eigen::Index inputs = policy_.inputs.rows();
-  Eigen::MatrixXd a(dim, dim);
-  Eigen::MatrixXd b(dim, inputs);
-  Eigen::MatrixXd value = weights_.terminal;
-  Eigen::VectorXd slope = weights_.terminal * (policy_.states.rightCols<1>() - target_);
+  Sweep& s = sweep_;
+  s.a.resize(dim, dim);
+  s.b.resize(dim, inputs);
+  s.value = weights_.terminal;
+  s.away = policy_.states.rightCols<1>() - target_;
+  s.slope.noalias() = weights_.terminal * s.away;
   policy_.gains.resize(static_cast<std::size_t>(policy_.horizon()));
   steps_.resize(inputs, policy_.horizon());
   for (Eigen::Index k = policy_.horizon() - 1; k >= 0; --k) {
-    dynamics_.jacobians(policy_.states.col(k), policy_.inputs.col(k), a, b);
-    const Eigen::MatrixXd curvature = weights_.input + b.transpose() * value * b;
-    const Eigen::LDLT<Eigen::MatrixXd> solver(curvature);
-    const Eigen::VectorXd by_input = weights_.input * policy_.inputs.col(k) + b.transpose() * slope;
+    dynamics_.jacobians(policy_.states.col(k), policy_.inputs.col(k), s.a, s.b);
+    s.value_b.noalias() = s.value * s.b;
+    s.curvature = weights_.input;
+    s.curvature.noalias() += s.b.transpose() * s.value_b;
+    s.ldlt.compute(s.curvature);
+    s.by_input.noalias() = weights_.input * policy_.inputs.col(k);
+    s.by_input.noalias() += s.b.transpose() * s.slope;
     Eigen::MatrixXd& gain = policy_.gains[static_cast<std::size_t>(k)];
-    gain = -solver.solve(b.transpose() * value * a);
-    steps_.col(k) = -solver.solve(by_input);
-    const Eigen::MatrixXd closed = a + b * gain;
-    slope = weights_.state * (policy_.states.col(k) - target_) + a.transpose() * slope +
-            gain.transpose() * by_input +
-            (a.transpose() * value * b + gain.transpose() * curvature) * steps_.col(k);
-    value = (weights_.state + closed.transpose() * value * closed +
-             gain.transpose() * weights_.input * gain)
-                .eval();
+    gain.noalias() = s.value_b.transpose() * s.a;
+    s.ldlt.solveInPlace(gain);
+    gain *= -1.0;
+    s.step = s.by_input;
+    s.ldlt.solveInPlace(s.step);
+    steps_.col(k) = -s.step;
+    s.away = policy_.states.col(k) - target_;
+    s.next_slope.noalias() = weights_.state * s.away;
+    s.next_slope.noalias() += s.a.transpose() * s.slope;
+    s.next_slope.noalias() += gain.transpose() * s.by_input;
+    s.cross.noalias() = s.a.transpose() * s.value_b;
+    s.cross.noalias() += gain.transpose() * s.curvature;
+    s.next_slope.noalias() += s.cross * steps_.col(k);
+    s.slope.swap(s.next_slope);
+    s.closed = s.a;
+    s.closed.noalias() += s.b * gain;
+    s.product.noalias() = s.value * s.closed;
+    s.value = weights_.state;
+    s.value.noalias() += s.closed.transpose() * s.product;
+    s.weighted.noalias() = weights_.input * gain;
+    s.value.noalias() += gain.transpose() * s.weighted;
   }
 }
 
 /// Takes the longest of the halved steps that pays. Returns whether there is one.
 bool PathRegulator::improve(int& evaluations) {
+  using View = Eigen::Map<const models::StateBatch>;
+  const Eigen::Index dim = policy_.states.rows();
   double share = 1.0;
   for (int n = 0; n <= kHalvings; ++n, share *= 0.5) {
     trial_.inputs.resizeLike(policy_.inputs);
     trial_.states.resizeLike(policy_.states);
     trial_.states.col(0) = policy_.states.col(0);
     for (Eigen::Index k = 0; k < policy_.horizon(); ++k) {
-      trial_.inputs.col(k) = (policy_.inputs.col(k) + share * steps_.col(k) +
-                              policy_.gains[static_cast<std::size_t>(k)] *
-                                  (trial_.states.col(k) - policy_.states.col(k)))
-                                 .cwiseMax(problem_.bounds.lower)
-                                 .cwiseMin(problem_.bounds.upper);
-      models::StateBatch next(trial_.states.rows(), 1);
-      dynamics_.step(models::StateBatch(trial_.states.col(k)),
-                     models::StateBatch(trial_.inputs.col(k)), next);
-      trial_.states.col(k + 1) = next.col(0);
+      auto input = trial_.inputs.col(k);
+      sweep_.away = trial_.states.col(k) - policy_.states.col(k);
+      input = policy_.inputs.col(k) + share * steps_.col(k);
+      input.noalias() += policy_.gains[static_cast<std::size_t>(k)] * sweep_.away;
+      clamp(problem_.bounds, input);
+      dynamics_.step(View(trial_.states.col(k).data(), dim, 1), View(input.data(), input.rows(), 1),
+                     Eigen::Map<models::StateBatch>(trial_.states.col(k + 1).data(), dim, 1));
     }
     ++evaluations;
     const CostParts cost = cost_of(trial_);
@@ -226,7 +274,7 @@ const Decision& PathRegulator::decide(const Situation& situation) {
   for (Eigen::MatrixXd& gain : policy_.gains) {
     if (!gain.allFinite()) gain.setZero();
   }
-  decision_.input = policy_input(policy_, 0, situation.observation);
+  policy_input(policy_, 0, situation.observation, sweep_.away, decision_.input);
   decision_.policy = &policy_;
   decision_.cost = cost_;
   decision_.status = status;

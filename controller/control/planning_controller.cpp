@@ -5,7 +5,7 @@ namespace qsmpc::controller {
 const Decision& PlanningController::decide(const Situation& situation) {
   check_situation(situation, planner_.dynamics().state_dim());
   const Plan& plan = planner_.plan(situation.belief, situation.deadline);
-  decision_.input = policy_input(plan.policy, 0, situation.observation);
+  policy_input(plan.policy, 0, situation.observation, offset_, decision_.input);
   decision_.policy = &plan.policy;
   decision_.particles.emplace(PlannedParticles{.belief = plan.belief,
                                                .prediction = plan.prediction,

@@ -26,6 +26,7 @@ class PlanningController final : public Controller {
 
  private:
   Planner planner_;
+  Eigen::VectorXd offset_;  // of what is observed from the nominal state
   Decision decision_;
 };
 

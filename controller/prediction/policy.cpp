@@ -4,9 +4,19 @@ namespace qsmpc::controller {
 
 Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
                              const Eigen::Ref<const Eigen::VectorXd>& state) {
-  const Eigen::VectorXd wanted =
-      policy.inputs.col(stage) + policy.gains[stage] * (state - policy.states.col(stage));
-  return wanted.cwiseMax(policy.bounds.lower).cwiseMin(policy.bounds.upper);
+  Eigen::VectorXd offset;
+  Eigen::VectorXd input;
+  policy_input(policy, stage, state, offset, input);
+  return input;
+}
+
+void policy_input(const Policy& policy, Eigen::Index stage,
+                  const Eigen::Ref<const Eigen::VectorXd>& state, Eigen::VectorXd& offset,
+                  Eigen::VectorXd& input) {
+  offset = state - policy.states.col(stage);
+  input = policy.inputs.col(stage);
+  input.noalias() += policy.gains[stage] * offset;
+  input = input.cwiseMax(policy.bounds.lower).cwiseMin(policy.bounds.upper);
 }
 
 void policy_inputs(const Policy& policy, Eigen::Index stage,

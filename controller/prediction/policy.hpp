@@ -32,6 +32,11 @@ struct Policy {
 [[nodiscard]] Eigen::VectorXd policy_input(const Policy& policy, Eigen::Index stage,
                                            const Eigen::Ref<const Eigen::VectorXd>& state);
 
+/// The same into `input`, with scratch of the caller's; allocates only in the first call.
+void policy_input(const Policy& policy, Eigen::Index stage,
+                  const Eigen::Ref<const Eigen::VectorXd>& state, Eigen::VectorXd& offset,
+                  Eigen::VectorXd& input);
+
 /// The same for every column of `states` (state_dim x n), written to `out` (input_dim x n).
 void policy_inputs(const Policy& policy, Eigen::Index stage,
                    const models::Dynamics::BatchView& states, models::Dynamics::BatchOut out);

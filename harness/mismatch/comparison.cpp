@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "controller/certification/error_budget.hpp"
-#include "controller/planning/planner.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/assembly/first_decision.hpp"
 #include "harness/errors.hpp"
 #include "harness/mismatch/measured_error.hpp"
 #include "harness/plant/plant_registry.hpp"
@@ -123,13 +123,12 @@ class Comparing {
     }
   }
 
-  /// Plans once from the initial belief, certifies the plan, and simulates the model under it.
+  /// Decides once at the initial belief, certifies the plan, and simulates the model under it.
   void make_plan() {
-    controller::Planner planner(*model_, planner_settings(scenario_));
-    const controller::Plan& plan = planner.plan(belief_);
-    result_.policy = plan.policy;
-    result_.particles = plan.prediction.stages;
-    const controller::PredictedMotion motion = controller::motion_of(planner, belief_, plan);
+    const FirstDecision first(scenario_, *model_);
+    const controller::PredictedMotion& motion = first.motion();
+    result_.policy = motion.policy;
+    result_.particles = motion.prediction.stages;
     result_.certificates = certificates_of(motion);
     if (scenario_.model_error) {
       result_.with_error = certificates_of(of_plant(motion, scenario_, 0));
@@ -191,7 +190,7 @@ class Comparing {
         planned.units.push_back(std::move(path));
       }
       // The plan's last period counts among the later ones.
-      const Eigen::Index horizon = scenario_.controller.horizon;
+      const Eigen::Index horizon = result_.policy.horizon();
       const Eigen::Index first = horizon - 1;
       result_.measured_error =
           measured_model_error({residuals_of(plant.episodes),

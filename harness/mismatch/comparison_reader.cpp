@@ -95,7 +95,7 @@ void ComparisonReader::read_header() {
       {.file = path, .folder = path.substr(0, path.rfind('/') + 1), .files_must_exist = false});
   comparison_.system = model_of(comparison_.scenario)->description();
   state_dim_ = comparison_.system.states.size();
-  horizon_ = static_cast<std::size_t>(comparison_.scenario.controller.horizon);
+  horizon_ = static_cast<std::size_t>(certified_stages(decision_parts(comparison_.scenario)));
   const std::vector<std::string> names = file_.texts("/plants", "names");
   groups_ = file_.texts("/plants", "groups");
   for (const std::string& name : names) comparison_.plants.push_back({.name = name});

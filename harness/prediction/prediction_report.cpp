@@ -1,36 +1,26 @@
 #include "harness/prediction/prediction_report.hpp"
 
+#include <limits>
 #include <memory>
 
 #include "controller/planning/planner.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/assembly/first_decision.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/version.hpp"
 
 namespace qsmpc::harness {
 
-PredictionReport predict_scenario(const Scenario& scenario, const PredictionOptions& options) {
-  const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
-  controller::Planner planner(*model, planner_settings(scenario));
-  const controller::Gaussian belief{.mean = scenario.initial_state.mean,
-                                    .covariance = scenario.initial_state.covariance};
-  const controller::Plan& plan =
-      options.inputs ? planner.prescribe(belief, *options.inputs) : planner.plan(belief);
+namespace {
 
-  PredictionReport report;
-  report.scenario = scenario;
-  report.system = model->description();
-  report.scenario_text = to_yaml(scenario);
-  report.version = kVersion;
-  report.inputs_given = options.inputs.has_value();
-  if (!report.inputs_given) report.solver_status = controller::solver_status_name(plan.status);
-  report.policy = plan.policy;
-  report.cost = plan.cost;
-  report.prediction = plan.prediction;
-  const controller::PredictedMotion motion =
-      of_plant(controller::motion_of(planner, belief, plan), scenario, 0);
+/// Certifies the motion, and simulates it where that is wanted.
+void judge(const controller::PredictedMotion& motion, const PredictionOptions& options,
+           PredictionReport& report) {
+  const Scenario& scenario = report.scenario;
+  report.policy = motion.policy;
+  report.prediction = motion.prediction;
   report.budgets = controller::error_budget(motion);
-  // All four bounds are reported, so each is to be as good as it gets.
+  // All bounds are reported, so each is to be as good as it gets.
   report.certificates = controller::certify(motion, scenario.safe_set, report.budgets,
                                             controller::CertificateEffort::kEvery);
   report.horizon_bound = controller::horizon_bound(report.certificates);
@@ -40,6 +30,33 @@ PredictionReport predict_scenario(const Scenario& scenario, const PredictionOpti
     report.monte_carlo = simulate_unsafe_counts(motion, scenario.safe_set, simulation);
     report.interrupted = !report.monte_carlo;
   }
+}
+
+}  // namespace
+
+PredictionReport predict_scenario(const Scenario& scenario, const PredictionOptions& options) {
+  const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
+  PredictionReport report;
+  report.scenario = scenario;
+  report.system = model->description();
+  report.scenario_text = to_yaml(scenario);
+  report.version = kVersion;
+  report.inputs_given = options.inputs.has_value();
+  if (report.inputs_given) {
+    controller::Planner planner(*model, planner_settings(scenario));
+    const controller::Gaussian belief{.mean = scenario.initial_state.mean,
+                                      .covariance = scenario.initial_state.covariance};
+    const controller::Plan& plan = planner.prescribe(belief, *options.inputs);
+    report.cost = plan.cost;
+    judge(of_plant(controller::motion_of(planner, belief, plan), scenario, 0), options, report);
+    return report;
+  }
+  const FirstDecision first(scenario, *model);
+  const controller::Decision& decision = first.decision();
+  report.cost =
+      decision.cost.value_or(controller::CostParts::all(std::numeric_limits<double>::quiet_NaN()));
+  if (decision.status) report.solver_status = controller::solver_status_name(*decision.status);
+  judge(of_plant(first.motion(), scenario, 0), options, report);
   return report;
 }
 

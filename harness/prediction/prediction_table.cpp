@@ -92,11 +92,15 @@ std::string total_row(const PredictionReport& report, std::size_t states) {
 
 std::string prediction_table(const PredictionReport& report) {
   const std::vector<int> states = shown_states(report.system);
-  std::string text = fmt::format(
-      "{}: {} stages of {:.3g} s, inputs {}, expected cost {:.5g}\n",
-      printable(report.scenario.name), report.certificates.size(), report.scenario.time_step,
-      report.inputs_given ? "given" : "planned (" + report.solver_status + ")",
-      report.cost.total());
+  std::string origin = report.inputs_given ? "given" : "planned";
+  if (!report.solver_status.empty()) origin += " (" + report.solver_status + ")";
+  std::string text =
+      fmt::format("{}: {} stages of {:.3g} s, inputs {}", printable(report.scenario.name),
+                  report.certificates.size(), report.scenario.time_step, origin);
+  if (std::isfinite(report.cost.total())) {
+    text += fmt::format(", expected cost {:.5g}", report.cost.total());
+  }
+  text += "\n";
   text += head(report, report.system, states);
   for (std::size_t stage = 1; stage < report.prediction.stages.size(); ++stage) {
     text += stage_row(report, stage, states);

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/assembly/assembly.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_verdict.hpp"
@@ -22,10 +23,10 @@ std::string kicker(const Comparison& comparison) {
   const Scenario& scenario = comparison.scenario;
   return fmt::format(
       "<p class=\"kicker\">{} plants beside the model {} · {} episodes and {} paths of each · "
-      "horizon {} · seed {}</p>\n",
+      "{} · seed {}</p>\n",
       comparison.plants.size(), escape_html(scenario.model.system),
-      comparison.plants.front().closed_loop.episodes, comparison.paths, scenario.controller.horizon,
-      scenario.seed);
+      comparison.plants.front().closed_loop.episodes, comparison.paths,
+      escape_html(controller_words(scenario)), scenario.seed);
 }
 
 std::string plus_minus(double value, double deviation) {

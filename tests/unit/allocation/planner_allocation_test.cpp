@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "controller/planning/planner.hpp"
+#include "tests/unit/allocation/allocation_problem.hpp"
 #include "tests/unit/allocation/allocations.hpp"
 
 namespace qsmpc::controller {
@@ -29,66 +30,6 @@ TEST(AllocationCount, sees_every_kind_of_allocation) {
   numbers.resize(5);
   vector.setZero();
   EXPECT_EQ(allocations.count(), 3U);
-}
-
-struct Case {
-  std::string system;
-  bool closed_loop = false;
-  bool optimise_gain = false;
-  std::string propagator = "mixture";
-  bool obstacles = true;
-  int points = 100;
-};
-
-std::string name_of(const Case& options) {
-  return options.system + (options.closed_loop ? "_closed" : "_open") +
-         (options.optimise_gain ? "_gain_" : "_") + options.propagator +
-         (options.obstacles ? "_obstacles_" : "_free_") + std::to_string(options.points);
-}
-
-PlannerSettings settings_of(const Case& options, const models::Dynamics& dynamics) {
-  const Eigen::Index dim = dynamics.state_dim();
-  const bool car = options.system == "dubins";
-  PlannerSettings settings;
-  settings.horizon = 6;
-  settings.closed_loop = options.closed_loop;
-  settings.optimise_gain = options.optimise_gain;
-  settings.propagator = options.propagator;
-  settings.state_points = options.points;
-  settings.noise_points = 50;
-  settings.compressed_points = options.points;
-  settings.noise_covariance = 1e-3 * Eigen::MatrixXd::Identity(dim, dim);
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(dim);
-  weights.head<2>().setConstant(4.0);
-  settings.cost = {
-      .state = weights.asDiagonal(),
-      .input = 0.1 * Eigen::MatrixXd::Identity(dynamics.input_dim(), dynamics.input_dim()),
-      .terminal = weights.asDiagonal(),
-      .target = Eigen::VectorXd::Zero(dim),
-      .angles = {dynamics.description().heading}};
-  settings.cost.target.head<2>() << (car ? 5.0 : 40.0), 3.0;
-  settings.safe_set = unbounded_safe_set(dim);
-  settings.safe_set.bounds.lower.head<2>().setConstant(-1.0);
-  settings.safe_set.bounds.upper.head<2>().setConstant(50.0);
-  if (options.obstacles) {
-    Box block{.lower = Eigen::VectorXd::Constant(dim, -1e9),
-              .upper = Eigen::VectorXd::Constant(dim, 1e9)};
-    block.lower.head<2>() << (car ? 0.8 : 8.0), -0.5;
-    block.upper.head<2>() << (car ? 1.2 : 10.0), 0.6;
-    settings.safe_set.obstacles.push_back(block);
-  }
-  settings.bounds = {.lower = dynamics.description().input_lower,
-                     .upper = dynamics.description().input_upper};
-  return settings;
-}
-
-Gaussian belief_of(const models::Dynamics& dynamics) {
-  const Eigen::Index dim = dynamics.state_dim();
-  Gaussian belief{.mean = Eigen::VectorXd::Zero(dim),
-                  .covariance = 0.005 * Eigen::MatrixXd::Identity(dim, dim)};
-  const int speed = dynamics.description().state_index("longitudinal_speed");
-  if (speed >= 0) belief.mean[speed] = 10.0;
-  return belief;
 }
 
 class PlannerAllocations : public ::testing::TestWithParam<Case> {};

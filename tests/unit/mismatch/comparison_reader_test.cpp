@@ -6,6 +6,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "controller/control/controller.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/mismatch/comparison_file.hpp"
@@ -45,6 +47,31 @@ class ReadComparison : public ::testing::Test {
   std::string folder_;
   Comparison written_;
 };
+
+// A controller without a plan is compared for the next step alone.
+TEST_F(ReadComparison, takes_what_any_controller_decides) {
+  for (const controller::ControllerEntry& entry : controller::controllers()) {
+    for (const char* about : {"path", "target"}) {
+      std::vector<std::string> overrides = {"controller.kind=" + entry.name};
+      if (entry.name == "lqr") {
+        overrides.push_back(std::string("controller.lqr={about: ") + about + "}");
+      }
+      SCOPED_TRACE(entry.name + ", " + about);
+      ComparisonOptions options;
+      options.plants = {"analytic"};
+      options.episodes = 2;
+      options.paths = 40;
+      const Comparison written = *compare_plants(short_scenario(overrides), options);
+      write_comparison(written, {}, folder_);
+      const Comparison read = read_comparison(folder_);
+      const int stages = certified_stages(decision_parts(read.scenario));
+      ASSERT_EQ(std::ssize(read.plants[0].horizon), stages);
+      ASSERT_EQ(std::ssize(read.in_force()), stages);
+      EXPECT_EQ(read.in_force().back().value, written.in_force().back().value);
+      EXPECT_EQ(read.plants[0].horizon.back().w2, written.plants[0].horizon.back().w2);
+    }
+  }
+}
 
 TEST_F(ReadComparison, gives_back_what_was_written) {
   const Comparison read = read_comparison(folder_);

@@ -10,6 +10,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "controller/control/controller.hpp"
+#include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/prediction/prediction_file.hpp"
 #include "harness/prediction/prediction_json.hpp"
@@ -54,6 +56,29 @@ TEST(PredictionJson, keys_are_the_documented_ones) {
   EXPECT_THAT(keys_of(stage["certificate"]["all"]), ElementsAre("c1", "c2", "c3", "c4"));
   EXPECT_THAT(keys_of(stage["monte_carlo"]), ElementsAre("rate", "lower", "upper", "samples"));
   EXPECT_THAT(keys_of(json["horizon"]), ElementsAre("value", "monte_carlo"));
+}
+
+TEST(PredictionJson, takes_what_any_controller_decides) {
+  for (const controller::ControllerEntry& entry : controller::controllers()) {
+    for (const char* about : {"path", "target"}) {
+      std::vector<std::string> overrides = {"controller.kind=" + entry.name};
+      if (entry.name == "lqr") {
+        overrides.push_back(std::string("controller.lqr={about: ") + about + "}");
+      }
+      SCOPED_TRACE(entry.name + ", " + about);
+      const Scenario scenario = small_scenario(overrides);
+      const controller::DecisionParts parts = decision_parts(scenario);
+      const PredictionReport report =
+          predict_scenario(scenario, {.monte_carlo = {.samples = 20000}});
+      const auto json = nlohmann::ordered_json::parse(prediction_json(report));
+      EXPECT_EQ(json["stages"].size(), static_cast<std::size_t>(certified_stages(parts)));
+      EXPECT_EQ(json["cost"].is_null(), !parts.cost);
+      EXPECT_EQ(report.solver_status.empty(), !parts.status);
+      EXPECT_EQ(prediction_table(report).find("expected cost") == std::string::npos, !parts.cost);
+      // The certificates are those of this controller's policy.
+      EXPECT_TRUE(contradicted_stages(report).empty());
+    }
+  }
 }
 
 TEST(PredictionJson, holds_the_reports_numbers_bit_for_bit) {

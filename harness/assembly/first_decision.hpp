@@ -1,0 +1,34 @@
+// What a scenario's controller decides before anything is observed, for those who look at a plan
+// and not at a drive.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "controller/control/controller.hpp"
+#include "controller/control/decision_motion.hpp"
+#include "harness/scenario/scenario.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::harness {
+
+/// The decision at the initial belief, its mean standing for the observation, and what follows from
+/// it without further decisions: the policy's stages, or the one stage of an input that is held.
+class FirstDecision {
+ public:
+  /// Refers to the dynamics. Throws std::invalid_argument as the controller's maker.
+  FirstDecision(const Scenario& scenario, const models::Dynamics& dynamics);
+
+  [[nodiscard]] const controller::Decision& decision() const { return *decision_; }
+  /// Refers to this object.
+  [[nodiscard]] const controller::PredictedMotion& motion() const { return *motion_; }
+
+ private:
+  controller::Gaussian belief_;
+  controller::DecisionMotion motions_;
+  std::unique_ptr<controller::Controller> controller_;
+  const controller::Decision* decision_ = nullptr;  // the controller's own
+  std::optional<controller::PredictedMotion> motion_;
+};
+
+}  // namespace qsmpc::harness
