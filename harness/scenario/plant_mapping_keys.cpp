@@ -166,7 +166,7 @@ std::vector<KeyDescription> plant_mapping_keys() {
                                  .family = NameFamily::kStates,
                                  .values = {quantity()},
                                  .words = "a [quantity](#quantities) for each state of the system",
-                                 .fallback_words = "required"}}}}}};
+                                 .required = true}}}}}};
   for (KeyDescription& key : actuation_keys()) keys.push_back(std::move(key));
   for (KeyDescription& key : timing_keys()) keys.push_back(std::move(key));
   return keys;

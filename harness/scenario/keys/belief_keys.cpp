@@ -1,6 +1,5 @@
 // The keys of what is uncertain: the initial state, the noise, and what the planner makes of it.
 #include "controller/estimation/estimator.hpp"
-#include "harness/scenario/keys/map_checks.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
 

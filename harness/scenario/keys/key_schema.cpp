@@ -101,19 +101,19 @@ Json default_json(const KeyDescription& key) {
   return is_plain ? Json::parse(key.fallback) : Json(key.fallback);
 }
 
-/// Markdown without its links and escapes, which lead nowhere in an editor.
-std::string without_links(const std::string& markdown) {
+/// Markdown without its links, escapes and emphasis, which editors do not show.
+std::string plain_words(const std::string& markdown) {
   static const std::regex link(R"(\[([^\]]+)\]\([^)]+\))");
   std::string text = std::regex_replace(markdown, link, "$1");
-  std::erase(text, '\\');
+  std::erase_if(text, [](char c) { return c == '\\' || c == '*'; });
   return text;
 }
 
 std::string hover_text(const KeyDescription& key) {
-  std::string text = without_links(filled_words(key));
+  std::string text = plain_words(filled_words(key));
   if (!key.unit.empty()) text += " [" + key.unit + "]";
   const std::string fallback = key.fallback_words.empty() ? key.fallback : key.fallback_words;
-  if (!text.empty() && !fallback.empty()) text += "; default: " + without_links(fallback);
+  if (!text.empty() && !fallback.empty()) text += "; default: " + plain_words(fallback);
   return text;
 }
 

@@ -66,6 +66,11 @@ std::string printed_unit(std::string unit) {
 }
 
 std::string printed_number(double value) {
+  return fmt::format("{}{}", value < 0.0 ? "−" : "", std::abs(value));
+}
+
+/// The same with six digits, for what may be a part of π.
+std::string printed_bound(double value) {
   return fmt::format("{}{:.6g}", value < 0.0 ? "−" : "", std::abs(value));
 }
 
@@ -83,13 +88,14 @@ std::string coordinates_cell(const std::vector<models::Coordinate>& coordinates)
 std::string inputs_cell(const models::SystemDescription& system) {
   std::string cell;
   for (std::size_t i = 0; i < system.inputs.size(); ++i) {
+    const models::Coordinate& input = system.inputs[i];
     const double lower = system.input_lower[static_cast<Eigen::Index>(i)];
     const double upper = system.input_upper[static_cast<Eigen::Index>(i)];
     const std::string bounds = lower == -upper
-                                   ? "±" + printed_number(upper)
-                                   : printed_number(lower) + " to " + printed_number(upper);
-    cell += fmt::format("{}`{}` {} {}", i == 0 ? "" : ", ", system.inputs[i].name, bounds,
-                        printed_unit(system.inputs[i].unit));
+                                   ? "±" + printed_bound(upper)
+                                   : printed_bound(lower) + " to " + printed_bound(upper);
+    cell += fmt::format("{}`{}` {} {}", i == 0 ? "" : ", ", input.name, bounds,
+                        printed_unit(input.unit));
   }
   return cell;
 }

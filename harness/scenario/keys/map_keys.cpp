@@ -4,11 +4,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "harness/scenario/keys/map_checks.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/section_values.hpp"
-#include "harness/scenario/value_checks.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -109,12 +107,6 @@ ScenarioKey angles_key() {
 }
 
 }  // namespace
-
-void check_safe(const ScenarioReading& reading, Section& section, const char* key,
-                const Eigen::VectorXd& point) {
-  const auto problem = why_unsafe(point, reading.scenario.safe_set, reading.system().states);
-  if (problem) section.note(key, "a state in the safe set", *problem);
-}
 
 ScenarioKey safe_set_key() {
   return {

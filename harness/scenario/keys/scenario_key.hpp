@@ -83,6 +83,10 @@ struct ScenarioKey {
 /// All of them.
 [[nodiscard]] const std::vector<ScenarioKey>& scenario_keys();
 
+/// Notes that `point`, the value of `key`, is not in the safe set.
+void check_safe(const ScenarioReading& reading, Section& section, const char* key,
+                const Eigen::VectorXd& point);
+
 /// `key` with the keys of its section, and its member's default.
 [[nodiscard]] KeyDescription describe(const ScenarioKey& key);
 

@@ -1,10 +1,9 @@
 #include <iterator>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "harness/scenario/keys/key_text.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/scenario_text.hpp"
+#include "harness/scenario/value_checks.hpp"
 
 namespace qsmpc::harness {
 
@@ -35,6 +34,12 @@ KeyDescription describe(const ScenarioKey& key) {
     description.fallback = default_text(key);
   }
   return description;
+}
+
+void check_safe(const ScenarioReading& reading, Section& section, const char* key,
+                const Eigen::VectorXd& point) {
+  const auto problem = why_unsafe(point, reading.scenario.safe_set, reading.system().states);
+  if (problem) section.note(key, "a state in the safe set", *problem);
 }
 
 }  // namespace qsmpc::harness

@@ -1,4 +1,6 @@
 // read_scenario: reading the keys of a scenario as they are described.
+#include "harness/scenario/scenario_reader.hpp"
+
 #include <algorithm>
 #include <optional>
 #include <utility>
@@ -8,7 +10,6 @@
 
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
-#include "harness/scenario/scenario_reader.hpp"
 #include "harness/scenario/section_values.hpp"
 
 namespace qsmpc::harness {

@@ -1,5 +1,5 @@
 // to_yaml: the writing side of scenario_file.hpp; and defaults as they are written.
-#include "harness/scenario/keys/key_text.hpp"
+#include "harness/scenario/scenario_text.hpp"
 
 #include <cmath>
 #include <utility>
