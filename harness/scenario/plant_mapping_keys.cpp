@@ -134,7 +134,7 @@ std::vector<KeyDescription> timing_keys() {
   const PlantMapping defaults;
   return {{.name = "input_delay",
            .values = {NumberValue{kInputDelayRange}},
-           .words = "until an input acts",
+           .words = "time until an input acts",
            .unit = "s",
            .fallback = fmt::format("{}", defaults.input_delay)},
           {.name = "settling",

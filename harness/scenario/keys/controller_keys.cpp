@@ -20,7 +20,7 @@ constexpr WholeValue kThreadsRange{1, 256};
 // s; the longest is well within what a clock can count.
 constexpr NumberRange kDeadlineRange{.least = 0.0, .most = 1e6, .above_least = true};
 
-/// What the key without a meaning under other settings may hold all the same: its default stands in
+/// A key that has no effect under the other settings may still hold its default, which stands in
 /// every resolved scenario.
 const Scenario::Controller& defaults() {
   static const Scenario::Controller controller;

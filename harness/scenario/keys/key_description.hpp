@@ -67,13 +67,16 @@ struct IntervalValue {
   bool finite = false;
 };
 struct MappingValue {
-  std::vector<KeyDescription> keys{};
+  std::vector<KeyDescription> keys;
 };
-struct ListValue {
-  std::vector<KeyDescription> item{};  ///< exactly one, without a name
+struct ListLimits {
   std::size_t least = 0;
   std::size_t most = 0;  ///< 0: any number
   bool once = false;     ///< whether no item may be there twice
+};
+struct ListValue {
+  std::vector<KeyDescription> item;  ///< exactly one, without a name
+  ListLimits limits{};
 };
 
 using KeyValue =
@@ -111,9 +114,8 @@ template <class Value>
 }
 
 /// A list of `item`.
-[[nodiscard]] inline ListValue list_of_values(KeyValue item, ListValue list = {}) {
-  list.item = {KeyDescription{.values = {std::move(item)}}};
-  return list;
+[[nodiscard]] inline ListValue list_of_values(KeyValue item, ListLimits limits = {}) {
+  return {{KeyDescription{.values = {std::move(item)}}}, limits};
 }
 
 }  // namespace qsmpc::harness

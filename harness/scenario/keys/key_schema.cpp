@@ -69,9 +69,9 @@ struct ValueSchema {
   Json operator()(const MappingValue& mapping) const { return mapping_schema(mapping.keys); }
   Json operator()(const ListValue& list) const {
     Json schema{{"type", "array"}, {"items", key_schema(list.item.front())}};
-    if (list.least > 0) schema["minItems"] = list.least;
-    if (list.most > 0) schema["maxItems"] = list.most;
-    if (list.once) schema["uniqueItems"] = true;
+    if (list.limits.least > 0) schema["minItems"] = list.limits.least;
+    if (list.limits.most > 0) schema["maxItems"] = list.limits.most;
+    if (list.limits.once) schema["uniqueItems"] = true;
     return schema;
   }
 };

@@ -25,7 +25,7 @@ void read_bounds(ScenarioReading& reading, Section& section, const KeyDescriptio
 
 void read_obstacles(ScenarioReading& reading, Section& section, const KeyDescription& about) {
   const std::vector<models::Coordinate>& states = reading.system().states;
-  const std::size_t most = value_of<ListValue>(about).most;
+  const std::size_t most = value_of<ListValue>(about).limits.most;
   const std::size_t count = section.list_size(about.name);
   if (count > most) section.note(about.name, fmt::format("at most {} obstacles", most));
   for (std::size_t i = 0; i < std::min(count, most); ++i) {
