@@ -33,6 +33,7 @@ int parse_and_run(int argc, char** argv) {
   add_report_command(app, exit_code);
   add_reproduce_command(app, exit_code);
   add_list_command(app, exit_code);
+  add_schema_command(app, exit_code);
   add_validate_command(app, exit_code);
   try {
     app.parse(argc, argv);

@@ -34,6 +34,15 @@ std::vector<std::string> names_of(const Entries& entries) {
 
 }  // namespace
 
+std::vector<std::string> coordinate_names(const std::vector<models::Coordinate>& coordinates) {
+  return names_of(coordinates);
+}
+
+const std::vector<std::string>& system_names() {
+  static const std::vector<std::string> names = names_of(models::systems());
+  return names;
+}
+
 const std::vector<std::string>& controller_names() {
   static const std::vector<std::string> names = names_of(controller::controllers());
   return names;

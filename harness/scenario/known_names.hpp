@@ -7,8 +7,15 @@
 #include <string_view>
 #include <vector>
 
+#include "models/dynamics/dynamics.hpp"
+
 namespace qsmpc::harness {
 
+/// Names of states or inputs.
+[[nodiscard]] std::vector<std::string> coordinate_names(
+    const std::vector<models::Coordinate>& coordinates);
+
+[[nodiscard]] const std::vector<std::string>& system_names();
 [[nodiscard]] const std::vector<std::string>& controller_names();
 [[nodiscard]] const std::vector<std::string>& estimator_names();
 /// About what "lqr" linearises.

@@ -12,6 +12,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/files/text_file.hpp"
+#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
 #include "harness/scenario/yaml_text.hpp"
 #include "harness/scenario/yaml_tree.hpp"
@@ -59,7 +60,7 @@ void read_radius(Section& section, controller::ModelError& error) {
     return;
   }
   const double least = error.radius();  // as long as none is stated
-  const double radius = section.number("radius", least, {.least = 0.0});
+  const double radius = section.number("radius", least, kNotNegative);
   if (radius >= (1.0 - kRounding) * least) {
     error.stated_radius = radius;
   } else {
@@ -142,7 +143,67 @@ std::vector<std::pair<std::string, std::string>> bounds_text(const controller::M
   return lines;
 }
 
+/// Those of one period, or of all.
+std::vector<KeyDescription> bounds_keys() {
+  const VectorValue norms{.range = kNotNegative};
+  return {{.name = "rms",
+           .values = {norms},
+           .words = "*n* numbers {range}, the root mean square of each state's error in a period, "
+                    "less the offset",
+           .unit = "of the state",
+           .required = true},
+          {.name = "offset",
+           .values = {VectorValue{}},
+           .words = "*n* numbers *m*, what the plant adds in every period on every path; the norms "
+                    "are of *e* − *m*",
+           .unit = "of the state",
+           .fallback_words = "zero"},
+          {.name = kNormKeys[0],
+           .values = {norms},
+           .words = "*n* norms (E\\|e − m\\|⁴)^(1/4), none less than in `rms`",
+           .unit = "of the state",
+           .fallback_words = "unknown"},
+          {.name = kNormKeys[1],
+           .values = {norms},
+           .words = "*n* norms (E\\|e − m\\|⁸)^(1/8), none less than in `norm4` and `rms`",
+           .unit = "of the state",
+           .fallback_words = "unknown"},
+          {.name = "radius",
+           .values = {NumberValue{kNotNegative}},
+           .words = "bound, {range}, of the root mean square of the whole error, offset included, "
+                    "at least the "
+                    "norm of \\|`offset`\\| + `rms`, that C1 and C2 use instead",
+           .unit = "norm of the states",
+           .fallback_words = "that norm"}};
+}
+
 }  // namespace
+
+std::vector<KeyDescription> model_error_keys() {
+  std::vector<KeyDescription> keys = bounds_keys();
+  keys.push_back({.name = "first",
+                  .values = {list_of_values(MappingValue{bounds_keys()}, {.most = kMostPeriods})},
+                  .words =
+                      "a list of mappings with the keys above: of the first, second, … period of a "
+                      "drive; the keys beside it are those of all later periods",
+                  .fallback_words = "every period is alike"});
+  keys.push_back({.name = "mean",
+                  .values = {VectorValue{}},
+                  .words = "*n* numbers, for information",
+                  .unit = "of the state",
+                  .fallback_words = "unknown"});
+  keys.push_back({.name = "covariance",
+                  .values = {MatrixValue{}},
+                  .words = "*n* × *n* covariance, for information",
+                  .unit = "unit²",
+                  .fallback_words = "unknown"});
+  keys.push_back({.name = "system",
+                  .values = {NameValue{system_names()}},
+                  .words = "a name from `qsmpc list systems`: the system that it was measured for; "
+                           "another one is refused",
+                  .fallback_words = "the scenario's"});
+  return keys;
+}
 
 std::optional<controller::ModelError> read_model_error(Section& root, Problems& problems,
                                                        const ModelErrorContext& context) {

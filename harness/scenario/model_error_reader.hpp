@@ -4,13 +4,18 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
 #include "controller/prediction/model_error.hpp"
+#include "harness/scenario/keys/key_description.hpp"
 #include "harness/scenario/yaml_section.hpp"
 
 namespace qsmpc::harness {
+
+/// The keys of `model_error`, and of a file that it names.
+[[nodiscard]] std::vector<KeyDescription> model_error_keys();
 
 /// What a model error must fit.
 struct ModelErrorContext {

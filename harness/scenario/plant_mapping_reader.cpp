@@ -1,7 +1,6 @@
 #include "harness/scenario/plant_mapping_reader.hpp"
 
 #include <algorithm>
-#include <array>
 #include <set>
 #include <utility>
 #include <vector>
@@ -10,26 +9,12 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/plant_mapping_keys.hpp"
 #include "harness/scenario/section_values.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
 namespace qsmpc::harness {
 namespace {
-
-constexpr std::size_t kLongestElement = 200;  // bytes of a name in a MuJoCo model
-constexpr std::size_t kMostItems = 100;       // of a list in a mapping
-constexpr int kMostComponents = 1000;         // numbers of one sensor
-constexpr double kLongestDelay = 10.0;        // s
-constexpr double kLongestSettling = 1000.0;   // s
-constexpr std::array kMappingKeys = {"state",       "input",      "hold",
-                                     "loops",       "rolling",    "rate_limit",
-                                     "input_delay", "time_steps", "settling"};
-
-std::vector<std::string> names_of(const std::vector<models::Coordinate>& coordinates) {
-  std::vector<std::string> names(coordinates.size());
-  std::ranges::transform(coordinates, names.begin(), &models::Coordinate::name);
-  return names;
-}
 
 class MappingReader {
  public:
@@ -72,8 +57,9 @@ class MappingReader {
 
   static std::size_t count(Section& section, const std::string& key) {
     const std::size_t size = section.list_size(key);
-    if (size > kMostItems) section.note(key, fmt::format("at most {} items", kMostItems));
-    return std::min(size, kMostItems);
+    if (size > kMostMappingItems)
+      section.note(key, fmt::format("at most {} items", kMostMappingItems));
+    return std::min(size, kMostMappingItems);
   }
 
   PlantConstant constant(Section& section) {
@@ -99,14 +85,14 @@ class MappingReader {
 
   std::string input_name(Section& section, const std::string& key) {
     section.require(key, "an input of the system");
-    std::string name = section.name(key, "", names_of(system_.description.inputs));
+    std::string name = section.name(key, "", coordinate_names(system_.description.inputs));
     used_.insert(name);
     return name;
   }
 
   void read_states() {
     Section states = section_.section("state");
-    for (const std::string& name : names_of(system_.description.states)) {
+    for (const std::string& name : coordinate_names(system_.description.states)) {
       states.require(name, "where the MuJoCo model has it: a joint, body or sensor");
       if (!states.has(name)) continue;
       Section item = states.section(name);
@@ -125,7 +111,7 @@ class MappingReader {
     if (item.has("sensor")) {
       result.source = QuantitySource::kSensor;
       result.element = element(item, "sensor");
-      result.component = item.whole("component", 0, {0, kMostComponents});
+      result.component = item.whole("component", 0, kComponentRange);
     } else if (item.has("body")) {
       result.source = QuantitySource::kBody;
       result.element = element(item, "body");
@@ -143,7 +129,7 @@ class MappingReader {
 
   void read_inputs() {
     Section inputs = section_.section("input");
-    for (const std::string& name : names_of(system_.description.inputs)) {
+    for (const std::string& name : coordinate_names(system_.description.inputs)) {
       const std::size_t terms = count(inputs, name);
       for (std::size_t i = 0; i < terms; ++i) {
         Section item = inputs.item(name, i);
@@ -160,10 +146,8 @@ class MappingReader {
   void read_loop(std::size_t index) {
     Section loop = section_.item("loops", index);
     if (!loop.present()) return;
-    const std::vector<std::string> kinds = {"ackermann", "speed_hold", "axle_forces",
-                                            "tyre_forces"};
-    loop.require("kind", expected_names("", kinds));
-    const std::string kind = loop.name("kind", "", kinds);
+    loop.require("kind", expected_names("", loop_kind_names()));
+    const std::string kind = loop.name("kind", "", loop_kind_names());
     if (kind == "ackermann") mapping_.loops.emplace_back(ackermann(loop));
     if (kind == "speed_hold") {
       mapping_.loops.emplace_back(SpeedHoldLoop{.speed = constant_under(loop, "speed"),
@@ -225,10 +209,8 @@ class MappingReader {
     for (const std::string& actuator : limits.keys()) {
       mapping_.rate_limits[actuator] = limits.number(actuator, 1.0, kPositive);
     }
-    mapping_.input_delay =
-        section_.number("input_delay", 0.0, {.least = 0.0, .most = kLongestDelay});
-    mapping_.settling =
-        section_.number("settling", mapping_.settling, {.least = 0.0, .most = kLongestSettling});
+    mapping_.input_delay = section_.number("input_delay", mapping_.input_delay, kInputDelayRange);
+    mapping_.settling = section_.number("settling", mapping_.settling, kSettlingRange);
     if (const auto range = section_.vector("time_steps", 2)) {
       mapping_.time_steps = {.least = (*range)[0], .most = (*range)[1]};
       if (!((*range)[0] > 0.0 && (*range)[0] <= (*range)[1])) {
@@ -238,7 +220,7 @@ class MappingReader {
   }
 
   void require_inputs() {
-    for (const std::string& name : names_of(system_.description.inputs)) {
+    for (const std::string& name : coordinate_names(system_.description.inputs)) {
       if (used_.contains(name)) continue;
       section_.note("input", fmt::format("what the input {} does: a list of actuators, each with "
                                          "gain and offset",
@@ -268,10 +250,12 @@ const std::vector<std::string>& body_quantities() {
 }
 
 std::optional<PlantMapping> read_plant_mapping(Section& plant, const MappedSystem& system) {
+  const std::vector<KeyDescription> keys = plant_mapping_keys();
   const bool any =
-      std::ranges::any_of(kMappingKeys, [&](const char* key) { return plant.has(key); });
+      std::ranges::any_of(keys, [&](const KeyDescription& key) { return plant.has(key.name); });
   if (!any) {
-    for (const char* key : kMappingKeys) (void)plant.section(key);  // known, though absent
+    for (const KeyDescription& key : keys)
+      (void)plant.holds_text(key.name);  // known, though absent
     return std::nullopt;
   }
   return MappingReader(plant, system).read();

@@ -2,7 +2,10 @@
 
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "harness/scenario/value_checks.hpp"
+#include "harness/scenario/yaml_text.hpp"
 
 namespace qsmpc::harness {
 
@@ -31,6 +34,17 @@ NamedIntervals read_intervals(Section& section, const std::vector<models::Coordi
   }
   section.refuse_unread();
   return read;
+}
+
+std::string intervals_text(const controller::Box& box,
+                           const std::vector<models::Coordinate>& coordinates) {
+  std::string out = "{";
+  for (Eigen::Index i = 0; i < box.lower.size(); ++i) {
+    out += fmt::format("{}{}: [{}, {}]", i == 0 ? "" : ", ",
+                       coordinates[static_cast<std::size_t>(i)].name, yaml_number(box.lower[i]),
+                       yaml_number(box.upper[i]));
+  }
+  return out + "}";
 }
 
 }  // namespace qsmpc::harness

@@ -33,4 +33,8 @@ struct NamedIntervals {
                                             const std::vector<models::Coordinate>& coordinates,
                                             const IntervalOptions& options);
 
+/// `box` as a mapping on one line that `read_intervals` takes: {x: [0, 1], y: [-.inf, .inf]}.
+[[nodiscard]] std::string intervals_text(const controller::Box& box,
+                                         const std::vector<models::Coordinate>& coordinates);
+
 }  // namespace qsmpc::harness

@@ -86,7 +86,13 @@ SystemEntry bicycle_entry() {
                        {"front_axle_distance", 1.06},
                        {"rear_axle_distance", 1.85},
                        {"front_tyre_stiffness", -128916.0},
-                       {"rear_tyre_stiffness", -85944.0}}};
+                       {"rear_tyre_stiffness", -85944.0}},
+          .units = {{"mass", "kg"},
+                    {"yaw_inertia", "kg m^2"},
+                    {"front_axle_distance", "m"},
+                    {"rear_axle_distance", "m"},
+                    {"front_tyre_stiffness", "N/rad"},
+                    {"rear_tyre_stiffness", "N/rad"}}};
 }
 
 }  // namespace qsmpc::models

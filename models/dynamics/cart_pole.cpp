@@ -56,8 +56,14 @@ std::unique_ptr<const Dynamics> make_cart_pole(const ParameterMap& parameters, d
 SystemEntry cart_pole_entry() {
   return {.name = kCartPoleName,
           .summary = kCartPoleSummary,
-          .defaults = {
-              {"cart_mass", 1.0}, {"pole_mass", 0.1}, {"pole_half_length", 0.5}, {"gravity", 9.8}}};
+          .defaults = {{"cart_mass", 1.0},
+                       {"pole_mass", 0.1},
+                       {"pole_half_length", 0.5},
+                       {"gravity", 9.8}},
+          .units = {{"cart_mass", "kg"},
+                    {"pole_mass", "kg"},
+                    {"pole_half_length", "m"},
+                    {"gravity", "m/s^2"}}};
 }
 
 }  // namespace qsmpc::models

@@ -86,7 +86,10 @@ std::unique_ptr<const Dynamics> make_dubins(const ParameterMap& parameters, doub
 }
 
 SystemEntry dubins_entry() {
-  return {.name = "dubins", .summary = kDubinsSummary, .defaults = {{"speed", kDefaultSpeed}}};
+  return {.name = "dubins",
+          .summary = kDubinsSummary,
+          .defaults = {{"speed", kDefaultSpeed}},
+          .units = {{"speed", "m/s"}}};
 }
 
 }  // namespace qsmpc::models

@@ -84,8 +84,10 @@ std::unique_ptr<const Dynamics> make_dubins_rk4(const ParameterMap& parameters, 
 }
 
 SystemEntry dubins_rk4_entry() {
-  return {
-      .name = kDubinsRk4Name, .summary = kDubinsRk4Summary, .defaults = dubins_entry().defaults};
+  SystemEntry entry = dubins_entry();
+  entry.name = kDubinsRk4Name;
+  entry.summary = kDubinsRk4Summary;
+  return entry;
 }
 
 }  // namespace qsmpc::models

@@ -130,6 +130,8 @@ struct SystemEntry {
   std::string name;
   std::string summary;
   ParameterMap defaults;  ///< every parameter that may be given, with its default
+  /// The SI symbol of each of them, e.g. "m/s".
+  std::map<std::string, std::string, std::less<>> units{};
 };
 
 /// The table of systems.

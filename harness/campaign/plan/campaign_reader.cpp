@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/campaign/plan/campaign_keys.hpp"
 #include "harness/scenario/yaml_text.hpp"
 #include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
@@ -16,11 +17,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kLongestDescription = 500;  // bytes; one line
-constexpr std::size_t kLongestKey = 200;          // bytes; of a dotted path
-constexpr int kMostSeeds = 1'000'000'000;
-constexpr std::size_t kMostListedSeeds = 100'000;
-constexpr std::uint64_t kSeedEnd = std::uint64_t{1} << 63U;  // a store's whole numbers are signed
+constexpr std::size_t kLongestKey = 200;  // bytes; of a dotted path
 constexpr const char* kSeedExpected = "a whole number from 0 to 9223372036854775807";
 constexpr const char* kNoSettings = "base";  // the name of {} in a list of variants
 
@@ -93,7 +90,7 @@ void CampaignReader::read_names() {
   const std::string stem = std::filesystem::path(draft_.file).stem().string();
   draft_.name = root_.text("name", stem, kLongestName);
   if (root_.has("name") && draft_.name.empty()) root_.note("name", "a name, not empty");
-  (void)root_.text("description", "", kLongestDescription);
+  (void)root_.text("description", "", kLongestCampaignDescription);
 }
 
 void CampaignReader::read_scenarios() {
@@ -276,8 +273,8 @@ void CampaignReader::read_seed_list(const YamlNode& node) {
 }
 
 void CampaignReader::read_seed_range(Section section) {
-  section.require("count", fmt::format("how many seeds, from 1 to {}", kMostSeeds));
-  draft_.seeds.count = section.whole("count", 1, {1, kMostSeeds});
+  section.require("count", fmt::format("how many seeds, from 1 to {}", kMostCampaignSeeds));
+  draft_.seeds.count = section.whole("count", 1, {1, kMostCampaignSeeds});
   (void)section.holds_text("first");
   if (const YamlNode* first = tree_.find("seeds")->find("first")) {
     const std::optional<std::uint64_t> seed = parse_seed(*first);
@@ -294,16 +291,10 @@ void CampaignReader::read_seed_range(Section section) {
 }
 
 void CampaignReader::read_traces() {
-  const std::string fallback = trace_keeping_name(TraceKeeping::kNone);
-  const std::vector<TraceKeeping> keepings{TraceKeeping::kNone, TraceKeeping::kFailures,
-                                           TraceKeeping::kAll};
-  std::vector<std::string> names;
-  names.reserve(keepings.size());
-  for (const TraceKeeping keeping : keepings) names.emplace_back(trace_keeping_name(keeping));
-  const std::string name = root_.name("traces", fallback, names);
-  draft_.traces =
-      keepings[static_cast<std::size_t>(std::ranges::find(names, name) - names.begin())];
-  draft_.trace_sample = root_.whole("trace_sample", 0, {0, kMostSeeds});
+  const std::vector<std::string>& names = trace_keeping_names();
+  const std::string name = root_.name("traces", trace_keeping_name(draft_.traces), names);
+  draft_.traces = static_cast<TraceKeeping>(std::ranges::find(names, name) - names.begin());
+  draft_.trace_sample = root_.whole("trace_sample", 0, {0, kMostCampaignSeeds});
   if (root_.has("trace_sample") && draft_.traces != TraceKeeping::kFailures) {
     root_.note("trace_sample", "no such key without traces: failures");
   }

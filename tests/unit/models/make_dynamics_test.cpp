@@ -39,6 +39,14 @@ TEST(MakeDynamics, unknown_parameter_is_refused_with_the_known_names) {
   }
 }
 
+TEST(MakeDynamics, every_parameter_has_a_unit) {
+  for (const SystemEntry& entry : systems()) {
+    EXPECT_EQ(entry.units.size(), entry.defaults.size()) << entry.name;
+    for (const auto& [name, value] : entry.defaults)
+      EXPECT_TRUE(entry.units.contains(name)) << name;
+  }
+}
+
 TEST(MakeDynamics, senseless_time_steps_are_refused) {
   const double infinity = std::numeric_limits<double>::infinity();
   for (const SystemEntry& entry : systems()) {

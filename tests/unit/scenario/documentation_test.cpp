@@ -1,13 +1,22 @@
-// docs/scenario.md and the reader agree on which keys there are.
+// The tables of the documentation are those that the program makes, and name every key.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/campaign/plan/campaign_keys.hpp"
+#include "harness/scenario/keys/key_tables.hpp"
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/plant_mapping_keys.hpp"
 #include "harness/scenario/yaml_tree.hpp"
-#include "models/dynamics/dynamics.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc::harness {
 namespace documentation_test {
+
+using ::testing::HasSubstr;
+
+std::string document(const std::string& file) {
+  return content_of(std::string(QSMPC_SOURCE_DIR) + "/" + file);
+}
 
 // The dotted paths of everything that is not a mapping.
 void collect_keys(const YamlNode& node, const std::string& path, std::vector<std::string>& keys) {
@@ -30,7 +39,6 @@ std::string documented(const std::string& key) {
 }
 
 TEST(Documentation, describes_every_key_that_a_resolved_scenario_has) {
-  const std::string document = content_of(std::string(QSMPC_SOURCE_DIR) + "/docs/scenario.md");
   const Scenario scenario = parse_scenario(
       minimal_text,
       {.overrides = {"controller.kind=lqr", "controller.feedback_gain=[1, 2, 3]",
@@ -41,27 +49,64 @@ TEST(Documentation, describes_every_key_that_a_resolved_scenario_has) {
   std::vector<std::string> keys;
   collect_keys(parse_yaml(to_yaml(scenario), "resolved"), "", keys);
   EXPECT_GT(keys.size(), 35U);
-  for (const std::string& key : keys) {
-    EXPECT_THAT(document, ::testing::HasSubstr("| `" + documented(key) + "` |"));
+  const std::string text = document("docs/scenario.md");
+  for (const std::string& key : keys) EXPECT_THAT(text, HasSubstr("| `" + documented(key) + "` |"));
+}
+
+TEST(Documentation, has_the_tables_that_the_program_makes) {
+  std::vector<DocumentTable> tables = scenario_tables();
+  for (const DocumentTable& table : campaign_tables()) tables.push_back(table);
+  EXPECT_EQ(tables.size(), 9U);
+  for (const DocumentTable& table : tables) {
+    EXPECT_THAT(document(table.file),
+                HasSubstr("<!-- table: " + table.name + " -->\n" + table.text + "\n"))
+        << "scripts/document-tables writes it";
   }
 }
 
-TEST(Documentation, names_every_system_with_its_states_inputs_and_constants) {
-  const std::string document = content_of(std::string(QSMPC_SOURCE_DIR) + "/docs/scenario.md");
-  for (const models::SystemEntry& entry : models::systems()) {
-    const std::size_t begin = document.find("\n| `" + entry.name + "` |");
-    ASSERT_NE(begin, std::string::npos) << entry.name;
-    const std::string row = document.substr(begin, document.find('\n', begin + 1) - begin);
-    const auto model = models::make_dynamics(entry.name, {}, 0.1);
-    for (const models::Coordinate& state : model->description().states) {
-      EXPECT_THAT(row, ::testing::HasSubstr("`" + state.name + "`"));
+// The names of all keys within `keys`.
+void collect_names(const std::vector<KeyDescription>& keys, std::vector<std::string>& names) {
+  for (const KeyDescription& key : keys) {
+    if (key.family == NameFamily::kNone && !key.name.empty()) names.push_back(key.name);
+    for (const KeyValue& value : key.values) {
+      if (const auto* mapping = std::get_if<MappingValue>(&value)) {
+        collect_names(mapping->keys, names);
+      } else if (const auto* list = std::get_if<ListValue>(&value)) {
+        collect_names(list->item, names);
+      }
     }
-    for (const models::Coordinate& input : model->description().inputs) {
-      EXPECT_THAT(row, ::testing::HasSubstr("`" + input.name + "`"));
+  }
+}
+
+TEST(Documentation, names_every_key_of_quantities_and_loops) {
+  std::vector<std::string> names;
+  collect_names(plant_mapping_keys(), names);
+  EXPECT_GT(names.size(), 30U);
+  const std::string text = document("docs/plants.md");
+  for (const std::string& name : names) {
+    EXPECT_THAT(text, ::testing::ContainsRegex("[`{ ]" + name + "[`:},.]"));
+  }
+}
+
+// Words that list names themselves, since each needs a word of explanation, leave none out.
+void expect_all_names_in(const KeyDescription& key) {
+  for (const KeyValue& value : key.values) {
+    if (const auto* mapping = std::get_if<MappingValue>(&value)) {
+      for (const KeyDescription& inner : mapping->keys) expect_all_names_in(inner);
     }
-    for (const auto& [name, value] : entry.defaults) {
-      EXPECT_THAT(row, ::testing::HasSubstr("`" + name + "`"));
+    const auto* name = std::get_if<NameValue>(&value);
+    const bool lists_them = name != nullptr && key.words.find("qsmpc list") == std::string::npos &&
+                            key.words.find("{names}") == std::string::npos;
+    if (!lists_them) continue;
+    for (const std::string& known : name->known) {
+      EXPECT_THAT(key.words, HasSubstr("`" + known + "`")) << key.name;
     }
+  }
+}
+
+TEST(Documentation, names_what_a_key_may_be_wherever_no_command_lists_it) {
+  for (const ScenarioKey& key : scenario_keys()) {
+    if (key.about.name != "plant") expect_all_names_in(describe(key));
   }
 }
 

@@ -1,0 +1,127 @@
+#include "harness/campaign/plan/campaign_keys.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/campaign/campaign.hpp"
+#include "harness/scenario/keys/key_schema.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+/// Names or paths, each once.
+ListValue choices_value() {
+  return list_of_values(TextValue{.what = "a name or path"}, {.least = 1, .once = true});
+}
+
+std::vector<KeyDescription> head_keys() {
+  return {{.name = "name",
+           .values = {TextValue{.longest = kLongestName, .what = "a name"}},
+           .words = "what the campaign is called, up to {longest} bytes",
+           .fallback_words = "the file's name"},
+          {.name = "description",
+           .values = {TextValue{.longest = kLongestCampaignDescription}},
+           .words = "one line for people, up to {longest} bytes",
+           .fallback_words = "none"},
+          {.name = "scenario",
+           .values = {TextValue{.what = "a name or path"}},
+           .words = "a shipped scenario's name, or a path from the campaign file's folder (where "
+                    "the file comes first)"},
+          {.name = "scenarios",
+           .values = {choices_value()},
+           .words = "list of such names or paths; one of `scenario` and `scenarios` is needed, and "
+                    "only one"}};
+}
+
+std::vector<KeyDescription> setting_keys() {
+  const KeyDescription value{.name = "KEY", .family = NameFamily::kFree, .values = {AnyValue{}}};
+  const MappingValue settings{{value}};
+  const KeyDescription variant{.name = "NAME", .family = NameFamily::kFree, .values = {settings}};
+  KeyDescription values = value;
+  values.values = {list_of_values(AnyValue{}, {.least = 1, .once = true})};
+  return {{.name = "variants",
+           .values = {list_of_values(settings, {.least = 1}), MappingValue{{variant}}},
+           .words = "settings that are applied together: a mapping of a name to `{KEY: VALUE}`, or "
+                    "a list of `{KEY: VALUE}`; `{}` is the scenario as it is",
+           .fallback_words = "the scenario as it is"},
+          {.name = "grid",
+           .values = {MappingValue{{values}}},
+           .words = "mapping of a KEY to a list of VALUES: all combinations, applied after the "
+                    "variant's settings",
+           .fallback_words = "none"},
+          {.name = "plants",
+           .values = {choices_value()},
+           .words = "list of names or paths, as after `--plant` of `qsmpc compare`; an XML file is "
+                    "looked for in the campaign file's folder first",
+           .fallback_words = "the scenario's own"}};
+}
+
+std::vector<KeyDescription> seed_keys() {
+  const WholeValue seed{0, kSeedEnd - 1};
+  const MappingValue range{{{.name = "first",
+                             .values = {seed},
+                             .words = "the first seed, {range}; each that follows is one more",
+                             .fallback = "0"},
+                            {.name = "count",
+                             .values = {WholeValue{1, kMostCampaignSeeds}},
+                             .words = "how many",
+                             .required = true}}};
+  return {
+      {.name = "seeds",
+       .values = {range,
+                  list_of_values(seed, {.least = 1, .most = kMostListedSeeds, .once = true})},
+       .words = fmt::format("a mapping of the keys below, or a list of up to {} seeds, each once",
+                            kMostListedSeeds),
+       .required = true}};
+}
+
+std::vector<KeyDescription> trace_keys() {
+  return {{.name = "traces",
+           .values = {NameValue{trace_keeping_names()}},
+           .words = "whose traces are kept: {names}, a failure being an episode that did not reach "
+                    "the target or was unsafe",
+           .fallback = trace_keeping_name(TraceKeeping::kNone)},
+          {.name = "trace_sample",
+           .values = {WholeValue{0, kMostCampaignSeeds}},
+           .words = "with `failures`: of each variant, so many first seeds, {range}, keep their "
+                    "trace all the same",
+           .fallback = "0"}};
+}
+
+}  // namespace
+
+const std::vector<std::string>& trace_keeping_names() {
+  static const std::vector<std::string> names{trace_keeping_name(TraceKeeping::kNone),
+                                              trace_keeping_name(TraceKeeping::kFailures),
+                                              trace_keeping_name(TraceKeeping::kAll)};
+  return names;
+}
+
+const std::vector<KeyDescription>& campaign_keys() {
+  static const std::vector<KeyDescription> keys = [] {
+    std::vector<KeyDescription> all;
+    for (std::vector<KeyDescription> (*make)() : {head_keys, setting_keys, seed_keys, trace_keys}) {
+      for (KeyDescription& key : make()) all.push_back(std::move(key));
+    }
+    return all;
+  }();
+  return keys;
+}
+
+nlohmann::ordered_json campaign_schema() {
+  nlohmann::ordered_json schema =
+      json_schema({.title = "qsmpc campaign",
+                   .description = "Which episodes are driven: scenarios, times settings, times "
+                                  "plants, each with the same seeds."},
+                  campaign_keys());
+  for (const char* key : {"scenario", "scenarios"}) {
+    schema["oneOf"].push_back({{"required", {key}}});
+  }
+  return schema;
+}
+
+std::vector<DocumentTable> campaign_tables() {
+  return {{.file = "docs/campaign.md", .name = "campaign", .text = key_table(campaign_keys())}};
+}
+
+}  // namespace qsmpc::harness

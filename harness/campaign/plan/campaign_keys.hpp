@@ -1,0 +1,33 @@
+// The keys of a campaign file, and what their values may be.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "harness/scenario/keys/key_description.hpp"
+#include "harness/scenario/keys/key_tables.hpp"
+
+namespace qsmpc::harness {
+
+inline constexpr std::size_t kLongestCampaignDescription = 500;  ///< bytes; one line
+inline constexpr int kMostCampaignSeeds = 1'000'000'000;
+inline constexpr std::size_t kMostListedSeeds = 100'000;
+/// Over the last seed: a store's whole numbers are signed.
+inline constexpr std::uint64_t kSeedEnd = std::uint64_t{1} << 63U;
+
+/// What `traces` may be, in the order of TraceKeeping.
+[[nodiscard]] const std::vector<std::string>& trace_keeping_names();
+
+[[nodiscard]] const std::vector<KeyDescription>& campaign_keys();
+
+/// The JSON Schema of a campaign file.
+[[nodiscard]] nlohmann::ordered_json campaign_schema();
+
+/// The table of its keys in the documentation.
+[[nodiscard]] std::vector<DocumentTable> campaign_tables();
+
+}  // namespace qsmpc::harness

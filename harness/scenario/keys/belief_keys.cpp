@@ -1,0 +1,143 @@
+// The keys of what is uncertain: the initial state, the noise, and what the planner makes of it.
+#include "controller/estimation/estimator.hpp"
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/known_names.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr NumberRange kDeviationRange{.least = 0.0, .most = 0.5};  // of a logarithm
+
+bool has_sensor_noise(const Scenario& scenario) { return !scenario.disturbance.sensor.isZero(0.0); }
+
+std::string default_estimator(const Scenario& scenario) {
+  return has_sensor_noise(scenario) ? "last_measurement" : "exact";
+}
+
+/// Of what is drawn once an episode.
+ScenarioKey deviation_key(const char* name, const std::string& factor_of,
+                          double& (*member)(Scenario& scenario)) {
+  return {.about = {.name = name,
+                    .values = {NumberValue{kDeviationRange}},
+                    .words = "deviation, {range}, of the logarithm of a factor on " + factor_of +
+                             ", drawn once an episode"},
+          .member = member};
+}
+
+ScenarioKey sensor_key() {
+  return {
+      .about = {.name = "sensor",
+                .values = {MatrixValue{}},
+                .words = "*n* × *n* covariance of the Gaussian noise, new in every control "
+                         "period, on what the planner sees of the state",
+                .see = "[below](#measurement-noise)",
+                .unit = "unit²",
+                .fallback_words = "zero: it sees the state"},
+      .member = [](Scenario& scenario) -> Eigen::MatrixXd& { return scenario.disturbance.sensor; }};
+}
+
+ScenarioKey disturbance_kind_key() {
+  return {
+      .about = {.name = "kind",
+                .values = {NameValue{disturbance_kind_names()}},
+                .words = "how the plant gets that noise: `state`, added to the state at the end of "
+                         "the period, or `force`",
+                .see = "[plants](plants.md#disturbances)"},
+      .member = [](Scenario& scenario) -> std::string& { return scenario.disturbance.kind; },
+      .check =
+          [](const ScenarioReading& reading, Section& section) {
+            const Scenario& scenario = reading.scenario;
+            if (scenario.disturbance.kind == "force" && scenario.plant.kind == "analytic") {
+              section.note("kind", "state, or plant.kind: mujoco");
+            }
+          }};
+}
+
+}  // namespace
+
+ScenarioKey initial_state_key() {
+  return {.about = {.name = "initial_state"},
+          .keys = {{.about = {.name = "mean",
+                              .values = {VectorValue{}},
+                              .words = "*n* numbers; must be safe",
+                              .required = true},
+                    .member = [](Scenario& scenario) -> Eigen::VectorXd& {
+                      return scenario.initial_state.mean;
+                    },
+                    .check =
+                        [](const ScenarioReading& reading, Section& section) {
+                          check_safe(reading, section, "mean", reading.scenario.initial_state.mean);
+                        }},
+                   {.about = {.name = "covariance",
+                              .values = {MatrixValue{}},
+                              .words = "*n* × *n* covariance",
+                              .unit = "unit²",
+                              .fallback_words = "zero: known exactly"},
+                    .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
+                      return scenario.initial_state.covariance;
+                    }}},
+          .after = ReadAfter::kSystem,
+          .table = "plant"};
+}
+
+ScenarioKey disturbance_key() {
+  return {.about = {.name = "disturbance"},
+          .keys = {{.about = {.name = "covariance",
+                              .values = {MatrixValue{}},
+                              .words =
+                                  "*n* × *n* covariance of the Gaussian noise that is added to the "
+                                  "state in every control period",
+                              .unit = "unit²",
+                              .fallback_words = "zero: none"},
+                    .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
+                      return scenario.disturbance.covariance;
+                    }},
+                   sensor_key(),
+                   disturbance_kind_key(),
+                   deviation_key(
+                       "friction", "the plant's friction and tyre stiffness",
+                       [](Scenario& scenario) -> double& { return scenario.disturbance.friction; }),
+                   deviation_key(
+                       "mass", "the plant's masses and inertias",
+                       [](Scenario& scenario) -> double& { return scenario.disturbance.mass; }),
+                   deviation_key("wheelbase", "the distances of the plant's axles",
+                                 [](Scenario& scenario) -> double& {
+                                   return scenario.disturbance.wheelbase;
+                                 })},
+          .after = ReadAfter::kSystem,
+          .table = "plant"};
+}
+
+ScenarioKey estimator_key() {
+  return {
+      .about = {.name = "estimator"},
+      .keys = {{.about = {.name = "kind",
+                          .values = {NameValue{estimator_names()}},
+                          .words = "what makes beliefs of observations, a name from `qsmpc list "
+                                   "estimators`",
+                          .fallback_words = "`exact`, with `disturbance.sensor` "
+                                            "`last_measurement`"},
+                .member = [](Scenario& scenario) -> std::string& {
+                  return scenario.estimator.kind;
+                },
+                .read =
+                    [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
+                      reading.scenario.estimator.kind =
+                          section.name(about.name, default_estimator(reading.scenario),
+                                       value_of<NameValue>(about).known);
+                    },
+                .check =
+                    [](const ScenarioReading& reading, Section& section) {
+                      const Scenario& scenario = reading.scenario;
+                      if (has_sensor_noise(scenario) &&
+                          controller::estimator_entry(scenario.estimator.kind).needs_exact_sensor) {
+                        section.note("kind", default_estimator(scenario) +
+                                                 ", since disturbance.sensor is not zero");
+                      }
+                    }}},
+      .layout = SectionLayout::kFlow,
+      .after = ReadAfter::kSystem,
+      .table = "measurement"};
+}
+
+}  // namespace qsmpc::harness

@@ -1,0 +1,308 @@
+// The keys of the controller.
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+#include "controller/planning/solvers/ocp_solver.hpp"
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/section_values.hpp"
+#include "harness/scenario/value_checks.hpp"
+#include "harness/scenario/yaml_text.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr WholeValue kHorizonRange{1, kMostStages};
+constexpr WholeValue kPointsRange{1, 100'000};
+constexpr WholeValue kIterationsRange{1, 100'000};
+constexpr WholeValue kThreadsRange{1, 256};
+// s; the longest is well within what a clock can count.
+constexpr NumberRange kDeadlineRange{.least = 0.0, .most = 1e6, .above_least = true};
+
+/// A key that has no effect under the other settings may still hold its default, which stands in
+/// every resolved scenario.
+const Scenario::Controller& defaults() {
+  static const Scenario::Controller controller;
+  return controller;
+}
+
+void check_lqr_about(const ScenarioReading& reading, Section& section) {
+  const Scenario::Controller& controller = reading.scenario.controller;
+  if (controller.kind != "lqr" && controller.lqr_about != defaults().lqr_about) {
+    section.note("about", defaults().lqr_about + ", or controller.kind: lqr");
+  }
+}
+
+void check_optimise_gain(const ScenarioReading& reading, Section& section) {
+  const Scenario::Controller& controller = reading.scenario.controller;
+  if (controller.optimise_gain && controller.policy != "closed_loop") {
+    section.note("optimise_gain", "false, or controller.policy: closed_loop");
+  }
+}
+
+void check_input_bounding(const ScenarioReading& reading, Section& section) {
+  const Scenario::Controller& controller = reading.scenario.controller;
+  if (!controller::solver_entry(controller.solver).chooses_bounding &&
+      controller.input_bounding != defaults().input_bounding) {
+    section.note("input_bounding", defaults().input_bounding + ", or controller.solver: lbfgs");
+  }
+}
+
+void check_propagator(const ScenarioReading& reading, Section& section) {
+  const Scenario::Controller& controller = reading.scenario.controller;
+  if (!controller.propagate_noise && controller.propagator != defaults().propagator) {
+    section.note("propagator", defaults().propagator + ", or controller.propagate_noise: true");
+  }
+}
+
+void read_gain(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  reading.scenario.controller.feedback_gain = section.matrix(
+      about.name, std::ssize(reading.system().inputs), std::ssize(reading.system().states));
+}
+
+std::optional<std::string> gain_text(const Scenario& scenario,
+                                     const models::SystemDescription& /*system*/) {
+  if (!scenario.controller.feedback_gain) return std::nullopt;
+  return yaml_rows(*scenario.controller.feedback_gain);
+}
+
+void read_terminal_cost(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  Scenario::Cost& cost = reading.scenario.controller.cost;
+  cost.terminal = semidefinite(section, about.name, cost.state);
+}
+
+void read_input_bounds(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  const models::SystemDescription& system = reading.system();
+  Section bounds = section.section(about.name);
+  const controller::Box box =
+      read_intervals(
+          bounds, system.inputs,
+          {.fallback = {.lower = system.input_lower, .upper = system.input_upper}, .finite = true})
+          .box;
+  reading.scenario.controller.input_lower = box.lower;
+  reading.scenario.controller.input_upper = box.upper;
+}
+
+std::vector<ScenarioKey> kind_keys() {
+  return {{.about = {.name = "kind",
+                     .values = {NameValue{controller_names()}},
+                     .words = "what drives, a name from `qsmpc list controllers`",
+                     .see = "[below](#controllers)"},
+           .member = [](Scenario& scenario) -> std::string& { return scenario.controller.kind; }},
+          {.about = {.name = "lqr"},
+           .is_written = [](const Scenario& scenario) { return scenario.controller.kind == "lqr"; },
+           .keys = {{.about = {.name = "about",
+                               .values = {NameValue{lqr_about_names()}},
+                               .words = "about what `lqr` linearises: {names}"},
+                     .member = [](Scenario& scenario) -> std::string& {
+                       return scenario.controller.lqr_about;
+                     },
+                     .check = check_lqr_about}},
+           .layout = SectionLayout::kFlow}};
+}
+
+std::vector<ScenarioKey> plan_keys() {
+  return {
+      {.about = {.name = "horizon",
+                 .values = {kHorizonRange},
+                 .words = "steps that are planned ahead"},
+       .member = [](Scenario& scenario) -> int& { return scenario.controller.horizon; }},
+      {.about = {.name = "policy", .values = {NameValue{policy_names()}}, .words = "{names}"},
+       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.policy; }},
+      {.about = {.name = "feedback_gain",
+                 .values = {MatrixValue{.rows = Dimension::kInputs, .cols = Dimension::kStates}},
+                 .words = "*m* × *n* matrix of the closed-loop policy",
+                 .see = "[below](#gains)",
+                 .unit = "of the input, by unit of the state",
+                 .fallback_words = "from LQR"},
+       .read = read_gain,
+       .write = gain_text},
+      {.about = {.name = "optimise_gain",
+                 .values = {FlagValue{}},
+                 .words = "whether a matrix that is added to the gains is optimised along with the "
+                          "inputs",
+                 .see = "[below](#gains)"},
+       .member = [](Scenario& scenario) -> bool& { return scenario.controller.optimise_gain; },
+       .check = check_optimise_gain},
+      {.about = {.name = "solver",
+                 .values = {NameValue{solver_names()}},
+                 .words = "a name from `qsmpc list solvers`",
+                 .see = "[below](#solvers)"},
+       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.solver; }},
+      {.about = {.name = "input_bounding",
+                 .values = {NameValue{input_bounding_names()}},
+                 .words = "how `lbfgs` keeps the input bounds, a name from `qsmpc list boundings`",
+                 .see = "[below](#solvers)"},
+       .member = [](Scenario& scenario) -> std::string& {
+         return scenario.controller.input_bounding;
+       },
+       .check = check_input_bounding}};
+}
+
+ScenarioKey points_key(const char* name, const char* words, int& (*member)(Scenario& scenario)) {
+  return {.about = {.name = name, .values = {kPointsRange}, .words = words}, .member = member};
+}
+
+ScenarioKey quantisation_key() {
+  return {
+      .about = {.name = "quantisation"},
+      .keys =
+          {points_key(
+               "state", "points that stand for the belief",
+               [](Scenario& scenario) -> int& { return scenario.controller.quantisation.state; }),
+           points_key(
+               "noise",
+               "points that stand for the disturbance, {range}; with `mixture` the parts that one "
+               "point's noise is cut into at most",
+               [](Scenario& scenario) -> int& { return scenario.controller.quantisation.noise; }),
+           points_key("compressed", "points kept after each step of the prediction",
+                      [](Scenario& scenario) -> int& {
+                        return scenario.controller.quantisation.compressed;
+                      }),
+           {.about = {.name = "quantiser",
+                      .values = {NameValue{quantiser_names()}},
+                      .words = "what finds the points of the belief, a name from `qsmpc list "
+                               "quantisers`",
+                      .see = "[below](#how-noise-is-predicted)"},
+            .member = [](Scenario& scenario) -> std::string& {
+              return scenario.controller.quantisation.quantiser;
+            }}},
+      .layout = SectionLayout::kFlow};
+}
+
+std::vector<ScenarioKey> propagation_keys() {
+  return {
+      {.about = {.name = "propagate_noise",
+                 .values = {FlagValue{}},
+                 .words = "whether the prediction includes the disturbance"},
+       .member = [](Scenario& scenario) -> bool& { return scenario.controller.propagate_noise; }},
+      {.about = {.name = "propagator",
+                 .values = {NameValue{propagator_names()}},
+                 .words = "how it does: {names}",
+                 .see = "[below](#how-noise-is-predicted)"},
+       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.propagator; },
+       .check = check_propagator}};
+}
+
+ScenarioKey cost_key() {
+  return {.about = {.name = "cost"},
+          .keys = {{.about = {.name = "state",
+                              .values = {MatrixValue{.is_identity_by_default = true}},
+                              .words = "*n* × *n* weight of the distance to the target",
+                              .fallback_words = "identity"},
+                    .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
+                      return scenario.controller.cost.state;
+                    }},
+                   {.about = {.name = "input",
+                              .values = {MatrixValue{.rows = Dimension::kInputs,
+                                                     .cols = Dimension::kInputs,
+                                                     .is_identity_by_default = true}},
+                              .words = "*m* × *m* weight of the input",
+                              .fallback_words = "identity"},
+                    .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
+                      return scenario.controller.cost.input;
+                    }},
+                   {.about = {.name = "terminal",
+                              .values = {MatrixValue{}},
+                              .words = "*n* × *n* weight at the end of the horizon",
+                              .fallback_words = "`cost.state`"},
+                    .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
+                      return scenario.controller.cost.terminal;
+                    },
+                    .read = read_terminal_cost}}};
+}
+
+ScenarioKey penalty_key() {
+  return {
+      .about = {.name = "penalty"},
+      .keys = {{.about = {.name = "shape",
+                          .values = {NameValue{penalty_shape_names()}},
+                          .words = "`smooth`, or `thesis`: Algorithm 2 of the reference thesis"},
+                .member = [](Scenario& scenario) -> std::string& {
+                  return scenario.controller.penalty.shape;
+                }},
+               {.about = {.name = "box",
+                          .values = {NumberValue{kNotNegative}},
+                          .words = "weight of leaving the bounds, {range}; not used by `slsqp`",
+                          .see = "[below](#solvers)"},
+                .member = [](Scenario& scenario) -> double& {
+                  return scenario.controller.penalty.box;
+                }},
+               {.about = {.name = "obstacle",
+                          .values = {NumberValue{kNotNegative}},
+                          .words = "weight of entering an obstacle"},
+                .member = [](Scenario& scenario) -> double& {
+                  return scenario.controller.penalty.obstacle;
+                }},
+               {.about = {.name = "length",
+                          .values = {NumberValue{kPositive}},
+                          .words = "how far outside of the unsafe set the smooth shape begins",
+                          .unit = "m"},
+                .member = [](Scenario& scenario) -> double& {
+                  return scenario.controller.penalty.length;
+                }}},
+      .layout = SectionLayout::kFlow};
+}
+
+ScenarioKey input_bounds_key() {
+  return {.about = {.name = "input_bounds",
+                    .values = {MappingValue{{{.name = "INPUT",
+                                              .family = NameFamily::kInputs,
+                                              .values = {IntervalValue{.finite = true}},
+                                              .words = "`[lower, upper]`, finite",
+                                              .unit = "of the input",
+                                              .fallback_words = "the system's"}}}}},
+          .read = read_input_bounds,
+          .write = [](const Scenario& scenario, const models::SystemDescription& system) {
+            const Scenario::Controller& controller = scenario.controller;
+            return std::optional(
+                intervals_text({controller.input_lower, controller.input_upper}, system.inputs));
+          }};
+}
+
+std::vector<ScenarioKey> effort_keys() {
+  return {
+      {.about = {.name = "deadline",
+                 .values = {NumberValue{kDeadlineRange}},
+                 .words = "time after which a plan is cut short",
+                 .see = "[below](#deadline-and-threads)",
+                 .unit = "s",
+                 .fallback_words = "none"},
+       .member = [](Scenario& scenario) -> double& { return scenario.controller.deadline; },
+       .is_written =
+           [](const Scenario& scenario) { return std::isfinite(scenario.controller.deadline); }},
+      {.about = {.name = "max_iterations",
+                 .values = {kIterationsRange},
+                 .words =
+                     "evaluations of cost and gradient in one plan, {range}; what a start from "
+                     "nothing takes to find the way round obstacles is not counted"},
+       .member = [](Scenario& scenario) -> int& { return scenario.controller.max_iterations; }},
+      {.about = {.name = "threads",
+                 .values = {kThreadsRange},
+                 .words = "threads that loops over many particles are divided among",
+                 .see = "[below](#deadline-and-threads)"},
+       .member = [](Scenario& scenario) -> int& { return scenario.controller.threads; }}};
+}
+
+void append(std::vector<ScenarioKey>& keys, std::vector<ScenarioKey> more) {
+  keys.insert(keys.end(), std::make_move_iterator(more.begin()),
+              std::make_move_iterator(more.end()));
+}
+
+}  // namespace
+
+ScenarioKey controller_key() {
+  std::vector<ScenarioKey> keys = kind_keys();
+  append(keys, plan_keys());
+  keys.push_back(quantisation_key());
+  append(keys, propagation_keys());
+  for (ScenarioKey (*make)() : {cost_key, penalty_key, input_bounds_key}) keys.push_back(make());
+  append(keys, effort_keys());
+  return {.about = {.name = "controller"},
+          .keys = std::move(keys),
+          .after = ReadAfter::kSystem,
+          .table = "controller"};
+}
+
+}  // namespace qsmpc::harness

@@ -1,0 +1,161 @@
+// The keys of the map: what is safe, and where to go.
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/section_values.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr std::size_t kMostObstacles = 1000;  // every particle is held against each of them
+
+controller::Box unbounded_box(const ScenarioReading& reading) {
+  return controller::unbounded_safe_set(std::ssize(reading.system().states)).bounds;
+}
+
+void read_bounds(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  Section bounds = section.section(about.name);
+  reading.scenario.safe_set.bounds =
+      read_intervals(bounds, reading.system().states, {.fallback = unbounded_box(reading)}).box;
+}
+
+void read_obstacles(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  const std::vector<models::Coordinate>& states = reading.system().states;
+  const std::size_t most = value_of<ListValue>(about).limits.most;
+  const std::size_t count = section.list_size(about.name);
+  if (count > most) section.note(about.name, fmt::format("at most {} obstacles", most));
+  for (std::size_t i = 0; i < std::min(count, most); ++i) {
+    Section item = section.item(about.name, i);
+    NamedIntervals obstacle = read_intervals(item, states, {.fallback = unbounded_box(reading)});
+    if (obstacle.any) {
+      reading.scenario.safe_set.obstacles.push_back(std::move(obstacle.box));
+    } else if (item.present() && item.keys().empty()) {
+      item.note_here(fmt::format("an interval of at least one of {}",
+                                 fmt::join(coordinate_names(states), ", ")),
+                     "an obstacle that fills the whole space");
+    }
+  }
+}
+
+std::optional<std::string> obstacles_text(const Scenario& scenario,
+                                          const models::SystemDescription& system) {
+  if (scenario.safe_set.obstacles.empty()) return "[]";
+  std::string out;
+  for (const controller::Box& obstacle : scenario.safe_set.obstacles) {
+    out += "\n    - " + intervals_text(obstacle, system.states);
+  }
+  return out;
+}
+
+void read_angles(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  const models::SystemDescription& system = reading.system();
+  std::vector<std::string> known;
+  for (const models::Coordinate& state : system.states) {
+    if (state.is_angle) known.push_back(state.name);
+  }
+  std::vector<int>& angles = reading.scenario.target.angles;
+  for (const std::string& name : section.texts(about.name, kLongestName)) {
+    const int index = system.state_index(name);
+    if (std::ranges::find(known, name) == known.end()) {
+      section.note(about.name,
+                   known.empty() ? "no names, since no state of the system is an angle"
+                                 : "states that are angles, " + expected_names(name, known),
+                   name);
+    } else if (std::ranges::find(angles, index) != angles.end()) {
+      section.note(about.name, "each state once", name + " a second time");
+    } else {
+      angles.push_back(index);
+    }
+  }
+}
+
+std::optional<std::string> angles_text(const Scenario& scenario,
+                                       const models::SystemDescription& system) {
+  std::vector<std::string> names;
+  names.reserve(scenario.target.angles.size());
+  for (const int index : scenario.target.angles) {
+    names.push_back(system.states[static_cast<std::size_t>(index)].name);
+  }
+  return fmt::format("[{}]", fmt::join(names, ", "));
+}
+
+/// An interval for some of the states.
+MappingValue state_intervals(const std::string& words) {
+  return {{{.name = "STATE",
+            .family = NameFamily::kStates,
+            .values = {IntervalValue{}},
+            .words = words,
+            .unit = words.empty() ? "" : "of the state",
+            .fallback_words = words.empty() ? "" : "no bound"}}};
+}
+
+ScenarioKey angles_key() {
+  return {
+      .about = {.name = "angles",
+                .values = {list_of_values(SystemNameValue{NameFamily::kAngles}, {.once = true})},
+                .words = "list of states that are angles whose target is meant modulo 2π, e.g. "
+                         "`[heading]`: headings a turn apart then cost the same",
+                .see = "[below](#angles)",
+                .fallback = "[]",
+                .fallback_words = "`[]`: as many turns as `target.state` says"},
+      .read = read_angles,
+      .write = angles_text};
+}
+
+}  // namespace
+
+ScenarioKey safe_set_key() {
+  return {
+      .about = {.name = "safe_set"},
+      .keys = {{.about = {.name = "bounds", .values = {state_intervals("`[lower, upper]`")}},
+                .read = read_bounds,
+                .write =
+                    [](const Scenario& scenario, const models::SystemDescription& system) {
+                      return std::optional(intervals_text(scenario.safe_set.bounds, system.states));
+                    }},
+               {.about = {.name = "obstacles",
+                          .values = {list_of_values(state_intervals(""), {.most = kMostObstacles})},
+                          .words = fmt::format("up to {} boxes, each a mapping of at least one "
+                                               "state to `[lower, upper]`; a state that is not "
+                                               "named is not restricted",
+                                               kMostObstacles),
+                          .unit = "of the state",
+                          .fallback = "[]",
+                          .fallback_words = "none"},
+                .read = read_obstacles,
+                .write = obstacles_text}},
+      .after = ReadAfter::kSystem,
+      .table = "map"};
+}
+
+ScenarioKey target_key() {
+  return {
+      .about = {.name = "target"},
+      .keys = {{.about = {.name = "state",
+                          .values = {VectorValue{}},
+                          .words = "*n* numbers; must be safe",
+                          .required = true},
+                .member = [](Scenario& scenario) -> Eigen::VectorXd& {
+                  return scenario.target.state;
+                },
+                .check =
+                    [](const ScenarioReading& reading, Section& section) {
+                      check_safe(reading, section, "state", reading.scenario.target.state);
+                    }},
+               {.about = {.name = "radius",
+                          .values = {NumberValue{kPositive}},
+                          .words = "distance at which the target counts as reached, {range}, in "
+                                   "the plane of position (over all states for a system without "
+                                   "one)",
+                          .unit = "m"},
+                .member = [](Scenario& scenario) -> double& { return scenario.target.radius; }},
+               angles_key()},
+      .after = ReadAfter::kSystem,
+      .table = "map"};
+}
+
+}  // namespace qsmpc::harness

@@ -1,0 +1,228 @@
+// The keys of the system and of the plant that stands for it.
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/model_error_reader.hpp"
+#include "harness/scenario/plant_choice.hpp"
+#include "harness/scenario/plant_mapping_keys.hpp"
+#include "harness/scenario/plant_mapping_reader.hpp"
+#include "harness/scenario/shipped_files.hpp"
+#include "harness/scenario/yaml_text.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr double kShortestSimulatorStep = 1e-6;  // s
+
+// make_dynamics with its refusal, if any, as text.
+std::unique_ptr<const models::Dynamics> try_dynamics(const Scenario::Model& model, double time_step,
+                                                     std::string& refusal) {
+  try {
+    return models::make_dynamics(model.system, model.parameters, time_step);
+  } catch (const std::invalid_argument& error) {
+    refusal = error.what();
+    return nullptr;
+  }
+}
+
+// A refusal is tied to the parameter that causes it by trying each alone among the defaults.
+void read_parameters(ScenarioReading& reading, Section& section, const models::SystemEntry& entry) {
+  const double time_step = reading.scenario.time_step;
+  Scenario::Model& model = reading.scenario.model;
+  std::string refusal;
+  model.parameters = entry.defaults;
+  for (const auto& [name, fallback] : entry.defaults) {
+    const double value = section.number(name, fallback);
+    Scenario::Model alone{.system = entry.name, .parameters = entry.defaults};
+    alone.parameters[name] = value;
+    if (value == fallback || try_dynamics(alone, time_step, refusal) != nullptr) {
+      model.parameters[name] = value;
+    } else {
+      section.note(name, "what the system accepts: " + refusal);
+    }
+  }
+  reading.dynamics = try_dynamics(model, time_step, refusal);
+  if (reading.dynamics == nullptr) {
+    section.note_here("what the system accepts: " + refusal, "parameters that do not go together");
+    model.parameters = entry.defaults;
+    reading.dynamics = try_dynamics(model, time_step, refusal);
+  }
+}
+
+void read_system(ScenarioReading& reading, Section& section, const KeyDescription& /*about*/) {
+  for (const models::SystemEntry& entry : models::systems()) {
+    if (entry.name != reading.scenario.model.system) continue;
+    read_parameters(reading, section, entry);
+    return;
+  }
+  for (const std::string& key : section.keys()) (void)section.holds_text(key);  // of what system?
+}
+
+std::optional<std::string> parameters_text(const Scenario& scenario,
+                                           const models::SystemDescription& /*system*/) {
+  std::string out;
+  for (const auto& [name, value] : scenario.model.parameters) {
+    out += fmt::format("{}{}: {}", out.empty() ? "" : ", ", name, yaml_number(value));
+  }
+  return out.empty() ? std::nullopt : std::optional(out);
+}
+
+// The vehicle that drives, or is drawn for, a system unless the scenario names another. One that
+// has no place in the plane cannot be drawn without its own simulation.
+std::string default_mjcf(const models::SystemDescription& system, const std::string& kind) {
+  if (kind != "mujoco" && system.position_x < 0) return "";
+  std::string farthest;
+  for (const ShippedPlant& plant : shipped_plants()) {
+    if (plant.system == system.name) farthest = plant.mjcf;
+  }
+  return farthest;
+}
+
+void read_mjcf(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  Scenario::Plant& plant = reading.scenario.plant;
+  const bool knows_system = reading.dynamics != nullptr;
+  const std::string fallback = knows_system ? default_mjcf(reading.system(), plant.kind) : "";
+  const std::string name = section.text(about.name, fallback, value_of<TextValue>(about).longest);
+  const bool is_needed = plant.kind == "mujoco" && knows_system;
+  std::string path = find_mjcf(name, reading.lookup.folder);
+  if (path.empty() && section.is_override(about.name)) path = find_mjcf(name, "");
+  plant.mjcf = path.empty() && !reading.lookup.must_exist ? name : path;
+  if (name.empty() && is_needed) {
+    section.note(about.name, "a MuJoCo XML file, since the plant's kind is mujoco");
+  } else if (plant.mjcf.empty() && (is_needed || section.has(about.name)) && !name.empty()) {
+    section.note(about.name,
+                 "a file beside the scenario, or " + expected_names(name, shipped_mjcf_names()),
+                 "no file " + name);
+  }
+}
+
+void read_plant_time_step(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  NumberRange range = value_of<NumberValue>(about).range;
+  range.most = reading.scenario.time_step;
+  const double value = section.number(about.name, range.least, range);
+  if (section.has(about.name)) reading.scenario.plant.time_step = value;
+}
+
+void read_mapping(ScenarioReading& reading, Section& section, const KeyDescription& /*about*/) {
+  if (reading.dynamics == nullptr) return;
+  reading.scenario.plant.mapping = read_plant_mapping(
+      section, {.description = reading.system(), .parameters = reading.scenario.model.parameters});
+}
+
+ScenarioKey mjcf_key() {
+  return {
+      .about = {.name = "mjcf",
+                .values = {TextValue{}},
+                .words = "MuJoCo XML file: an absolute path, relative to the scenario's folder, or "
+                         "a shipped name, looked for in this order; with `--set` at last relative "
+                         "to the working folder. For an analytic plant it is only drawn, and may "
+                         "be `\"\"`",
+                .fallback_words = "the wheeled vehicle of the system, or the only one, see "
+                                  "[plants](plants.md); none for an analytic plant without a place "
+                                  "in the plane"},
+      .read = read_mjcf,
+      .write = [](const Scenario& scenario, const models::SystemDescription& /*system*/) {
+        return std::optional(quoted_yaml(mjcf_name(scenario.plant.mjcf)));
+      }};
+}
+
+ScenarioKey plant_time_step_key() {
+  return {.about = {.name = "time_step",
+                    .values = {NumberValue{{.least = kShortestSimulatorStep}}},
+                    .words = "time step of the simulator, {range} and at most `time_step`, which "
+                             "it divides",
+                    .unit = "s",
+                    .fallback_words = "the XML's"},
+          .read = read_plant_time_step,
+          .write = [](const Scenario& scenario,
+                      const models::SystemDescription& /*system*/) -> std::optional<std::string> {
+            if (!scenario.plant.time_step) return std::nullopt;
+            return yaml_number(*scenario.plant.time_step);
+          }};
+}
+
+ScenarioKey mapping_key() {
+  return {.about = {.values = {MappingValue{plant_mapping_keys()}},
+                    .words = "how the system appears in the MuJoCo model",
+                    .see = "[plants](plants.md#mapping)",
+                    .fallback_words = "what the XML says of itself"},
+          .read = read_mapping,
+          .write = [](const Scenario& scenario,
+                      const models::SystemDescription& /*system*/) -> std::optional<std::string> {
+            if (!scenario.plant.mapping) return std::nullopt;
+            return plant_mapping_text(*scenario.plant.mapping);
+          }};
+}
+
+}  // namespace
+
+ScenarioKey model_key() {
+  return {
+      .about = {.name = "model"},
+      .keys = {{.about = {.name = "system",
+                          .values = {NameValue{system_names()}},
+                          .words = "a name from `qsmpc list systems`",
+                          .required = true},
+                .member = [](Scenario& scenario) -> std::string& { return scenario.model.system; }},
+               {.about = {.name = "PARAMETER",
+                          .family = NameFamily::kParameters,
+                          .values = {NumberValue{}},
+                          .words = "a constant of the system",
+                          .see = "[systems](#systems)",
+                          .unit = "of the constant",
+                          .fallback_words = "the system's"},
+                .read = read_system,
+                .write = parameters_text}},
+      .layout = SectionLayout::kFlow,
+      .after = ReadAfter::kTimeStep,
+      .table = "plant"};
+}
+
+ScenarioKey plant_key() {
+  return {
+      .about = {.name = "plant"},
+      .keys = {{.about = {.name = "kind",
+                          .values = {NameValue{plant_kind_names()}},
+                          .words = "`mujoco`, or `analytic`: the planner's own model"},
+                .member = [](Scenario& scenario) -> std::string& { return scenario.plant.kind; }},
+               mjcf_key(),
+               plant_time_step_key(),
+               mapping_key()},
+      .layout = SectionLayout::kFlow,
+      .after = ReadAfter::kTimeStep,
+      .table = "plant"};
+}
+
+ScenarioKey model_error_key() {
+  return {
+      .about = {.name = "model_error",
+                .values = {TextValue{}, MappingValue{model_error_keys()}},
+                .words = "a mapping of the keys below, or the path of a YAML file with them, "
+                         "absolute or relative to the scenario's folder (with `--set` else to the "
+                         "working folder): how far the plant is from the model",
+                .see = "[below](#a-plant-that-is-not-the-model)",
+                .fallback_words = "none: certificates speak of the model"},
+      .read =
+          [](ScenarioReading& reading, Section& section, const KeyDescription& /*about*/) {
+            reading.scenario.model_error =
+                read_model_error(section, reading.problems,
+                                 {.system = reading.scenario.model.system,
+                                  .dim = std::ssize(reading.system().states),
+                                  .folder = reading.lookup.folder});
+          },
+      .write = [](const Scenario& scenario,
+                  const models::SystemDescription& /*system*/) -> std::optional<std::string> {
+        if (!scenario.model_error) return std::nullopt;
+        std::string text = "\n" + model_error_text(*scenario.model_error, "  ");
+        text.pop_back();  // the end of its last line
+        return text;
+      },
+      .after = ReadAfter::kSystem,
+      .table = "plant"};
+}
+
+}  // namespace qsmpc::harness

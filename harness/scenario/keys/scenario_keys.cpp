@@ -1,0 +1,45 @@
+#include <iterator>
+#include <utility>
+
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/scenario_text.hpp"
+#include "harness/scenario/value_checks.hpp"
+
+namespace qsmpc::harness {
+
+const std::vector<ScenarioKey>& scenario_keys() {
+  static const std::vector<ScenarioKey> keys = [] {
+    std::vector<ScenarioKey> all = experiment_keys();
+    for (ScenarioKey (*make)() :
+         {model_key, plant_key, time_step_key, initial_state_key, disturbance_key, model_error_key,
+          safe_set_key, target_key, estimator_key, controller_key, limit_key, video_key}) {
+      all.push_back(make());
+    }
+    return all;
+  }();
+  return keys;
+}
+
+KeyDescription describe(const ScenarioKey& key) {
+  KeyDescription description = key.about;
+  if (!key.keys.empty()) {
+    MappingValue section;
+    for (const ScenarioKey& inner : key.keys) {
+      section.keys.push_back(describe(inner));
+      description.required = description.required || inner.about.required;
+    }
+    description.values = {std::move(section)};
+  }
+  if (description.fallback.empty() && !description.required) {
+    description.fallback = default_text(key);
+  }
+  return description;
+}
+
+void check_safe(const ScenarioReading& reading, Section& section, const char* key,
+                const Eigen::VectorXd& point) {
+  const auto problem = why_unsafe(point, reading.scenario.safe_set, reading.system().states);
+  if (problem) section.note(key, "a state in the safe set", *problem);
+}
+
+}  // namespace qsmpc::harness
