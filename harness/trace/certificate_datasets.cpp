@@ -61,6 +61,7 @@ void append_certificates(Hdf5File& file, const std::vector<controller::StageBudg
   file.append(kCertificateValuePath, column_of(certificates, &controller::StageCertificate::value));
   for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
     std::vector<double> column;
+    column.reserve(certificates.size());
     for (const controller::StageCertificate& stage : certificates) {
       column.push_back(stage.of(entry.key));
     }
