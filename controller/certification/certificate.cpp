@@ -87,7 +87,7 @@ std::vector<StageCertificate> certify(const PredictedMotion& motion, const Unsaf
     // Of equal bounds the simplest is named.
     for (std::size_t i = table.size(); i-- > 0;) {
       if (!table[i].is_bound) continue;
-      // All are above 1 or not numbers where none is the value: then any says what is known anyway.
+      // Where no bound is a number up to 1, the value is 1 and any of them names it.
       if (certificate.figures[i] == certificate.value || certificate.kind.empty()) {
         certificate.kind = table[i].key;
       }

@@ -24,8 +24,8 @@ RegionPointer make_region(std::string_view shape, const Box& intervals) {
 UnsafeSet::UnsafeSet(const SafeSet& safe_set) : bounds_(safe_set.bounds) {
   check_safe_set(safe_set);
   regions_.reserve(1 + safe_set.obstacles.size());
-  regions_.push_back(make_walls(safe_set.bounds));
-  for (const Box& obstacle : safe_set.obstacles) regions_.push_back(make_box(obstacle));
+  regions_.push_back(make_region("walls", safe_set.bounds));
+  for (const Box& obstacle : safe_set.obstacles) regions_.push_back(make_region("box", obstacle));
 }
 
 double clearance(const Eigen::Ref<const Eigen::VectorXd>& point, const UnsafeSet& unsafe,

@@ -48,7 +48,7 @@ struct CostTermEntry {
 /// The table of terms, in the order in which they are added at one place.
 [[nodiscard]] const std::vector<CostTermEntry>& cost_terms();
 
-// The makers of the table, one file each but for the quadratic ones.
+// The makers of the table. The quadratic ones share a file, and so do the printed ones.
 [[nodiscard]] std::unique_ptr<StageTerm> make_state_term(const HorizonCostTerms& terms);
 [[nodiscard]] std::unique_ptr<StageTerm> make_input_term(const HorizonCostTerms& terms);
 [[nodiscard]] std::unique_ptr<StageTerm> make_terminal_term(const HorizonCostTerms& terms);

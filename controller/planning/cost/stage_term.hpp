@@ -52,8 +52,8 @@ class StageTerm {
   [[nodiscard]] virtual bool acts(Eigen::Index /*stage*/, Eigen::Index /*horizon*/) const {
     return true;
   }
-  /// Whether it has to see all particles of a stage at once, and runs its own loops by chunks:
-  /// possible where the step takes them (kStepped), behind the other terms there.
+  /// Whether it has to see all particles of a stage at once, and divides them into chunks itself.
+  /// Only terms at kStepped may; they come after the others there.
   [[nodiscard]] virtual bool needs_all() const { return false; }
 
   /// From now on these are held. What is referred to need not outlive the call. Allocates only for

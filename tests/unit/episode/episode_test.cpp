@@ -1,8 +1,6 @@
 #include "harness/episode/episode.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <string>
 #include <vector>
@@ -382,30 +380,6 @@ TEST(Episode, records_every_stage) {
       EXPECT_LE(certificate.value, 1.0);
     }
   }
-}
-
-TEST(Episode, a_plant_that_breaks_is_an_outcome_with_the_simulators_words) {
-  const Scenario scenario =
-      small_scenario({"plant.kind=mujoco", "disturbance.covariance=[1e24, 1e24, 0]"});
-  const Trace trace = run_episode(scenario, {.seed = 1});
-  EXPECT_EQ(trace.outcome, Outcome::kFault);
-  EXPECT_FALSE(trace.fault.empty());
-  EXPECT_TRUE(trace.final_state.allFinite());
-  ASSERT_FALSE(trace.steps.empty());
-  EXPECT_TRUE(trace.steps.back().residual.array().isNaN().all());
-  EXPECT_EQ(trace.steps.back().residual.size(), 3);
-}
-
-TEST(Episode, an_xml_file_that_mujoco_refuses_is_a_fault_in_its_own_words) {
-  const std::filesystem::path file =
-      std::filesystem::temp_directory_path() / "qsmpc_episode_bad.xml";
-  std::ofstream(file) << "<mujoco><worldbody><no_such_element/></worldbody></mujoco>";
-  const Scenario scenario = small_scenario({"plant.kind=mujoco", "plant.mjcf=" + file.string()});
-  const Trace trace = run_episode(scenario, {.seed = 1});
-  std::filesystem::remove(file);
-  EXPECT_EQ(trace.outcome, Outcome::kFault);
-  EXPECT_TRUE(trace.steps.empty());
-  EXPECT_THAT(trace.fault, ::testing::HasSubstr("no_such_element"));
 }
 
 }  // namespace episode_test
