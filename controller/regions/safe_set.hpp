@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "controller/regions/body.hpp"
+
 namespace qsmpc::controller {
 
 /// An axis-aligned box; ±infinity where a coordinate is not restricted.
@@ -18,10 +20,12 @@ struct Box {
   Eigen::VectorXd upper;
 };
 
-/// {x : bounds.lower < x < bounds.upper} without the closed boxes in `obstacles`.
+/// The states x in which every point of the body is within bounds.lower < x < bounds.upper and in
+/// none of the closed boxes in `obstacles`.
 struct SafeSet {
   Box bounds;
   std::vector<Box> obstacles;
+  Body body{};
 
   [[nodiscard]] Eigen::Index dim() const { return bounds.lower.size(); }
 };
