@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "controller/certification/affine_surrogate.hpp"
+#include "controller/certification/disc_surrogate.hpp"
 
 namespace qsmpc::controller {
 namespace {
@@ -18,19 +19,22 @@ constexpr double kTryNarrow = 0.03;
 RegionProbability bounds_of_surrogate(const CertificateProblem& problem, Eigen::Index stage,
                                       const SurrogateStage& surrogate) {
   if (surrogate.leaving >= 1.0) return {.markov = 1.0, .smooth = 1.0};
-  const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
-      [&](const std::vector<Eigen::Index>& axes) {
-        return smoothing_covariance(problem.motion(), stage, axes);
-      };
   const bool every = problem.effort() == CertificateEffort::kEvery;
-  const SurrogateLaw state{.law = surrogate.law,
-                           .error = surrogate.error,
-                           .higher = surrogate.higher,
-                           .smoothing = smoothing,
-                           .worthwhile = every ? kNegligible : kWorthwhile};
   RegionProbability sum{.markov = surrogate.leaving, .smooth = surrogate.leaving};
-  for (const RegionPointer& region : problem.unsafe().regions()) {
-    region->add_probability(stage, state, sum);
+  for (const DiscView& disc : problem.unsafe().discs()) {
+    const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
+        [&](const std::vector<Eigen::Index>& axes) {
+          return disc_smoothing(problem.motion(), stage, axes, disc.placement);
+        };
+    const DiscSurrogate centre = disc_surrogate(surrogate, disc.placement);
+    const SurrogateLaw state{.law = centre.law,
+                             .error = centre.error,
+                             .higher = centre.higher,
+                             .smoothing = smoothing,
+                             .worthwhile = every ? kNegligible : kWorthwhile};
+    for (const RegionPointer& region : disc.regions) {
+      region->add_probability(stage, state, sum);
+    }
   }
   return {.markov = std::min(1.0, sum.markov), .smooth = std::min(1.0, sum.smooth)};
 }

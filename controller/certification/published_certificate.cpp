@@ -50,8 +50,8 @@ double thesis_probability(const DiscreteMeasure& measure, const Box& bounds, dou
 
 double linear_transport_probability(const DiscreteMeasure& measure, const UnsafeSet& unsafe,
                                     double radius) {
-  return transported_mass(clearances(measure.locations, unsafe).cwiseMax(0.0), measure.weights,
-                          radius);
+  return transported_mass(clearances(measure.locations, unsafe).cwiseMax(0.0) / unsafe.lipschitz(),
+                          measure.weights, radius);
 }
 
 StageFigure published_probability(const CertificateProblem& problem) {

@@ -17,7 +17,8 @@ namespace qsmpc::controller {
                                                const std::vector<StageBudget>& budgets);
 
 /// Algorithms 3 and 4 of the thesis as printed: NOT an upper bound. The distance is a norm over the
-/// dimensions of the distances to the faces, which overestimates it, and obstacles do not count.
+/// dimensions of the distances to the faces, which overestimates it, and neither obstacles nor the
+/// body count: the vehicle is a point.
 /// (Spending d·m against the radius, instead of d²·m against its square, is loose only.)
 [[nodiscard]] double thesis_probability(const DiscreteMeasure& measure, const Box& bounds,
                                         double radius);

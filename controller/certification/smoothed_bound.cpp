@@ -20,15 +20,22 @@ constexpr int kBisections = 5;
 class SoftMixture {
  public:
   SoftMixture(const GaussianMixture& mixture, const UnsafeSet& unsafe, Eigen::Index stage)
-      : mixture_(mixture),
-        lowest_(mixture.centres.rowwise().minCoeff()),
-        highest_(mixture.centres.rowwise().maxCoeff()) {
-    const GaussianCentres centres{.centres = mixture.centres,
-                                  .covariance = mixture.covariance,
-                                  .lowest = lowest_,
-                                  .highest = highest_};
-    for (const RegionPointer& region : unsafe.regions()) {
-      regions_.push_back(region->soften(stage, centres));
+      : mixture_(mixture), discs_(unsafe.discs().size()) {
+    for (std::size_t n = 0; n < discs_.size(); ++n) {
+      const DiscView& view = unsafe.discs()[n];
+      Disc& disc = discs_[n];
+      const bool moves = !view.placement.at_position();
+      if (moves) view.placement.of(mixture.centres, {0, mixture.centres.cols()}, disc.moved);
+      const Points& points = moves ? disc.moved : mixture.centres;
+      disc.lowest = points.rowwise().minCoeff();
+      disc.highest = points.rowwise().maxCoeff();
+      const GaussianCentres centres{.centres = points,
+                                    .covariance = mixture.covariance,
+                                    .lowest = disc.lowest,
+                                    .highest = disc.highest};
+      for (const RegionPointer& region : view.regions) {
+        disc.regions.push_back(region->soften(stage, centres));
+      }
     }
   }
 
@@ -42,7 +49,9 @@ class SoftMixture {
       if (begin > 0) block = kSoftBlock;
       const Eigen::Index count = std::min(block, size - begin);
       std::array<double, kSoftBlock> total{};
-      for (const auto& region : regions_) region->add(t, begin, count, total.data());
+      for (const Disc& disc : discs_) {
+        for (const auto& region : disc.regions) region->add(t, begin, count, total.data());
+      }
       for (Eigen::Index i = 0; i < count; ++i) {
         sum += mixture_.weights[begin + i] * std::min(1.0, total[i]);
       }
@@ -53,11 +62,28 @@ class SoftMixture {
  private:
   static constexpr Eigen::Index kFirstBlock = 8;
 
+  /// A disc of the body with its centre about those of the mixture; regions refer to the rest.
+  struct Disc {
+    Points moved;
+    Eigen::VectorXd lowest;
+    Eigen::VectorXd highest;
+    std::vector<std::unique_ptr<const SoftRegion>> regions;
+  };
+
   const GaussianMixture& mixture_;
-  Eigen::VectorXd lowest_;
-  Eigen::VectorXd highest_;
-  std::vector<std::unique_ptr<const SoftRegion>> regions_;
+  std::vector<Disc> discs_;
 };
+
+/// Bounds √E|e|² of what separates each disc's centre from the one that turns with the mixture's
+/// centres alone: the error of the state, and what noise of the heading does to the disc,
+/// o √E|e^{iw} − 1|² (docs/theory/certificates.md, section 5).
+double radius_of_discs(const GaussianMixture& mixture, const UnsafeSet& unsafe, double radius) {
+  if (unsafe.reach() == 0.0) return radius;
+  const int heading = unsafe.body().heading;
+  const double variance = std::max(0.0, mixture.covariance(heading, heading));
+  return unsafe.lipschitz() * radius +
+         unsafe.reach() * std::sqrt(-2.0 * std::expm1(-0.5 * variance));
+}
 
 /// The same one by one, with allowances that serve the smallest t as well.
 double precise_value(const GaussianMixture& mixture, const UnsafeSet& unsafe, double t,
@@ -77,14 +103,18 @@ double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
                                const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                const UnsafeSet& unsafe, double t, Eigen::Index stage) {
   double sum = 0.0;
-  for (const RegionPointer& region : unsafe.regions()) {
-    sum += region->soft_probability(stage, mean, covariance, t);
+  for (const DiscView& disc : unsafe.discs()) {
+    const Eigen::VectorXd centre = disc.placement.of(mean);
+    for (const RegionPointer& region : disc.regions) {
+      sum += region->soft_probability(stage, centre, covariance, t);
+    }
   }
   return std::min(1.0, sum);
 }
 
-double smoothed_probability(const GaussianMixture& mixture, const UnsafeSet& unsafe, double radius,
-                            double useful_below, Eigen::Index stage) {
+double smoothed_probability(const GaussianMixture& mixture, const UnsafeSet& unsafe,
+                            double state_radius, double useful_below, Eigen::Index stage) {
+  const double radius = radius_of_discs(mixture, unsafe, state_radius);
   if (!std::isfinite(radius) || !mixture.centres.allFinite()) return 1.0;
   if (radius == 0.0) return precise_value(mixture, unsafe, kSmallestReach, stage);
   // A value below `useful_below` needs radius²/t² below it, hence a t beyond this one; and the

@@ -14,8 +14,8 @@
 
 namespace qsmpc::controller {
 
-/// At least E(1 − d(y, U)²/t²)₊ for y ~ N(mean, covariance) and U the unsafe set at `stage`.
-/// t > 0.
+/// At least E(1 − d(y, U)²/t²)₊ for y ~ N(mean, covariance) and U the unsafe set at `stage`, where
+/// discs of the body that are off its position are turned as `mean` is, not as y. t > 0.
 [[nodiscard]] double soft_unsafe_probability(const Eigen::Ref<const Eigen::VectorXd>& mean,
                                              const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                              const UnsafeSet& unsafe, double t,
@@ -28,11 +28,11 @@ struct GaussianMixture {
   const Eigen::MatrixXd& covariance;
 };
 
-/// An upper bound of P(y + e ∈ U) for y ~ mixture and any e with E|e|² ≤ radius²: the least over a
-/// search in t, each of whose values is a bound. 1 as soon as no value below `useful_below` is
-/// possible.
+/// An upper bound of P(y + e ∈ U) for y ~ mixture and any e with E|e|² ≤ state_radius²: the least
+/// over a search in t, each of whose values is a bound. 1 as soon as no value below `useful_below`
+/// is possible.
 [[nodiscard]] double smoothed_probability(const GaussianMixture& mixture, const UnsafeSet& unsafe,
-                                          double radius, double useful_below = 1.0,
+                                          double state_radius, double useful_below = 1.0,
                                           Eigen::Index stage = 0);
 
 }  // namespace qsmpc::controller

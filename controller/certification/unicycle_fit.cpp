@@ -12,26 +12,6 @@ namespace {
 /// max |sin δ| over |δ| ≤ reach.
 double largest_sine(double reach) { return reach < 0.5 * std::numbers::pi ? std::sin(reach) : 1.0; }
 
-/// Bounds of ‖cos δ − e^{−v/2}‖_p and ‖sin δ − e^{−v/2}δ‖_p for δ ~ N(0, v): what the best affine
-/// fit leaves along and across the mean heading. From Taylor's formula,
-///     cos δ − e^{−v/2} = −(δ² − v)/2 + a,      |a| ≤ δ⁴/24 + v²/8,
-///     sin δ − e^{−v/2}δ = −(δ³ − 3vδ)/6 + b,  |b| ≤ |δ|⁵/120 + |δ| v²/8.
-struct HeadingNorms {
-  double along;
-  double across;
-};
-
-HeadingNorms heading_norms(double variance, std::size_t k) {
-  const HigherOrderNorms& norms = higher_order_norms(k);
-  const double deviation = std::sqrt(variance);
-  const double square = variance * variance;
-  return {.along =
-              std::min(2.0, 0.5 * variance * norms.square + square * (norms.fourth / 24.0 + 0.125)),
-          .across = std::min(1.0 + deviation * norms.first,
-                             deviation * variance * norms.cube / 6.0 +
-                                 deviation * square * (norms.fifth / 120.0 + 0.125 * norms.first))};
-}
-
 /// The map, and what of its residual is known exactly.
 void fit_map(const models::UnicycleStructure& unicycle, const Gaussian& law,
              const UnicycleFeedback& feedback, Eigen::Index inputs, StatisticalLinearisation& fit) {

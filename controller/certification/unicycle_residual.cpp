@@ -1,7 +1,10 @@
 #include "controller/certification/unicycle_residual.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <complex>
+
+#include "controller/certification/higher_order_norms.hpp"
 
 namespace qsmpc::controller {
 namespace {
@@ -37,6 +40,20 @@ Eigen::Matrix2d residual_moments(double mean_i, double variance_i, double mean_j
   moments << conjugate.real() + plain.real(), plain.imag() - conjugate.imag(),
       plain.imag() + conjugate.imag(), conjugate.real() - plain.real();
   return 0.5 * moments;
+}
+
+// From Taylor's formula,
+//     cos δ − e^{−v/2} = −(δ² − v)/2 + a,      |a| ≤ δ⁴/24 + v²/8,
+//     sin δ − e^{−v/2}δ = −(δ³ − 3vδ)/6 + b,  |b| ≤ |δ|⁵/120 + |δ| v²/8.
+HeadingNorms heading_norms(double variance, std::size_t k) {
+  const HigherOrderNorms& norms = higher_order_norms(k);
+  const double deviation = std::sqrt(variance);
+  const double square = variance * variance;
+  return {.along =
+              std::min(2.0, 0.5 * variance * norms.square + square * (norms.fourth / 24.0 + 0.125)),
+          .across = std::min(1.0 + deviation * norms.first,
+                             deviation * variance * norms.cube / 6.0 +
+                                 deviation * square * (norms.fifth / 120.0 + 0.125 * norms.first))};
 }
 
 UnicycleResidual::UnicycleResidual(const models::UnicycleStructure& unicycle, Eigen::Index dim,

@@ -5,6 +5,7 @@
 // closed form, correlations included (docs/theory/surrogate.md, section 3).
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -18,6 +19,16 @@ namespace qsmpc::controller {
 /// covariance c, for a reach of one.
 [[nodiscard]] Eigen::Matrix2d residual_moments(double mean_i, double variance_i, double mean_j,
                                                double variance_j, double covariance);
+
+/// Bounds of ‖cos δ − e^{−v/2}‖_p and ‖sin δ − e^{−v/2}δ‖_p for δ ~ N(0, v): what the best affine
+/// fit leaves along and across the mean heading.
+struct HeadingNorms {
+  double along;
+  double across;
+};
+
+/// p = kHigherOrders[k].
+[[nodiscard]] HeadingNorms heading_norms(double variance, std::size_t k);
 
 /// The position residuals of all stages so far, carried along: κ_{k+1} = A_k κ_k + reach ρ_k.
 class UnicycleResidual {

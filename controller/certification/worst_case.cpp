@@ -55,8 +55,9 @@ double worst_case_probability(const Eigen::Ref<const Eigen::VectorXd>& distances
 
 double worst_case_probability(const DiscreteMeasure& measure, const UnsafeSet& unsafe,
                               double radius) {
-  return worst_case_probability(clearances(measure.locations, unsafe).cwiseMax(0.0),
-                                measure.weights, radius);
+  return worst_case_probability(
+      clearances(measure.locations, unsafe).cwiseMax(0.0) / unsafe.lipschitz(), measure.weights,
+      radius);
 }
 
 }  // namespace qsmpc::controller

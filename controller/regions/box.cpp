@@ -12,18 +12,24 @@ namespace {
 
 class BoxRegion final : public UnsafeRegion {
  public:
-  explicit BoxRegion(const Box& box) : part_(box_part(box)), intervals_(bounded_axes(box)) {}
+  /// `grown` holds every point that is nearer than `radius` to `core`.
+  BoxRegion(const Box& core, double radius, const Box& grown)
+      : core_(core),
+        core_intervals_(bounded_axes(core)),
+        radius_(radius),
+        part_(box_part(grown)),
+        intervals_(bounded_axes(grown)) {}
 
   [[nodiscard]] double signed_distance(
       Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& point) const override {
-    const double depth = depth_in_box(point, part_.box);
-    return depth >= 0.0 ? -depth : distance_to_box(point, part_.box);
+    const double depth = depth_in_box(point, core_);
+    return (depth >= 0.0 ? -depth : distance_to_box(point, core_)) - radius_;
   }
 
   void lower_to_distances(Eigen::Index /*stage*/, const Points& points,
                           Eigen::ArrayXd& least) const override {
-    const BoxDistances to(points, intervals_);
-    least = least.min((to.depth >= 0.0).select(-to.depth, to.squares.sqrt()));
+    const BoxDistances to(points, core_intervals_);
+    least = least.min((to.depth >= 0.0).select(-to.depth, to.squares.sqrt()) - radius_);
   }
 
   double add_penalty(Eigen::Index /*stage*/, const PenaltyBatch& batch) const override {
@@ -57,14 +63,31 @@ class BoxRegion final : public UnsafeRegion {
   }
 
  private:
+  Box core_;
+  std::vector<AxisInterval> core_intervals_;
+  double radius_;
   BoxPart part_;
   std::vector<AxisInterval> intervals_;
 };
 
 }  // namespace
 
-RegionPointer make_box(const Box& intervals) {
-  return std::make_shared<const BoxRegion>(intervals);
+RegionPointer make_box(const Box& intervals, const Growth& growth) {
+  Box grown = intervals;
+  bool position_alone = true;
+  for (const AxisInterval& interval : bounded_axes(intervals)) {
+    if (growth.grows(interval.axis)) {
+      grown.lower[interval.axis] -= growth.radius;
+      grown.upper[interval.axis] += growth.radius;
+    } else {
+      position_alone = false;
+    }
+  }
+  // A radius is a distance in the plane, which has no meaning together with other coordinates.
+  if (position_alone) {
+    return std::make_shared<const BoxRegion>(intervals, growth.radius, grown);
+  }
+  return std::make_shared<const BoxRegion>(grown, 0.0, grown);
 }
 
 }  // namespace qsmpc::controller

@@ -24,11 +24,28 @@ void check_box(const Box& box, Eigen::Index dim, const std::string& name) {
   }
 }
 
+void check_body(const Body& body, Eigen::Index dim) {
+  const auto is_state = [dim](int index) { return index >= 0 && index < dim; };
+  if (!body.is_point() && !is_state(body.x) && !is_state(body.y)) {
+    throw std::invalid_argument("body: discs need a position");
+  }
+  for (const Disc& disc : body.discs) {
+    if (!(disc.radius >= 0.0) || std::isinf(disc.radius) || !disc.offset.allFinite()) {
+      throw std::invalid_argument("body: radii must be finite and ≥ 0, offsets finite");
+    }
+    const bool placed = is_state(body.x) && is_state(body.y) && is_state(body.heading);
+    if (!disc.offset.isZero(0.0) && !placed) {
+      throw std::invalid_argument("body: a disc off the position needs x, y and heading");
+    }
+  }
+}
+
 void check_safe_set(const SafeSet& safe_set) {
   check_box(safe_set.bounds, safe_set.dim(), "safe set bounds");
   for (const Box& obstacle : safe_set.obstacles) {
     check_box(obstacle, safe_set.dim(), "obstacle");
   }
+  check_body(safe_set.body, safe_set.dim());
 }
 
 double distance_to_box(const Eigen::Ref<const Eigen::VectorXd>& point, const Box& box) {

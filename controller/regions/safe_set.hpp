@@ -37,7 +37,11 @@ struct SafeSet {
 /// NaN and lower < upper everywhere.
 void check_box(const Box& box, Eigen::Index dim, const std::string& name);
 
-/// check_box for the bounds and all obstacles.
+/// Throws std::invalid_argument on radii or offsets that make no sense, and on discs that states of
+/// dimension `dim` cannot place.
+void check_body(const Body& body, Eigen::Index dim);
+
+/// check_box for the bounds and all obstacles, check_body for the body.
 void check_safe_set(const SafeSet& safe_set);
 
 /// Euclidean distance from `point` to the box; 0 inside it.

@@ -7,6 +7,44 @@
 #include "models/constants.hpp"
 
 namespace qsmpc::controller {
+namespace {
+
+/// `box` in its position alone.
+Box of_position(Box box, const Body& body) {
+  for (Eigen::Index axis = 0; axis < box.lower.size(); ++axis) {
+    if (axis == body.x || axis == body.y) continue;
+    box.lower[axis] = -kInfinity;
+    box.upper[axis] = kInfinity;
+  }
+  return box;
+}
+
+bool restricts_position(const Box& box, const Body& body) {
+  const auto axes = bounded_axes(box);
+  return std::any_of(axes.begin(), axes.end(), [&](const AxisInterval& interval) {
+    return interval.axis == body.x || interval.axis == body.y;
+  });
+}
+
+DiscView view_of(const SafeSet& safe_set, const Disc& disc, bool first) {
+  const Body& body = safe_set.body;
+  const Growth growth{.radius = disc.radius, .x = body.x, .y = body.y};
+  DiscView view{.placement = DiscPlacement(body, disc), .regions = {}, .bounds = safe_set.bounds};
+  if (!first) view.bounds = of_position(view.bounds, body);
+  view.regions.push_back(make_region("walls", view.bounds, growth));
+  for (Eigen::Index axis = 0; axis < view.bounds.lower.size(); ++axis) {
+    if (!growth.grows(axis)) continue;
+    view.bounds.lower[axis] += disc.radius;
+    view.bounds.upper[axis] -= disc.radius;
+  }
+  for (const Box& obstacle : safe_set.obstacles) {
+    if (!first && !restricts_position(obstacle, body)) continue;
+    view.regions.push_back(make_region("box", obstacle, growth));
+  }
+  return view;
+}
+
+}  // namespace
 
 const std::vector<ShapeEntry>& region_shapes() {
   static const std::vector<ShapeEntry> table = {
@@ -16,40 +54,54 @@ const std::vector<ShapeEntry>& region_shapes() {
   return table;
 }
 
-RegionPointer make_region(std::string_view shape, const Box& intervals) {
+RegionPointer make_region(std::string_view shape, const Box& intervals, const Growth& growth) {
   check_box(intervals, intervals.lower.size(), std::string(shape));
-  return named_entry(region_shapes(), shape, "shape").make(intervals);
+  return named_entry(region_shapes(), shape, "shape").make(intervals, growth);
 }
 
-UnsafeSet::UnsafeSet(const SafeSet& safe_set) : bounds_(safe_set.bounds) {
+UnsafeSet::UnsafeSet(const SafeSet& safe_set) : bounds_(safe_set.bounds), body_(safe_set.body) {
   check_safe_set(safe_set);
-  regions_.reserve(1 + safe_set.obstacles.size());
-  regions_.push_back(make_region("walls", safe_set.bounds));
-  for (const Box& obstacle : safe_set.obstacles) regions_.push_back(make_region("box", obstacle));
+  const DiscView point = view_of(safe_set, {}, true);
+  regions_ = point.regions;
+  if (body_.is_point()) discs_.push_back(point);
+  for (const Disc& disc : body_.discs) {
+    discs_.push_back(view_of(safe_set, disc, discs_.empty()));
+    reach_ = std::max(reach_, discs_.back().placement.reach());
+    lipschitz_ = std::max(lipschitz_, discs_.back().placement.lipschitz());
+  }
 }
 
-double clearance(const Eigen::Ref<const Eigen::VectorXd>& point, const UnsafeSet& unsafe,
+double clearance(const Eigen::Ref<const Eigen::VectorXd>& state, const UnsafeSet& unsafe,
                  Eigen::Index stage) {
-  // What is not a number in the first is not lost in the minima.
-  double least = unsafe.walls().signed_distance(stage, point);
-  for (const RegionPointer& region : unsafe.regions()) {
-    least = std::min(least, region->signed_distance(stage, point));
+  if (!state.allFinite()) return -kInfinity;
+  double least = kInfinity;
+  for (const DiscView& disc : unsafe.discs()) {
+    const Eigen::VectorXd centre = disc.placement.of(state);
+    for (const RegionPointer& region : disc.regions) {
+      least = std::min(least, region->signed_distance(stage, centre));
+    }
   }
   return least;
 }
 
-double distance_to_unsafe(const Eigen::Ref<const Eigen::VectorXd>& point, const UnsafeSet& unsafe,
+double distance_to_unsafe(const Eigen::Ref<const Eigen::VectorXd>& state, const UnsafeSet& unsafe,
                           Eigen::Index stage) {
-  return std::max(0.0, clearance(point, unsafe, stage));
+  return std::max(0.0, clearance(state, unsafe, stage));
 }
 
-Eigen::VectorXd clearances(const Points& points, const UnsafeSet& unsafe, Eigen::Index stage) {
-  Eigen::ArrayXd least = Eigen::ArrayXd::Constant(points.cols(), kInfinity);
-  for (const RegionPointer& region : unsafe.regions()) {
-    region->lower_to_distances(stage, points, least);
+Eigen::VectorXd clearances(const Points& states, const UnsafeSet& unsafe, Eigen::Index stage) {
+  Eigen::ArrayXd least = Eigen::ArrayXd::Constant(states.cols(), kInfinity);
+  Points moved;
+  for (const DiscView& disc : unsafe.discs()) {
+    const bool moves = !disc.placement.at_position();
+    if (moves) disc.placement.of(states, {.begin = 0, .end = states.cols()}, moved);
+    const Points& centres = moves ? moved : states;
+    for (const RegionPointer& region : disc.regions) {
+      region->lower_to_distances(stage, centres, least);
+    }
   }
   // What is not a number is not safe; minima may have lost it.
-  for (const auto& x : points.rowwise()) {
+  for (const auto& x : states.rowwise()) {
     least = (x.transpose().array().isFinite()).select(least, -kInfinity);
   }
   return least.matrix();

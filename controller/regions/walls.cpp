@@ -78,6 +78,14 @@ class Walls final : public UnsafeRegion {
 
 }  // namespace
 
-RegionPointer make_walls(const Box& intervals) { return std::make_shared<const Walls>(intervals); }
+RegionPointer make_walls(const Box& intervals, const Growth& growth) {
+  Box room = intervals;
+  for (Eigen::Index axis = 0; axis < room.lower.size(); ++axis) {
+    if (!growth.grows(axis)) continue;
+    room.lower[axis] += growth.radius;
+    room.upper[axis] -= growth.radius;
+  }
+  return std::make_shared<const Walls>(room);
+}
 
 }  // namespace qsmpc::controller

@@ -44,6 +44,7 @@ struct Tally {
   int late_closed = 0;   // the same, at stages from 2 on of closed loops
   int thesis_below = 0;  // the thesis's value is certainly below the truth
   int finite_w2 = 0;
+  int bodies = 0;  // nontrivial certificates of bodies with discs off their position
   std::map<std::string, int> systems;  // nontrivial certificates by system
 };
 
@@ -94,12 +95,15 @@ void check_problem(const Problem& problem, const std::string& name, Generator& g
     ++tally.nontrivial;
     ++tally.systems[problem.system];
     if (k > 0 && problem.settings.closed_loop) ++tally.late_closed;
+    if (UnsafeSet(problem.settings.safe_set).reach() > 0.0) ++tally.bodies;
   }
   EXPECT_GE(horizon_bound(certificates), lower_limit(truth.any)) << name;
   // With the effort for control they are bounds, too, and little larger.
   const std::vector<StageCertificate> quick = certify(motion, problem.settings.safe_set, budgets);
   const SafeSet& safe_set = problem.settings.safe_set;
-  const double parts = 2.0 * static_cast<double>(safe_set.dim() + safe_set.obstacles.size());
+  const auto discs = std::max<std::size_t>(1, safe_set.body.discs.size());
+  const double parts =
+      2.0 * static_cast<double>(discs * (safe_set.dim() + safe_set.obstacles.size()));
   for (std::size_t k = 0; k < quick.size(); ++k) {
     EXPECT_LE(quick[k].value, 1.02 * certificates[k].value + 1e-4 * parts) << name;
     EXPECT_GE(quick[k].value, lower_limit(truth.stages[k])) << name;
@@ -124,6 +128,7 @@ TEST_P(Bounds, are_never_below_the_simulated_truth) {
   EXPECT_GT(tally.late_closed, 0);
   EXPECT_GT(tally.thesis_below, 0);
   EXPECT_GT(tally.finite_w2, tally.stages / 2);
+  EXPECT_GT(tally.bodies, tally.stages / 40);
   EXPECT_GE(tally.systems.size(), 3U);
   RecordProperty("stages", tally.stages);
   RecordProperty("informative", tally.informative);
@@ -131,6 +136,7 @@ TEST_P(Bounds, are_never_below_the_simulated_truth) {
   RecordProperty("late_closed", tally.late_closed);
   RecordProperty("thesis_below", tally.thesis_below);
   RecordProperty("finite_w2", tally.finite_w2);
+  RecordProperty("bodies", tally.bodies);
   for (const auto& [system, count] : tally.systems) RecordProperty(system, count);
 }
 

@@ -130,6 +130,23 @@ controller::SafeSet random_safe_set(Generator& generator, const Family& family,
   return safe_set;
 }
 
+/// Up to four discs of the size of `spread`, or a point; off the position where the system has a
+/// heading.
+controller::Body random_body(Generator& generator, const Family& family,
+                             const Eigen::VectorXd& spread) {
+  const bool plane = family.walls.size() == 3;
+  controller::Body body{.discs = {}, .x = 0, .y = plane ? 1 : -1, .heading = plane ? 2 : -1};
+  const int count = chance(generator, 0.5) ? uniform_int(generator, 1, 4) : 0;
+  for (int i = 0; i < count; ++i) {
+    controller::Disc disc{.radius = uniform(generator, 0.0, 2.0) * spread[0]};
+    if (plane && chance(generator, 0.8)) {
+      disc.offset = 5.0 * spread[0] * uniform_vector(generator, 2, -1.0, 1.0);
+    }
+    body.discs.push_back(disc);
+  }
+  return body;
+}
+
 /// The propagator and its points; few where each would take long.
 void random_propagation(Generator& generator, controller::PlannerSettings& settings) {
   const double which = uniform(generator, 0.0, 1.0);
@@ -190,6 +207,7 @@ Problem random_problem(Generator& generator) {
                                      .cwiseSqrt()
                                      .cwiseMax(0.01);
   settings.safe_set = random_safe_set(generator, family, path, spread);
+  settings.safe_set.body = random_body(generator, family, spread);
   return problem;
 }
 

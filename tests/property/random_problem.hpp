@@ -22,7 +22,7 @@ struct Problem {
 
 /// Any of the systems with correlated belief and noise (sometimes singular), 1 to 8 stages, 10 to
 /// 200 points, any propagator, open loop, LQR or a random gain, bounds a short way off the path,
-/// and 0 to 5 obstacles beside it.
+/// 0 to 5 obstacles beside it, and a point or up to four discs for a body.
 [[nodiscard]] Problem random_problem(Generator& generator);
 
 }  // namespace qsmpc::testing

@@ -1,6 +1,9 @@
 #include "tests/support/simulated_truth.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include <Eigen/Geometry>
 
 #include "controller/prediction/policy.hpp"
 #include "models/linear_algebra.hpp"
@@ -8,18 +11,57 @@
 namespace qsmpc::testing {
 namespace {
 
-/// Written out once more, so that the truth does not rest on what is tested.
-bool inside(const controller::Box& box, const controller::Points& states, Eigen::Index i) {
+// Written out once more, so that the truth does not rest on what is tested.
+
+/// Where the disc's centre is, as (x, y), of state i; coordinates that the system lacks are 0.
+Eigen::Vector2d centre_of(const controller::Body& body, const controller::Disc& disc,
+                          const controller::Points& states, Eigen::Index i) {
+  Eigen::Vector2d centre(body.x >= 0 ? states(body.x, i) : 0.0,
+                         body.y >= 0 ? states(body.y, i) : 0.0);
+  if (body.heading >= 0) {
+    centre += Eigen::Rotation2Dd(states(body.heading, i)).toRotationMatrix() * disc.offset;
+  }
+  return centre;
+}
+
+/// Whether the box holds a point of the disc, with the other coordinates of state i.
+bool touches(const controller::Box& box, const controller::Body& body, const controller::Disc& disc,
+             const controller::Points& states, Eigen::Index i) {
+  const Eigen::Vector2d centre = centre_of(body, disc, states, i);
+  double square = 0.0;
   for (Eigen::Index axis = 0; axis < states.rows(); ++axis) {
-    if (states(axis, i) < box.lower[axis] || states(axis, i) > box.upper[axis]) return false;
+    const bool is_position = axis == body.x || axis == body.y;
+    const double at = axis == body.x ? centre.x() : axis == body.y ? centre.y() : states(axis, i);
+    const double outside = std::max({0.0, box.lower[axis] - at, at - box.upper[axis]});
+    if (!is_position && outside > 0.0) return false;
+    square += outside * outside;
+  }
+  return std::sqrt(square) <= disc.radius;
+}
+
+/// Whether all of the disc is within the bounds, and the other coordinates of state i are.
+bool within(const controller::Box& bounds, const controller::Body& body,
+            const controller::Disc& disc, const controller::Points& states, Eigen::Index i) {
+  const Eigen::Vector2d centre = centre_of(body, disc, states, i);
+  for (Eigen::Index axis = 0; axis < states.rows(); ++axis) {
+    const bool is_position = axis == body.x || axis == body.y;
+    const double at = axis == body.x ? centre.x() : axis == body.y ? centre.y() : states(axis, i);
+    const double room = is_position ? disc.radius : 0.0;
+    if (at - room < bounds.lower[axis] || at + room > bounds.upper[axis]) return false;
   }
   return true;
 }
 
 bool unsafe(const controller::SafeSet& safe_set, const controller::Points& states, Eigen::Index i) {
-  return !inside(safe_set.bounds, states, i) ||
-         std::any_of(safe_set.obstacles.begin(), safe_set.obstacles.end(),
-                     [&](const controller::Box& obstacle) { return inside(obstacle, states, i); });
+  const controller::Body& body = safe_set.body;
+  const std::vector<controller::Disc> point(1);
+  for (const controller::Disc& disc : body.is_point() ? point : body.discs) {
+    if (!within(safe_set.bounds, body, disc, states, i)) return true;
+    for (const controller::Box& obstacle : safe_set.obstacles) {
+      if (touches(obstacle, body, disc, states, i)) return true;
+    }
+  }
+  return false;
 }
 
 /// Draws of N(0, covariance), one a column; the covariance may be singular.

@@ -9,8 +9,10 @@ namespace qsmpc::controller {
 StageFigure particle_bound(const CertificateProblem& problem) {
   return [&problem](std::size_t k, double /*least*/) {
     const StageBudget& budget = problem.budgets()[k + 1];
+    // An error of the state moves no disc by more than this many times as much.
+    const double lipschitz = problem.unsafe().lipschitz();
     const double nearest =
-        worst_case_probability(problem.clearance(k).cwiseMax(0.0),
+        worst_case_probability(problem.clearance(k).cwiseMax(0.0) / lipschitz,
                                problem.motion().prediction.stages[k + 1].weights, budget.total);
     return std::min(1.0, budget.leaving + nearest);
   };

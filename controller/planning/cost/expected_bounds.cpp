@@ -26,10 +26,9 @@ double smoothing_of(Eigen::Index count, Eigen::Index dim) {
   return std::min(1.0, bandwidth * bandwidth);
 }
 
-ExpectedBounds::ExpectedBounds(const SafeSet& safe_set, const Penalty& penalty)
-    : penalty_(penalty) {
+ExpectedBounds::ExpectedBounds(const Box& bounds, const Penalty& penalty) : penalty_(penalty) {
   if (penalty.shape != PenaltyShape::kSmooth || !(penalty.box > 0.0)) return;
-  bounds_ = bounded_axes(safe_set.bounds);
+  bounds_ = bounded_axes(bounds);
   coordinates_.resize(bounds_.size());
 }
 

@@ -34,7 +34,7 @@ namespace qsmpc::controller {
 class ExpectedBounds {
  public:
   /// Of penalties that are not smooth, or have no weight, nothing is taken in expectation.
-  ExpectedBounds(const SafeSet& safe_set, const Penalty& penalty);
+  ExpectedBounds(const Box& bounds, const Penalty& penalty);
 
   [[nodiscard]] bool empty() const { return bounds_.empty(); }
 

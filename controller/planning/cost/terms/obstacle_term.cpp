@@ -14,20 +14,51 @@ class ObstacleTerm final : public StageTerm {
 
   double add(const TermBatch& batch, const Executor& /*run*/) override {
     clear_if_blank(batch);
-    const PenaltyBatch particles{.locations = batch.points,
-                                 .weights = batch.weights,
-                                 .range = batch.range,
-                                 .scale = penalty_.obstacle,
-                                 .length = penalty_.length,
-                                 .adjoint = batch.gradient};
     double value = 0.0;
-    for (const RegionPointer& obstacle : unsafe_.obstacles()) {
-      value += obstacle->add_penalty(batch.stage, particles);
+    for (const DiscView& disc : unsafe_.discs()) {
+      value += disc.placement.at_position() ? penalty(disc, batch, batch.gradient)
+                                            : penalty_of_moved(disc, batch);
     }
     return value;
   }
 
  private:
+  [[nodiscard]] double penalty(const DiscView& disc, const TermBatch& batch,
+                               Points& gradient) const {
+    const PenaltyBatch particles{.locations = batch.points,
+                                 .weights = batch.weights,
+                                 .range = batch.range,
+                                 .scale = penalty_.obstacle,
+                                 .length = penalty_.length,
+                                 .adjoint = gradient};
+    double value = 0.0;
+    for (const RegionPointer& obstacle : disc.obstacles()) {
+      value += obstacle->add_penalty(batch.stage, particles);
+    }
+    return value;
+  }
+
+  [[nodiscard]] double penalty_of_moved(const DiscView& disc, const TermBatch& batch) const {
+    // A thread's own, as chunks are worked on side by side; allocates for the largest one only.
+    thread_local Points centres;
+    thread_local Points gradient;
+    thread_local Eigen::VectorXd weights;
+    const Eigen::Index count = batch.range.end - batch.range.begin;
+    disc.placement.of(batch.points, batch.range, centres);
+    gradient.setZero(centres.rows(), count);
+    weights = batch.weights.segment(batch.range.begin, count);
+    const TermBatch moved{.stage = batch.stage,
+                          .points = centres,
+                          .weights = weights,
+                          .range = {.begin = 0, .end = count},
+                          .gradient = gradient};
+    const double value = penalty(disc, moved, gradient);
+    if (value != 0.0) {
+      disc.placement.pull_back(batch.points, batch.range, gradient, batch.gradient);
+    }
+    return value;
+  }
+
   UnsafeSet unsafe_;
   const Penalty& penalty_;
 };

@@ -21,6 +21,14 @@ constexpr Eigen::Index kHorizon = 4;
 constexpr Eigen::Index kSize = 21;
 constexpr double kStep = 1e-6;
 
+/// A disc ahead of the position, and one that is off to a side.
+Body two_discs() {
+  return {.discs = {{.radius = 0.1, .offset = {0.3, 0.0}}, {.radius = 0.2, .offset = {-0.1, 0.15}}},
+          .x = 0,
+          .y = 1,
+          .heading = 2};
+}
+
 struct Problem {
   std::unique_ptr<const models::Dynamics> dynamics = models::make_dynamics("dubins", {}, 0.1);
   SafeSet safe_set{.bounds = {.lower = Eigen::Vector3d(-1.5, -1.5, -4.0),
@@ -45,14 +53,16 @@ struct Problem {
   }
 };
 
-/// check(entry, term, random particles of the term's dimension) for every term of either shape.
+/// check(entry, term, random particles of the term's dimension) for every term of either shape, of
+/// a point and of a body.
 template <class Check>
 void for_every_term(const Check& check) {
   Generator generator(31);
   std::set<std::string> seen;
-  for (const PenaltyShape shape : {PenaltyShape::kSmooth, PenaltyShape::kThesis}) {
+  for (const int variant : {0, 1, 2}) {
     Problem problem;
-    problem.penalty.shape = shape;
+    problem.penalty.shape = variant == 2 ? PenaltyShape::kThesis : PenaltyShape::kSmooth;
+    if (variant == 1) problem.safe_set.body = two_discs();
     const HorizonCostTerms terms = problem.terms();
     for (const CostTermEntry& entry : cost_terms()) {
       const std::unique_ptr<StageTerm> term = entry.make(terms);
@@ -146,9 +156,10 @@ TEST(CostTerms, are_parts_of_the_cost_by_name) {
 
 TEST(StageConstraints, slopes_are_the_derivatives_of_the_values) {
   Generator generator(32);
-  const Problem problem;
+  Problem problem;
   for (const StageConstraintEntry& entry : stage_constraints()) {
     SCOPED_TRACE(entry.name);
+    problem.safe_set.body = two_discs();
     EXPECT_FALSE(entry.summary.empty());
     EXPECT_EQ(entry.make(unbounded_safe_set(3)), nullptr);
     const auto constraint = entry.make(problem.safe_set);

@@ -60,7 +60,7 @@ double by_quadrature(const SafeSet& safe_set, const Penalty& penalty,
 TEST(ExpectedBounds, agree_with_quadrature) {
   Generator generator(431);
   const Penalty penalty{.box = 30.0, .length = 0.4};
-  const ExpectedBounds bounds(room(), penalty);
+  const ExpectedBounds bounds(room().bounds, penalty);
   for (const double scale : {0.01, 0.1, 0.5, 2.0}) {
     const DiscreteMeasure measure = random_measure(generator, 3, 21);
     const Eigen::VectorXd deviations = scale * Eigen::Vector3d(1.0, 0.6, 2.0);
@@ -77,8 +77,8 @@ TEST(ExpectedBounds, are_the_penalties_where_there_is_no_noise) {
   const Penalty penalty{.box = 30.0, .length = 0.4};
   const DiscreteMeasure measure = random_measure(generator, 3, 37);
   Points gradient;
-  const double value =
-      unsmoothed(ExpectedBounds(room(), penalty), Eigen::Vector3d::Zero(), measure, gradient);
+  const double value = unsmoothed(ExpectedBounds(room().bounds, penalty), Eigen::Vector3d::Zero(),
+                                  measure, gradient);
   Points reference = Points::Zero(3, 37);
   EXPECT_NEAR(
       value,
@@ -89,7 +89,7 @@ TEST(ExpectedBounds, are_the_penalties_where_there_is_no_noise) {
 
 TEST(ExpectedBounds, gradient_is_the_derivative) {
   Generator generator(433);
-  const ExpectedBounds bounds(room(), {.box = 30.0, .length = 0.4});
+  const ExpectedBounds bounds(room().bounds, {.box = 30.0, .length = 0.4});
   DiscreteMeasure measure = random_measure(generator, 3, 11);
   for (const auto& [scale, smoothing] :
        {std::pair(0.02, 0.0), std::pair(0.3, 0.0), std::pair(0.1, 0.4), std::pair(0.0, 1.0)}) {
@@ -114,7 +114,7 @@ TEST(ExpectedBounds, gradient_is_the_derivative) {
 }
 
 TEST(ExpectedBounds, far_away_nothing_is_lost_or_made_up) {
-  const ExpectedBounds bounds(room(), {.box = 1.0, .length = 0.4});
+  const ExpectedBounds bounds(room().bounds, {.box = 1.0, .length = 0.4});
   const Eigen::Vector3d deviations = Eigen::Vector3d::Constant(0.1);
   DiscreteMeasure one{.locations = Points::Zero(3, 1), .weights = Eigen::VectorXd::Ones(1)};
   Points gradient;
@@ -154,7 +154,7 @@ TEST(ExpectedBounds, of_smoothed_particles_agree_with_quadrature) {
     Eigen::VectorXd deviations;
     const DiscreteMeasure drawn = smoothed(measure, law, deviations);
     const double reference = by_quadrature(room(), penalty, deviations, drawn);
-    EXPECT_NEAR(expected(ExpectedBounds(room(), penalty), law, measure, gradient), reference,
+    EXPECT_NEAR(expected(ExpectedBounds(room().bounds, penalty), law, measure, gradient), reference,
                 1e-5 * reference)
         << smoothing;
   }
@@ -162,7 +162,7 @@ TEST(ExpectedBounds, of_smoothed_particles_agree_with_quadrature) {
 
 TEST(ExpectedBounds, all_smoothed_is_one_normal_law) {
   Generator generator(435);
-  const ExpectedBounds bounds(room(), {.box = 30.0, .length = 0.4});
+  const ExpectedBounds bounds(room().bounds, {.box = 30.0, .length = 0.4});
   const Eigen::VectorXd noise = Eigen::Vector3d(0.1, 0.05, 0.2);
   const DiscreteMeasure measure = random_measure(generator, 3, 21);
   const ExpectedBounds::Law law{.noise_deviation = noise, .smoothing = 1.0};
@@ -177,7 +177,7 @@ TEST(ExpectedBounds, all_smoothed_is_one_normal_law) {
 
 TEST(ExpectedBounds, do_not_depend_on_the_executor) {
   Generator generator(436);
-  ExpectedBounds bounds(room(), {.box = 30.0, .length = 0.4});
+  ExpectedBounds bounds(room().bounds, {.box = 30.0, .length = 0.4});
   const DiscreteMeasure measure = random_measure(generator, 3, 4 * kChunk + 77);
   const Eigen::VectorXd noise = Eigen::Vector3d(0.1, 0.05, 0.2);
   const ExpectedBounds::Law law{.noise_deviation = noise, .smoothing = 0.3};

@@ -1,0 +1,33 @@
+// The surrogate of a stage as one disc of the body sees it: a Gaussian for the state with the
+// disc's centre in place of its position, and what separates the two. The turn R(φ) o of a disc off
+// the position is treated as a unicycle's step is. Derivation: docs/theory/surrogate.md, section 8.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/certification/affine_surrogate.hpp"
+#include "controller/measure/measures.hpp"
+#include "controller/measure/normal/norm_orders.hpp"
+#include "controller/regions/disc_placement.hpp"
+
+namespace qsmpc::controller {
+
+struct DiscSurrogate {
+  Gaussian law;           ///< of the Gaussian
+  Eigen::VectorXd error;  ///< bounds √E[|difference|²; inside], coordinate by coordinate
+  HigherNorms higher;     ///< the same for the norms of higher order
+};
+
+/// `stage` must be known: a finite law.
+[[nodiscard]] DiscSurrogate disc_surrogate(const SurrogateStage& stage,
+                                           const DiscPlacement& placement);
+
+/// As `smoothing_covariance`, for the Gaussian and the difference above. stage ≥ 1.
+[[nodiscard]] Eigen::MatrixXd disc_smoothing(const PredictedMotion& motion, Eigen::Index stage,
+                                             const std::vector<Eigen::Index>& axes,
+                                             const DiscPlacement& placement);
+
+}  // namespace qsmpc::controller
