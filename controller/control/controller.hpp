@@ -9,6 +9,7 @@
 #pragma once
 
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -33,6 +34,8 @@ struct Situation {
   double time = 0.0;                   ///< s, when the period begins
   const Gaussian& belief;              ///< law of the state now, before it is observed
   const Eigen::VectorXd& observation;  ///< what is seen of the state now, state_dim
+  /// Of the drive, this one with them, at most; a large number where that is not known.
+  Eigen::Index periods_left = 1'000'000;
   /// When the input should be there; the best so far is wanted then.
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
 };
@@ -57,8 +60,9 @@ struct Decision {
   std::optional<CostParts> cost{};              ///< of the policy, as far as the controller sees it
   /// How the optimisation ended; empty where nothing is optimised.
   std::optional<SolverStatus> status{};
-  int evaluations = 0;    ///< of cost and gradient
-  bool fallback = false;  ///< nothing usable came out; the previous plan goes on
+  int evaluations = 0;         ///< of cost and gradient
+  bool fallback = false;       ///< nothing usable came out; the previous plan goes on
+  bool risk_exceeded = false;  ///< a limit of the risk is, as far as the controller certifies
   PlanTiming timing{};
 };
 
@@ -90,6 +94,8 @@ enum class LqrAbout {
 struct ControllerSettings {
   PlannerSettings problem;  ///< with how the quantised controller solves it
   LqrAbout lqr_about = LqrAbout::kPath;
+  /// Upper limit of the certified probability of ever being unsafe in a drive; infinite for none.
+  double mission = std::numeric_limits<double>::infinity();
 };
 
 /// What a controller's decisions have beside the input, known before it has made any.

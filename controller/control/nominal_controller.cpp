@@ -1,5 +1,7 @@
 // Nominal model predictive control: the same problem on the mean of the belief, without noise, and
 // the same policy about what comes out. Certainty equivalence, the rival that knows no risk.
+#include <limits>
+
 #include "controller/control/planning_controller.hpp"
 
 namespace qsmpc::controller {
@@ -9,12 +11,15 @@ ControllerSettings mean_only(ControllerSettings settings) {
   settings.problem.propagator = "noise_free";
   settings.problem.state_points = 1;
   settings.problem.quantiser = QuantiserKind::kProduct;
+  // It knows no risk that it could limit.
+  settings.problem.risk = {};
+  settings.mission = std::numeric_limits<double>::infinity();
   return settings;
 }
 
 std::unique_ptr<Controller> make_nominal(const models::Dynamics& dynamics,
                                          const ControllerSettings& settings) {
-  return std::make_unique<PlanningController>(dynamics, mean_only(settings).problem);
+  return std::make_unique<PlanningController>(dynamics, mean_only(settings));
 }
 
 }  // namespace

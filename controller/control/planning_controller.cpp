@@ -4,7 +4,12 @@ namespace qsmpc::controller {
 
 const Decision& PlanningController::decide(const Situation& situation) {
   check_situation(situation, planner_.dynamics().state_dim());
-  const Plan& plan = planner_.plan(situation.belief, situation.deadline);
+  const RiskLimits limits =
+      mission_.limits(situation.belief.mean, planner_.settings().horizon, situation.periods_left);
+  const Plan& plan =
+      planner_.plan(situation.belief,
+                    {.deadline = situation.deadline, .period = situation.period, .limits = limits});
+  mission_.spend(plan);
   policy_input(plan.policy, 0, situation.observation, offset_, decision_.input);
   decision_.policy = &plan.policy;
   decision_.particles.emplace(PlannedParticles{.belief = plan.belief,
@@ -14,6 +19,7 @@ const Decision& PlanningController::decide(const Situation& situation) {
   decision_.status = plan.status;
   decision_.evaluations = plan.evaluations;
   decision_.fallback = plan.fallback;
+  decision_.risk_exceeded = !plan.risk.kept;
   decision_.timing = plan.timing;
   return decision_;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "controller/control/controller.hpp"
+#include "controller/control/mission_budget.hpp"
 #include "controller/planning/planner.hpp"
 
 namespace qsmpc::controller {
@@ -10,8 +11,9 @@ namespace qsmpc::controller {
 class PlanningController final : public Controller {
  public:
   /// `dynamics` must outlive it. Throws std::invalid_argument as Planner.
-  PlanningController(const models::Dynamics& dynamics, const PlannerSettings& settings)
-      : planner_(dynamics, settings) {}
+  PlanningController(const models::Dynamics& dynamics, const ControllerSettings& settings)
+      : planner_(dynamics, settings.problem),
+        mission_(dynamics, settings.mission, settings.problem.cost.target) {}
 
   [[nodiscard]] static DecisionParts parts(const ControllerSettings& settings) {
     return {.stages = settings.problem.horizon,
@@ -22,10 +24,14 @@ class PlanningController final : public Controller {
   }
 
   const Decision& decide(const Situation& situation) override;
-  void reset() override { planner_.reset(); }
+  void reset() override {
+    planner_.reset();
+    mission_.reset();
+  }
 
  private:
   Planner planner_;
+  MissionBudget mission_;
   Eigen::VectorXd offset_;  // of what is observed from the nominal state
   Decision decision_;
 };

@@ -9,7 +9,7 @@ ControllerEntry quantised_controller() {
           .parts = PlanningController::parts,
           .make = [](const models::Dynamics& dynamics,
                      const ControllerSettings& settings) -> std::unique_ptr<Controller> {
-            return std::make_unique<PlanningController>(dynamics, settings.problem);
+            return std::make_unique<PlanningController>(dynamics, settings);
           }};
 }
 

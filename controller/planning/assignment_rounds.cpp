@@ -26,6 +26,16 @@ constexpr double kColdSettled = 1e-6;
 // Further rounds where a particle is beyond a bound with new assignments, though none was with the
 // old ones. Each asks for as much more room as was lacking.
 constexpr int kConstraintRounds = 5;
+// The same where a plan's certificate exceeds a limit.
+constexpr int kRiskRounds = 3;
+// Minimisations in one round until multipliers have settled, and how far, in logarithms of the
+// risk, from a limit that is asked to be kept by as much more.
+constexpr int kMultiplierRounds = 6;
+constexpr double kRiskTolerance = 0.01;
+// Rounds that minimise the risk itself, and what the cost counts for beside it: that many units of
+// the logarithm for all of it.
+constexpr int kLeastRiskRounds = 2;
+constexpr double kCostBesideRisk = 1e-3;
 
 }  // namespace
 
@@ -49,12 +59,21 @@ void AssignmentRounds::make_search(Eigen::Index entries, Search& out) {
   out.problem.upper.setConstant(inputs + entries, kInfinity);
   out.problem.lower.head(inputs) = settings_.bounds.lower.replicate(settings_.horizon, 1);
   out.problem.upper.head(inputs) = settings_.bounds.upper.replicate(settings_.horizon, 1);
-  HorizonCost& cost = evaluator_.cost();
-  out.problem.cost = [&cost](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
-    return cost.evaluate(z, gradient);
+  out.problem.cost = [this](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+    return evaluate(z, gradient);
   };
   out.solver = make_solver(settings_.solver, {.bounding = settings_.input_bounding});
   out.z.resize(inputs + entries);
+}
+
+double AssignmentRounds::evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+  const double cost = evaluator_.cost().evaluate(z, gradient);
+  if (aim_ == Aim::kCost) return cost;
+  if (aim_ == Aim::kAugmented) return cost + lagrangian_.add(z, gradient);
+  risk_gradient_.resize(z.size());
+  const double risk = evaluator_.risk()->log_total(z, risk_gradient_);
+  gradient = cost_share_ * gradient + risk_gradient_;
+  return cost_share_ * cost + risk;
 }
 
 void AssignmentRounds::start(OcpSolver& solver, bool warm) const {
@@ -69,6 +88,14 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
   start(*inputs_.solver, plan.warm);
   if (gains_) start(*gains_->solver, plan.warm);
   evaluator_.set_margin(0.0);
+  aim_ = Aim::kCost;
+  if (RiskConstraint* const risk = evaluator_.risk()) {
+    risk->set_margin(2.0 * kRiskTolerance);
+    if (!solver_entry(settings_.solver).takes_constraints) {
+      aim_ = Aim::kAugmented;
+      lagrangian_.start(*risk, evaluator_.evaluate_frozen(*plan.current), plan.warm);
+    }
+  }
   const int rounds = kAssignmentRounds + (plan.evaluated ? 0 : 1);
   // Constraints are met by rounds that are precise, or else by none; and gains are searched for
   // about inputs that have converged.
@@ -76,9 +103,10 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
   tolerance_ = loose ? kColdTolerance : 0.0;
   if (optimise(inputs_, rounds, plan) && gains_) {
     // What was predicted last may be a candidate that was refused.
-    evaluator_.freeze_assignments(plan.current->prediction, plan.current->policy);
+    evaluator_.hold(*plan.current);
     (void)optimise(*gains_, kGainRounds, plan);
   }
+  aim_ = Aim::kCost;
   if (plan.stopped()) return;
   if (plan.current->violation > kConstraintTolerance) {
     plan.status = SolverStatus::kInfeasible;
@@ -88,10 +116,28 @@ void AssignmentRounds::optimise(PlanInProgress& plan) {
   }
 }
 
+/// Whether the candidate leaves something to be kept by another round, which is then asked for
+/// more. `rounds` grows as far as it may.
+bool AssignmentRounds::asks_for_more(const Plan& candidate, PlanInProgress& plan, int round,
+                                     int& rounds) const {
+  const int usual = kAssignmentRounds + (plan.evaluated ? 0 : 1);
+  if (candidate.violation > kConstraintTolerance && plan.status != SolverStatus::kInfeasible) {
+    evaluator_.set_margin(evaluator_.margin() + candidate.violation);
+    rounds = std::clamp(round + 2, rounds, std::max(rounds, usual + kConstraintRounds));
+    return true;
+  }
+  RiskConstraint* const risk = evaluator_.risk();
+  if (risk == nullptr || candidate.risk.kept || !(candidate.risk.severity > 0.0)) return false;
+  // The surrogate that is held from now on is the candidate's; what it lacked the first time was
+  // for that of another plan.
+  if (round > 0) risk->set_margin(risk->margin() + std::clamp(candidate.risk.severity, 0.0, 0.5));
+  rounds = std::clamp(round + 2, rounds, std::max(rounds, usual + kRiskRounds));
+  return true;
+}
+
 /// Rounds of one search. Returns whether another one may follow.
 bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan) {
   PlanStopwatch stopwatch;
-  const int most_rounds = rounds + kConstraintRounds;
   const auto may_go_on = [&] {
     return plan.evaluations < settings_.max_evaluations && !plan.stopped();
   };
@@ -110,16 +156,11 @@ bool AssignmentRounds::optimise(Search& search, int rounds, PlanInProgress& plan
       const double change = std::abs(plan.candidate->cost.total() / search.least - 1.0);
       tolerance_ = std::min(tolerance_, kShareOfChange * change);
     }
-    const double excess = plan.candidate->violation;
     const bool accepted = !plan.evaluated || better(*plan.candidate, *plan.current);
+    const bool more = asks_for_more(*plan.candidate, plan, n, rounds);
     if (accepted) plan.accept_candidate();
     if (plan.late()) plan.status = SolverStatus::kDeadline;
-    if (excess > kConstraintTolerance && plan.status != SolverStatus::kInfeasible) {
-      evaluator_.set_margin(evaluator_.margin() + excess);
-      rounds = std::clamp(n + 2, rounds, most_rounds);
-    } else if (!accepted) {
-      break;
-    }
+    if (!accepted && !more) break;
   }
   if (!plan.evaluated) evaluator_.predict_and_evaluate(*plan.current);
   plan.evaluated = true;
@@ -139,13 +180,7 @@ void AssignmentRounds::predict_candidate(const Eigen::VectorXd& z, PlanInProgres
   evaluator_.predict_and_evaluate(*plan.candidate);
 }
 
-/// Optimises at the assignments that are held, from the current plan; the result is in search.z.
-/// Returns whether it is worth a prediction: finite, better by more than nothing, and in time.
-bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
-  const Plan& current = *plan.current;
-  search.z.setZero();
-  search.z.head(current.policy.inputs.size()) = current.policy.inputs.reshaped();
-  if (evaluator_.constraints()) search.problem.constraints = evaluator_.constraints();
+SolverOptions AssignmentRounds::solver_options(const PlanInProgress& plan) const {
   SolverOptions options{.max_evaluations = settings_.max_evaluations - plan.evaluations,
                         .constraint_tolerance = kConstraintTolerance};
   if (plan.warm) options.relative_tolerance = kWarmTolerance;
@@ -155,10 +190,36 @@ bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
     options.deadline = plan.deadline - std::chrono::duration_cast<PlanInProgress::Clock::duration>(
                                            evaluator_.prediction_time());
   }
-  const SolverResult& result = search.solver->minimise(search.problem, search.z, options);
-  plan.evaluations += result.evaluations;
+  return options;
+}
+
+/// One run of the solver from search.z; where it takes no constraints and the risk is limited, one
+/// after the other until the multipliers have settled.
+const SolverResult& AssignmentRounds::minimise(Search& search, PlanInProgress& plan) {
+  const SolverResult* result =
+      &search.solver->minimise(search.problem, search.z, solver_options(plan));
+  plan.evaluations += result->evaluations;
+  if (aim_ != Aim::kAugmented) return *result;
+  for (int n = 1; n < kMultiplierRounds && std::isfinite(result->value); ++n) {
+    if (!lagrangian_.update(result->z, kRiskTolerance)) break;
+    if (plan.evaluations >= settings_.max_evaluations || plan.late()) break;
+    search.z = result->z;
+    result = &search.solver->minimise(search.problem, search.z, solver_options(plan));
+    plan.evaluations += result->evaluations;
+  }
+  return *result;
+}
+
+/// Optimises at the assignments that are held, from the current plan; the result is in search.z.
+/// Returns whether it is worth a prediction: finite, better by more than nothing, and in time.
+bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
+  const Plan& current = *plan.current;
+  search.z.setZero();
+  search.z.head(current.policy.inputs.size()) = current.policy.inputs.reshaped();
+  if (evaluator_.constraints()) search.problem.constraints = evaluator_.constraints();
+  const SolverResult& result = minimise(search, plan);
   plan.status = result.status;
-  search.least = result.value;
+  search.least = aim_ == Aim::kCost ? result.value : evaluator_.cost().evaluate(result.z);
   if (!std::isfinite(result.value)) {
     // Without time for a single evaluation there is no value, and the plan stands as it is.
     plan.failed = plan.evaluated && result.status == SolverStatus::kNumericalTrouble;
@@ -167,10 +228,62 @@ bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
   search.z = result.z;
   if (!plan.evaluated) return true;
   if (plan.late()) return false;
-  const double gain = current.cost.total() - result.value;
+  if (!current.risk.kept && current.risk.severity > 0.0) return true;
+  const double gain = current.cost.total() - search.least;
   const double settled = plan.warm ? kWarmSettled : kColdSettled;
   return gain > settled * std::abs(current.cost.total()) ||
          current.violation > std::max(kConstraintTolerance, result.violation);
+}
+
+void AssignmentRounds::reduce_risk(PlanInProgress& plan) {
+  if (plan.stopped()) return;
+  PlanStopwatch stopwatch;
+  aim_ = Aim::kRisk;
+  for (int n = 0; n < kLeastRiskRounds && !plan.late(); ++n) {
+    evaluator_.hold(*plan.current);
+    const double cost = std::abs(plan.current->cost.total());
+    cost_share_ = kCostBesideRisk / std::max(cost, 1e-12);
+    inputs_.solver->forget();
+    inputs_.z = plan.current->policy.inputs.reshaped();
+    SolverOptions options = solver_options(plan);
+    // Planning proper may have used up its evaluations.
+    options.max_evaluations = std::max(1, settings_.max_evaluations / 2);
+    inputs_.problem.constraints.reset();
+    if (solver_entry(settings_.solver).takes_constraints) {
+      inputs_.problem.constraints = evaluator_.constraints();
+    }
+    const SolverResult& result = inputs_.solver->minimise(inputs_.problem, inputs_.z, options);
+    plan.evaluations += result.evaluations;
+    stopwatch.add_to(plan.timing.optimise);
+    if (!std::isfinite(result.value)) break;
+    predict_candidate(result.z, plan);
+    stopwatch.add_to(plan.timing.propagate);
+    const bool accepted = better(*plan.candidate, *plan.current);
+    if (accepted) plan.accept_candidate();
+    if (!accepted || plan.current->risk.severity <= 0.0) break;
+  }
+  aim_ = Aim::kCost;
+}
+
+void AssignmentRounds::brake(PlanInProgress& plan) {
+  PlanStopwatch stopwatch;
+  aim_ = Aim::kCost;
+  evaluator_.set_braking(true);
+  evaluator_.hold(*plan.current);
+  inputs_.solver->forget();
+  inputs_.z = plan.current->policy.inputs.reshaped();
+  inputs_.problem.constraints.reset();
+  SolverOptions options = solver_options(plan);
+  options.max_evaluations = settings_.max_evaluations;
+  const SolverResult& result = inputs_.solver->minimise(inputs_.problem, inputs_.z, options);
+  plan.evaluations += result.evaluations;
+  stopwatch.add_to(plan.timing.optimise);
+  evaluator_.set_braking(false);
+  evaluator_.hold(*plan.current);
+  if (!std::isfinite(result.value)) return;
+  predict_candidate(result.z, plan);
+  plan.accept_candidate();
+  stopwatch.add_to(plan.timing.propagate);
 }
 
 }  // namespace qsmpc::controller

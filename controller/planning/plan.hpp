@@ -5,6 +5,7 @@
 
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/risk/risk_limits.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
@@ -26,6 +27,7 @@ struct Plan {
   CostParts cost;               ///< of `prediction`
   /// Of the solver's last run; kDeadline where the time was up, this being the best so far.
   SolverStatus status = SolverStatus::kConverged;
+  PlanRisk risk;           ///< of `policy`, where there are limits
   double violation = 0.0;  ///< how far a particle is beyond the bounds at most, where the solver
                            ///< takes them as constraints; 0 elsewhere
   int evaluations = 0;     ///< of cost and gradient
@@ -38,7 +40,8 @@ struct Plan {
 inline constexpr double kConstraintTolerance = 1e-6;
 
 /// Whether `plan` is better than `other`: feasible before infeasible, then the cheaper; of two that
-/// are infeasible the nearer. Anything is better than a cost that is not finite.
+/// are infeasible the nearer, by the bounds first and then by the risk. Anything is better than a
+/// cost that is not finite.
 [[nodiscard]] bool better(const Plan& plan, const Plan& other);
 
 }  // namespace qsmpc::controller

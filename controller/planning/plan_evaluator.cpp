@@ -29,6 +29,12 @@ bool better(const Plan& plan, const Plan& other) {
   const bool other_feasible = other.violation <= kConstraintTolerance;
   if (feasible != other_feasible) return feasible;
   if (!feasible && plan.violation != other.violation) return plan.violation < other.violation;
+  if (plan.risk.kept != other.risk.kept) return plan.risk.kept;
+  if (!plan.risk.kept) {
+    const double severity = std::max(0.0, plan.risk.severity);
+    const double other_severity = std::max(0.0, other.risk.severity);
+    if (severity != other_severity) return severity < other_severity;
+  }
   return plan.cost.total() < other.cost.total() || !std::isfinite(other.cost.total());
 }
 
@@ -52,11 +58,39 @@ PlanEvaluator::PlanEvaluator(const models::Dynamics& dynamics, const PlannerSett
       constraints_(cost_, settings.safe_set),
       z_(Eigen::Index{dynamics.input_dim()} * settings.horizon) {
   if (solver_entry(settings.solver).takes_constraints) constraint_set_.emplace();
+  set_limits(settings.risk, 0);
+}
+
+void PlanEvaluator::set_limits(const RiskLimits& limits, Eigen::Index period) {
+  if (!risk_ && limits.any()) {
+    risk_.emplace(dynamics_, settings_);
+    constraints_.set_risk(&*risk_);
+  }
+  if (risk_) risk_->set_limits(limits, period);
+}
+
+void PlanEvaluator::set_braking(bool braking) {
+  const QuadraticCost& weights = settings_.cost;
+  if (!braking) {
+    weights_ = weights;
+    nearest_target(weights.target, weights.angles, gaussian_.mean, weights_.target);
+    return;
+  }
+  weights_.state.setZero();
+  weights_.target.setZero();
+  weights_.angles.clear();
+  for (const int speed : speeds_of(dynamics_)) weights_.state(speed, speed) = 1.0;
+  weights_.terminal = weights_.state;
+  weights_.input.setZero();
+}
+
+void PlanEvaluator::hold_risk(const Policy& policy) {
+  if (risk_) risk_->hold(gaussian_, policy);
 }
 
 void PlanEvaluator::take_belief(const Gaussian& belief) {
   quantiser_.quantise(belief, belief_);
-  mean_ = belief.mean;
+  gaussian_ = belief;
   within_ = belief_.within_covariance;
   nearest_target(settings_.cost.target, settings_.cost.angles, belief.mean, weights_.target);
 }
@@ -64,13 +98,14 @@ void PlanEvaluator::take_belief(const Gaussian& belief) {
 void PlanEvaluator::set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                const Eigen::MatrixXd& gain_change, Plan& plan) {
   plan.gain_change = gain_change;
-  policies_.make(mean_, inputs, gain_change, plan.policy);
+  policies_.make(gaussian_.mean, inputs, gain_change, plan.policy);
 }
 
 void PlanEvaluator::predict_and_evaluate(Plan& plan) {
   const auto start = std::chrono::steady_clock::now();
   predict(dynamics_, *propagator_, belief_.measure, plan.policy, settings_.run, scratch_,
           plan.prediction);
+  if (risk_) risk_->certify(gaussian_, plan.policy, plan.risk);
   freeze_assignments(plan.prediction, plan.policy);
   flatten(plan.policy);
   cost_.evaluate(z_);
@@ -79,7 +114,10 @@ void PlanEvaluator::predict_and_evaluate(Plan& plan) {
   if (constraint_set_) {
     constraint_values_.resize(constraint_set_->count);
     constraint_set_->values(z_, constraint_values_);
-    plan.violation = std::max(0.0, constraint_values_.maxCoeff() - constraints_.margin());
+    if (constraints_.particle_count() > 0) {
+      const auto particles = constraint_values_.head(constraints_.particle_count());
+      plan.violation = std::max(0.0, particles.maxCoeff() - constraints_.margin());
+    }
   }
   prediction_time_ = std::chrono::steady_clock::now() - start;
 }
@@ -87,6 +125,11 @@ void PlanEvaluator::predict_and_evaluate(Plan& plan) {
 void PlanEvaluator::freeze_assignments(const Prediction& prediction, const Policy& policy) {
   cost_.freeze_assignments(prediction, policy);
   if (constraint_set_) constraints_.describe(prediction, *constraint_set_);
+}
+
+void PlanEvaluator::hold(Plan& plan) {
+  if (risk_) risk_->certify(gaussian_, plan.policy, plan.risk);
+  freeze_assignments(plan.prediction, plan.policy);
 }
 
 bool PlanEvaluator::can_freeze(const Plan& plan) const {

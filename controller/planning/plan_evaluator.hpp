@@ -15,6 +15,7 @@
 #include "controller/planning/plan.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
+#include "controller/planning/risk/risk_constraint.hpp"
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -41,15 +42,29 @@ class PlanEvaluator {
   void set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                   const Eigen::MatrixXd& gain_change, Plan& plan);
 
-  /// Predicts under plan.policy with assignments of its own, freezes them, and evaluates the cost.
+  /// Predicts under plan.policy with assignments of its own, freezes them, and evaluates the cost;
+  /// where there are limits of the risk, certifies it and holds its surrogate, too.
   void predict_and_evaluate(Plan& plan);
 
   /// Holds these assignments from now on; `prediction` must stay alive and unchanged.
   void freeze_assignments(const Prediction& prediction, const Policy& policy);
+  /// Holds the assignments of a plan that has been predicted, and its surrogate.
+  void hold(Plan& plan);
   /// Whether the plan's assignments can be held for the belief at hand.
   [[nodiscard]] bool can_freeze(const Plan& plan) const;
   /// What the assignments that are held say of the plan's cost.
   [[nodiscard]] double evaluate_frozen(const Plan& plan);
+
+  /// The limits of the risk, where there are any.
+  [[nodiscard]] RiskConstraint* risk() { return risk_ ? &*risk_ : nullptr; }
+  /// Limits of the plan that is made in period `period` of a drive.
+  void set_limits(const RiskLimits& limits, Eigen::Index period);
+  /// Holds the surrogate of this policy for the belief at hand; without limits, nothing.
+  void hold_risk(const Policy& policy);
+
+  /// Whether the cost is, from now on, that of moving at all; else what the settings say again.
+  /// Assignments that are held have to be held anew.
+  void set_braking(bool braking);
 
   [[nodiscard]] HorizonCost& cost() { return cost_; }
   [[nodiscard]] PolicyMaker& policies() { return policies_; }
@@ -85,8 +100,9 @@ class PlanEvaluator {
   PredictionScratch scratch_;
   Eigen::VectorXd constraint_values_;
   Eigen::VectorXd z_;  // input_dim * horizon
-  Eigen::VectorXd mean_;
+  Gaussian gaussian_;  // the belief at hand
   GaussianQuantisation belief_;
+  std::optional<RiskConstraint> risk_;
   std::chrono::duration<double> prediction_time_{0.0};
 };
 

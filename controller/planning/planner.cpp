@@ -29,14 +29,25 @@ Planner::Planner(const models::Dynamics& dynamics, PlannerSettings settings)
       settings_(checked(std::move(settings), dynamics)),
       evaluator_(dynamics_, settings_),
       start_(dynamics_, settings_, evaluator_),
-      rounds_(dynamics_, settings_, evaluator_) {}
+      rounds_(dynamics_, settings_, evaluator_) {
+  require(settings_.otherwise != RiskOtherwise::kBrake || !speeds_of(dynamics_).empty(),
+          "a system without a speed among its states cannot brake");
+}
 
-const Plan& Planner::plan(const Gaussian& belief, Clock::time_point deadline) {
-  PlanInProgress plan{.deadline = deadline};
+void Planner::set_limits(const PlanRequest& request) {
+  const RiskLimits& limits = settings_.risk;
+  evaluator_.set_limits({.first = std::min(limits.first, request.limits.first),
+                         .stage = std::min(limits.stage, request.limits.stage),
+                         .plan = std::min(limits.plan, request.limits.plan)},
+                        request.period);
+}
+
+const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
+  PlanInProgress plan{.deadline = request.deadline};
   if (std::isfinite(settings_.deadline)) {
     const auto longest = std::chrono::duration_cast<Clock::duration>(
         std::chrono::duration<double>(settings_.deadline));
-    plan.deadline = std::min(deadline, Clock::now() + longest);
+    plan.deadline = std::min(request.deadline, Clock::now() + longest);
   }
   std::array<Plan*, 2> spare{};
   for (std::size_t n = 0, to = 0; n < plans_.size() && to < spare.size(); ++n) {
@@ -45,11 +56,13 @@ const Plan& Planner::plan(const Gaussian& belief, Clock::time_point deadline) {
   plan.current = spare[0];
   plan.candidate = spare[1];
   PlanStopwatch stopwatch;
+  set_limits(request);
   evaluator_.take_belief(belief);
   stopwatch.add_to(plan.timing.quantise);
   start_.choose(belief, failed_ ? nullptr : last_, plan);
   stopwatch.add_to(plan.timing.propagate);
   rounds_.optimise(plan);
+  if (evaluator_.risk() != nullptr) settle(plan);
   Plan& made = *plan.current;
   made.fallback = (plan.failed || !std::isfinite(made.cost.total())) && last_ != nullptr;
   if (made.fallback) fall_back(made);
@@ -64,6 +77,37 @@ const Plan& Planner::plan(const Gaussian& belief, Clock::time_point deadline) {
   failed_ = made.fallback || plan.status == SolverStatus::kNumericalTrouble;
   last_ = &made;
   return made;
+}
+
+/// Where a limit of the risk is exceeded: looks for a plan within it once more, and else does what
+/// the settings say. Then notes how the plan goes on.
+void Planner::settle(PlanInProgress& plan) {
+  if (kept_inputs_.size() > 0) shift_inputs(Eigen::MatrixXd(kept_inputs_), kept_inputs_);
+  const bool usable = !plan.failed && std::isfinite(plan.current->cost.total());
+  if (usable && !plan.current->risk.kept && !plan.late()) {
+    if (kept_inputs_.size() > 0) try_tail(plan, false);
+    if (!plan.current->risk.kept && plan.current->risk.severity > 0.0) rounds_.reduce_risk(plan);
+    const bool exceeded = !plan.current->risk.kept;
+    if (exceeded && settings_.otherwise == RiskOtherwise::kPrevious && kept_inputs_.size() > 0) {
+      try_tail(plan, true);
+    }
+    if (exceeded && settings_.otherwise == RiskOtherwise::kBrake) rounds_.brake(plan);
+  }
+  if (!plan.current->risk.kept) {
+    if (!plan.stopped()) plan.status = SolverStatus::kRiskExceeded;
+  } else {
+    kept_inputs_ = plan.current->policy.inputs;
+  }
+}
+
+/// Makes what the last plan within its limits has come to the current one, where it is better or in
+/// any case.
+void Planner::try_tail(PlanInProgress& plan, bool in_any_case) {
+  PlanStopwatch stopwatch;
+  evaluator_.set_policy(kept_inputs_, plan.current->gain_change, *plan.candidate);
+  evaluator_.predict_and_evaluate(*plan.candidate);
+  if (in_any_case || better(*plan.candidate, *plan.current)) plan.accept_candidate();
+  stopwatch.add_to(plan.timing.propagate);
 }
 
 /// Nothing usable came out: goes on with what was planned before.

@@ -7,7 +7,7 @@
 // A planner remembers its last plan, from which the next one is started; apart from that, from the
 // timings, and from a deadline if it has one, a plan depends on nothing but settings and beliefs.
 // Once it has planned for beliefs of a kind, planning allocates nothing (but for what solvers of
-// other people's and the slower propagators do).
+// other people's, the slower propagators and, where the risk is limited, certificates do).
 #pragma once
 
 #include <array>
@@ -26,6 +26,14 @@
 
 namespace qsmpc::controller {
 
+/// What a plan is to be made for, beside the belief.
+struct PlanRequest {
+  std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+  Eigen::Index period = 0;  ///< of the drive, which decides what the model error is
+  /// Limits of this plan's risk beside those of the settings; the lower one counts.
+  RiskLimits limits{};
+};
+
 class Planner {
  public:
   /// `dynamics` must outlive the planner. Throws std::invalid_argument on settings that make no
@@ -37,12 +45,12 @@ class Planner {
   Planner& operator=(Planner&&) = delete;
   ~Planner() = default;
 
-  /// Plans for `belief` (state_dim; checked, throws std::invalid_argument), until `deadline` or
-  /// that of the settings, whichever is earlier. Numerical trouble and a deadline that has passed
-  /// are statuses of the plan, never exceptions; after a failure the next plan is a cold start. The
-  /// plan stays valid until the next call.
-  const Plan& plan(const Gaussian& belief, std::chrono::steady_clock::time_point deadline =
-                                               std::chrono::steady_clock::time_point::max());
+  /// Plans for `belief` (state_dim; checked, throws std::invalid_argument), until the request's
+  /// deadline or that of the settings, whichever is earlier. Numerical trouble, a deadline that has
+  /// passed and a limit of the risk that no plan was found for are statuses of the plan, never
+  /// exceptions; after a failure the next plan is a cold start. The plan stays valid until the next
+  /// call.
+  const Plan& plan(const Gaussian& belief, const PlanRequest& request = {});
 
   /// The plan whose nominal inputs are `inputs` (input_dim x horizon): predicted and evaluated for
   /// `belief`, with the gains that belong to them, and not optimised. The plan stays valid until
@@ -59,6 +67,7 @@ class Planner {
   void reset() {
     last_ = nullptr;
     failed_ = false;
+    kept_inputs_.resize(0, 0);
   }
 
   [[nodiscard]] const PlannerSettings& settings() const { return settings_; }
@@ -66,16 +75,20 @@ class Planner {
   [[nodiscard]] const models::Dynamics& dynamics() const { return dynamics_; }
 
  private:
+  void set_limits(const PlanRequest& request);
   void fall_back(Plan& plan);
+  void settle(PlanInProgress& plan);
+  void try_tail(PlanInProgress& plan, bool in_any_case);
 
   const models::Dynamics& dynamics_;
   PlannerSettings settings_;
   PlanEvaluator evaluator_;
   StartChoice start_;
   AssignmentRounds rounds_;
-  std::array<Plan, 3> plans_;  // the last one, and room for the next and what may replace it
-  Plan* last_ = nullptr;       // the plan last made, null for a cold start
-  bool failed_ = false;        // the last plan fell back, or its solver met numerical trouble
+  std::array<Plan, 3> plans_;    // the last one, and room for the next and what may replace it
+  Plan* last_ = nullptr;         // the plan last made, null for a cold start
+  bool failed_ = false;          // the last plan fell back, or its solver met numerical trouble
+  Eigen::MatrixXd kept_inputs_;  // of the last plan within its limits, as they go on now; or empty
   Plan prescribed_;
 };
 

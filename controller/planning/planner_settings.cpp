@@ -1,6 +1,7 @@
 #include "controller/planning/planner_settings.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 namespace qsmpc::controller {
@@ -55,9 +56,22 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
                 settings.feedback_gain->cols() == state_dim && settings.feedback_gain->allFinite(),
             "the feedback gain must be a finite matrix of inputs x states");
   }
+  require(settings.risk.first >= 0.0 && settings.risk.stage >= 0.0 && settings.risk.plan >= 0.0,
+          "limits of the risk must not be negative");
+  require(settings.feedback_effort > 0.0 && std::isfinite(settings.feedback_effort),
+          "the effort of the feedback must be positive");
   require(settings.deadline > 0.0, "the deadline must be positive");
   require(settings.run != nullptr, "there must be an executor");
   check_safe_set(settings.safe_set);
+}
+
+std::vector<int> speeds_of(const models::Dynamics& dynamics) {
+  std::vector<int> speeds;
+  const std::vector<models::Coordinate>& states = dynamics.description().states;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    if (states[i].unit == "m/s") speeds.push_back(static_cast<int>(i));
+  }
+  return speeds;
 }
 
 }  // namespace qsmpc::controller

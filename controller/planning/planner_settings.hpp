@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -11,8 +12,11 @@
 #include "controller/parallel.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/risk/risk_limits.hpp"
+#include "controller/prediction/model_error.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/regions/safe_set.hpp"
+#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::controller {
 
@@ -20,6 +24,9 @@ struct PlannerSettings {
   int horizon = 8;
   bool closed_loop = true;
   std::optional<Eigen::MatrixXd> feedback_gain;  ///< input_dim x state_dim; else from LQR
+  /// Closed loop with gains from LQR: how much more the input weighs there than in the cost, > 0.
+  /// Gentler gains meet the bounds of the input less often, of which certificates make the worst.
+  double feedback_effort = 1.0;
   /// Closed loop: whether a matrix that is added to the gains of all stages is optimised along with
   /// the inputs.
   bool optimise_gain = false;
@@ -40,6 +47,10 @@ struct PlannerSettings {
   /// not used.
   Penalty penalty;
   SafeSet safe_set;
+  RiskLimits risk;  ///< of every plan's certificates
+  RiskOtherwise otherwise = RiskOtherwise::kLeastRisk;
+  /// How far the plant is from the model; what is certified then holds for the plant.
+  std::optional<ModelError> model_error;
   InputBounds bounds;
   Executor run = run_in_turn;  ///< what loops over many particles go through
 };
@@ -47,5 +58,8 @@ struct PlannerSettings {
 /// Throws std::invalid_argument on settings that make no sense for a system of these dimensions:
 /// sizes, non-finite entries, a horizon below 1. Names are checked by those who know them.
 void check_planner_settings(const PlannerSettings& settings, int state_dim, int input_dim);
+
+/// Indices of the states that are speeds, in m/s: what braking makes 0.
+[[nodiscard]] std::vector<int> speeds_of(const models::Dynamics& dynamics);
 
 }  // namespace qsmpc::controller

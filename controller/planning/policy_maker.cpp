@@ -7,7 +7,7 @@ PolicyMaker::PolicyMaker(const models::Dynamics& dynamics, const PlannerSettings
     : dynamics_(dynamics),
       settings_(settings),
       weights_{.state = settings.cost.state,
-               .input = 2.0 * settings.cost.input,
+               .input = 2.0 * settings.feedback_effort * settings.cost.input,
                .terminal = 2.0 * settings.cost.terminal} {}
 
 void PolicyMaker::make(const Eigen::Ref<const Eigen::VectorXd>& start,

@@ -41,6 +41,10 @@ class BoxRegion final : public UnsafeRegion {
     add_part_probability(state, part_, sum);
   }
 
+  void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {
+    add_part_tail(law, part_, sum);
+  }
+
   [[nodiscard]] double soft_probability(Eigen::Index /*stage*/,
                                         const Eigen::Ref<const Eigen::VectorXd>& mean,
                                         const Eigen::Ref<const Eigen::MatrixXd>& covariance,

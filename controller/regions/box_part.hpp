@@ -24,6 +24,10 @@ struct BoxPart {
 /// Adds bounds of P(z + e in the part), the least of those in box_part_bound.hpp, to the sums.
 void add_part_probability(const SurrogateLaw& state, const BoxPart& part, RegionProbability& sum);
 
+/// Adds the part's tail (tail_sum.hpp): how many standard deviations the law's mean is from the
+/// part's nearest point.
+void add_part_tail(const Gaussian& law, const BoxPart& part, TailSum& sum);
+
 /// Of many points from a box, which is bounded in the given intervals: how deep each is inside
 /// (less than 0 outside, infinite where there is no interval), and the squared distance of those
 /// outside.

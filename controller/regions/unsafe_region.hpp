@@ -15,6 +15,7 @@
 #include "controller/measure/measures.hpp"
 #include "controller/measure/normal/norm_orders.hpp"
 #include "controller/parallel.hpp"
+#include "controller/regions/tail_sum.hpp"
 
 namespace qsmpc::controller {
 
@@ -92,6 +93,8 @@ class UnsafeRegion {
   /// Adds upper bounds of P(z + e in the region).
   virtual void add_probability(Eigen::Index stage, const SurrogateLaw& state,
                                RegionProbability& sum) const = 0;
+  /// Adds the tails of the region's convex parts: smooth, for optimisation, and no bound.
+  virtual void add_tail(Eigen::Index stage, const Gaussian& law, TailSum& sum) const = 0;
   /// At least E(1 − d(y, region)²/t²)₊ for y ~ N(mean, covariance); t > 0. It may be the sum over
   /// parts, and more than 1.
   [[nodiscard]] virtual double soft_probability(Eigen::Index stage,

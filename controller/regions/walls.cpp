@@ -41,6 +41,10 @@ class Walls final : public UnsafeRegion {
     for (const BoxPart& part : parts_) add_part_probability(state, part, sum);
   }
 
+  void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {
+    for (const BoxPart& part : parts_) add_part_tail(law, part, sum);
+  }
+
   [[nodiscard]] double soft_probability(Eigen::Index /*stage*/,
                                         const Eigen::Ref<const Eigen::VectorXd>& mean,
                                         const Eigen::Ref<const Eigen::MatrixXd>& covariance,

@@ -29,6 +29,7 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
   settings.horizon = controller.horizon;
   settings.closed_loop = controller.policy == "closed_loop";
   settings.feedback_gain = controller.feedback_gain;
+  settings.feedback_effort = controller.feedback_effort;
   settings.optimise_gain = controller.optimise_gain;
   settings.solver = controller.solver;
   settings.input_bounding = controller.input_bounding;
@@ -52,6 +53,9 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
                       .obstacle = penalty.obstacle,
                       .length = penalty.length};
   settings.safe_set = scenario.safe_set;
+  settings.risk = {.stage = scenario.risk.stage, .plan = scenario.risk.plan};
+  settings.otherwise = controller::risk_otherwise(scenario.risk.otherwise);
+  settings.model_error = scenario.model_error;
   settings.bounds = {.lower = controller.input_lower, .upper = controller.input_upper};
   return settings;
 }
@@ -59,7 +63,8 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
 controller::ControllerSettings controller_settings(const Scenario& scenario) {
   return {.problem = planner_settings(scenario),
           .lqr_about = scenario.controller.lqr_about == "target" ? controller::LqrAbout::kTarget
-                                                                 : controller::LqrAbout::kPath};
+                                                                 : controller::LqrAbout::kPath,
+          .mission = scenario.risk.mission};
 }
 
 controller::DecisionParts decision_parts(const Scenario& scenario) {

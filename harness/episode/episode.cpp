@@ -197,6 +197,7 @@ class EpisodeDriver::Loop {
                                           .time = record.time,
                                           .belief = belief,
                                           .observation = record.observation,
+                                          .periods_left = scenario_.step_limit - k,
                                           .deadline = deadline()};
     const controller::Decision& decision = controller_->decide(situation);
     certify(situation, decision, record);

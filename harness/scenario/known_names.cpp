@@ -9,6 +9,7 @@
 #include "controller/control/controller.hpp"
 #include "controller/estimation/estimator.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "controller/planning/risk/risk_limits.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
 
@@ -55,6 +56,11 @@ const std::vector<std::string>& estimator_names() {
 
 const std::vector<std::string>& lqr_about_names() {
   static const std::vector<std::string> names{"path", "target"};
+  return names;
+}
+
+const std::vector<std::string>& risk_otherwise_names() {
+  static const std::vector<std::string> names = names_of(controller::risk_otherwise_entries());
   return names;
 }
 

@@ -20,6 +20,8 @@ namespace qsmpc::harness {
 [[nodiscard]] const std::vector<std::string>& estimator_names();
 /// About what "lqr" linearises.
 [[nodiscard]] const std::vector<std::string>& lqr_about_names();
+/// What is done where a limit of the risk can't be kept.
+[[nodiscard]] const std::vector<std::string>& risk_otherwise_names();
 [[nodiscard]] const std::vector<std::string>& solver_names();
 [[nodiscard]] const std::vector<std::string>& input_bounding_names();
 /// Those that propagate noise; `propagate_noise: false` stands for the other, "noise_free".

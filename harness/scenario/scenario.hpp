@@ -66,6 +66,19 @@ struct Scenario {
     double obstacle = 400.0;       ///< weight
     double length = 0.5;           ///< m, how far outside the unsafe set the smooth shape begins
   };
+  /// Upper limits of certified probabilities, infinite for none.
+  struct Risk {
+    double stage = std::numeric_limits<double>::infinity();    ///< of each stage of a plan
+    double plan = std::numeric_limits<double>::infinity();     ///< of any stage of a plan
+    double mission = std::numeric_limits<double>::infinity();  ///< of the whole drive
+    std::string otherwise = "least_risk";  ///< "least_risk", "brake" or "previous"
+
+    [[nodiscard]] bool any() const {
+      return stage < std::numeric_limits<double>::infinity() ||
+             plan < std::numeric_limits<double>::infinity() ||
+             mission < std::numeric_limits<double>::infinity();
+    }
+  };
   struct Estimator {
     /// A name from `qsmpc list estimators`; unless given, "exact" without measurement noise and
     /// else "last_measurement".
@@ -77,6 +90,7 @@ struct Scenario {
     int horizon = 8;
     std::string policy = "closed_loop";            ///< or "open_loop"
     std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
+    double feedback_effort = 1.0;  ///< weight of the input in that LQR, relative to the cost's
     /// Whether a matrix that is added to the gains of all stages is optimised along with the
     /// inputs.
     bool optimise_gain = false;
@@ -114,6 +128,7 @@ struct Scenario {
   std::optional<controller::ModelError> model_error;
   controller::SafeSet safe_set;
   Target target;
+  Risk risk;
   Estimator estimator;
   Controller controller;
   int step_limit = 200;

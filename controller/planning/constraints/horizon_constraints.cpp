@@ -26,6 +26,11 @@ void HorizonConstraints::describe(const Prediction& prediction, ConstraintSet& o
       }
     }
   }
+  particle_count_ = out.count;
+  for (Eigen::Index j = 0; risk_ != nullptr && j < risk_->count(); ++j) {
+    out.group.push_back(static_cast<int>(blocks_.size() + static_cast<std::size_t>(j)));
+    ++out.count;
+  }
   out.values = [this](const Eigen::VectorXd& z, Eigen::VectorXd& answer) { values(z, answer); };
   out.some = [this](const Eigen::VectorXd& z, const std::vector<int>& which,
                     Eigen::VectorXd& answer,
@@ -39,6 +44,7 @@ void HorizonConstraints::values(const Eigen::VectorXd& z, Eigen::VectorXd& out) 
     block.constraint->values(block.stage, block.group, cost_.particles(block.stage), segment);
     segment.array() += margin_;
   }
+  if (risk_ != nullptr) out.tail(risk_->count()) = risk_->values(z);
 }
 
 void HorizonConstraints::some(const Eigen::VectorXd& z, const std::vector<int>& which,
@@ -46,6 +52,16 @@ void HorizonConstraints::some(const Eigen::VectorXd& z, const std::vector<int>& 
   cost_.rollout(z);
   gradient_.resize(z.size());
   for (std::size_t j = 0; j < which.size(); ++j) {
+    if (which[j] >= particle_count_) {
+      const Eigen::Index limit = which[j] - particle_count_;
+      out[j] = risk_->values(z)[limit];
+      multipliers_.setZero(risk_->count());
+      multipliers_[limit] = 1.0;
+      gradient_.setZero();
+      risk_->add_gradient(multipliers_, gradient_);
+      gradients.col(j) = gradient_;
+      continue;
+    }
     const auto after = std::upper_bound(
         blocks_.begin(), blocks_.end(), which[j],
         [](Eigen::Index index, const Block& block) { return index < block.begin; });

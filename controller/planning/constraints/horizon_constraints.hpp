@@ -8,11 +8,13 @@
 
 #include "controller/planning/constraints/stage_constraint.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/risk/risk_constraint.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 
 namespace qsmpc::controller {
 
-/// c + margin ≤ 0 for each constraint of the stages 1 … horizon. Refers to the cost.
+/// c + margin ≤ 0 for each constraint of the stages 1 … horizon, and behind them those of the risk.
+/// Refers to the cost.
 class HorizonConstraints {
  public:
   HorizonConstraints(HorizonCost& cost, const SafeSet& safe_set);
@@ -21,7 +23,12 @@ class HorizonConstraints {
   /// whenever it holds another one; `out` refers to this object.
   void describe(const Prediction& prediction, ConstraintSet& out);
 
-  /// All are asked for this much more (≥ 0, in the unit of the constraint).
+  /// Adds the limits of the risk, which must stay alive; null: none.
+  void set_risk(RiskConstraint* risk) { risk_ = risk; }
+  /// How many are of particles: the first.
+  [[nodiscard]] Eigen::Index particle_count() const { return particle_count_; }
+
+  /// Those of particles are asked for this much more (≥ 0, in the unit of the constraint).
   void set_margin(double margin) { margin_ = margin; }
   [[nodiscard]] double margin() const { return margin_; }
 
@@ -40,11 +47,14 @@ class HorizonConstraints {
             Eigen::MatrixXd& gradients);
 
   HorizonCost& cost_;
+  RiskConstraint* risk_ = nullptr;
+  Eigen::Index particle_count_ = 0;
   double margin_ = 0.0;
   std::vector<std::unique_ptr<const StageConstraint>> constraints_;
   std::vector<Block> blocks_;
   StageSlope slope_;
   Eigen::VectorXd gradient_;
+  Eigen::VectorXd multipliers_;
 };
 
 }  // namespace qsmpc::controller

@@ -43,11 +43,17 @@ void NoiseFreeCost::freeze_assignments(const Eigen::MatrixXd& inputs,
   cost_.freeze_assignments(noise_free_, policy_);
 }
 
+double NoiseFreeCost::evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+  const double cost = cost_.evaluate(z, gradient);
+  return excess_ ? cost + excess_(z, excess_weight_, &gradient) : cost;
+}
+
 double NoiseFreeCost::evaluate(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& gain_change,
                                PolicyMaker& policies) {
   freeze_assignments(inputs, gain_change, policies);
   z_ = inputs.reshaped();
-  const double cost = cost_.evaluate(z_);
+  double cost = cost_.evaluate(z_);
+  if (excess_) cost += excess_(z_, excess_weight_, nullptr);
   return std::isnan(cost) ? std::numeric_limits<double>::infinity() : cost;
 }
 

@@ -2,6 +2,9 @@
 // good enough to find where a plan may start.
 #pragma once
 
+#include <functional>
+#include <utility>
+
 #include <Eigen/Core>
 
 #include "controller/measure/measures.hpp"
@@ -26,13 +29,20 @@ class NoiseFreeCost {
   void freeze_assignments(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& gain_change,
                           PolicyMaker& policies);
 
-  /// As `hold`; returns the cost, infinity instead of what is not a number, so that it loses every
-  /// comparison.
+  /// The cost of the policy that is held for a decision like HorizonCost's, with its gradient.
+  double evaluate(const Eigen::VectorXd& z, Eigen::VectorXd& gradient);
+
+  /// From now on `excess` is added to the cost, times `weight`; none if empty. It gets a decision,
+  /// and a gradient to add to or null.
+  using Excess =
+      std::function<double(const Eigen::VectorXd& z, double weight, Eigen::VectorXd* gradient)>;
+  void set_excess(Excess excess) { excess_ = std::move(excess); }
+  void set_excess_weight(double weight) { excess_weight_ = weight; }
+
+  /// As `freeze_assignments`; returns the cost, infinity instead of what is not a number, so that
+  /// it loses every comparison.
   [[nodiscard]] double evaluate(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& gain_change,
                                 PolicyMaker& policies);
-
-  /// Of the policy that is held.
-  [[nodiscard]] HorizonCost& cost() { return cost_; }
 
  private:
   HorizonCost cost_;
@@ -42,6 +52,8 @@ class NoiseFreeCost {
   Prediction noise_free_;       // of which only the sizes, the weights and the belief matter
   Policy policy_;
   Eigen::VectorXd z_;
+  Excess excess_;
+  double excess_weight_ = 0.0;
 };
 
 }  // namespace qsmpc::controller

@@ -45,6 +45,8 @@ const char* solver_status_name(SolverStatus status) {
       return "deadline";
     case SolverStatus::kInfeasible:
       return "infeasible";
+    case SolverStatus::kRiskExceeded:
+      return "risk_exceeded";
     case SolverStatus::kNumericalTrouble:
       return "numerical_trouble";
   }

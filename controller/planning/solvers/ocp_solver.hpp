@@ -26,10 +26,12 @@ enum class SolverStatus {
   kStalled,           ///< the line search found no further descent; best point so far
   kDeadline,          ///< the time was up; best point so far
   kInfeasible,        ///< the best point violates a constraint by more than the tolerance
+  kRiskExceeded,      ///< of a plan: its certificate is above a limit, and no better one was found
   kNumericalTrouble,  ///< something was not finite; best finite point so far
 };
 
-/// "converged", "iteration_limit", "stalled", "deadline", "infeasible" or "numerical_trouble".
+/// "converged", "iteration_limit", "stalled", "deadline", "infeasible", "risk_exceeded" or
+/// "numerical_trouble".
 [[nodiscard]] const char* solver_status_name(SolverStatus status);
 
 /// Value at `z` (n); overwrites the gradient, which comes with n entries.

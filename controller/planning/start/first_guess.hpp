@@ -29,6 +29,8 @@ class FirstGuess {
   /// The previous inputs one stage later, and the cheapest of the constants; input_dim x horizon.
   [[nodiscard]] const Eigen::MatrixXd& shifted() const { return shifted_; }
   [[nodiscard]] const Eigen::MatrixXd& constant() const { return constants_[constant_]; }
+  /// The constant in the middle of the bounds.
+  [[nodiscard]] const Eigen::MatrixXd& middle() const { return constants_.front(); }
   /// How much less than the shifted previous inputs the constant ones cost, without noise.
   [[nodiscard]] double advantage() const { return advantage_; }
 

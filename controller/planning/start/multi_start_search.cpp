@@ -51,7 +51,7 @@ MultiStartSearch::MultiStartSearch(const PlannerSettings& settings, NoiseFreeCos
   problem_.lower = bounds.lower.replicate(horizon, 1);
   problem_.upper = bounds.upper.replicate(horizon, 1);
   problem_.cost = [this](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
-    return cost_.cost().evaluate(z, gradient);
+    return cost_.evaluate(z, gradient);
   };
   z_.resize(problem_.lower.size());
 }

@@ -1,5 +1,7 @@
 #include "controller/planning/start/start_choice.hpp"
 
+#include <cmath>
+
 namespace qsmpc::controller {
 
 StartChoice::StartChoice(const models::Dynamics& dynamics, const PlannerSettings& settings,
@@ -14,7 +16,31 @@ StartChoice::StartChoice(const models::Dynamics& dynamics, const PlannerSettings
                                      .within_covariance = no_noise_}),
       guess_(settings),
       gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
-  if (!settings.safe_set.obstacles.empty()) minima_.emplace(settings, noise_free_);
+  if (!settings.safe_set.obstacles.empty() || settings.risk.any()) {
+    minima_.emplace(settings, noise_free_);
+  }
+}
+
+/// Where the risk is limited, the noise-free cost counts what exceeds the limits, by the surrogate
+/// of the shifted previous plan or, without one, of constant inputs.
+void StartChoice::hold_risk(const Plan* previous, PlanInProgress& plan) {
+  RiskConstraint* risk = evaluator_.risk();
+  if (risk == nullptr) return;
+  risk->start(previous != nullptr);
+  if (previous != nullptr) {
+    shift_inputs(previous->policy.inputs, shifted_);
+  } else {
+    shifted_ = guess_.middle();
+  }
+  evaluator_.set_policy(shifted_, gain_change_, *plan.current);
+  evaluator_.hold_risk(plan.current->policy);
+  noise_free_.set_excess({});
+  const double cost = noise_free_.evaluate(shifted_, gain_change_, evaluator_.policies());
+  noise_free_.set_excess(
+      [risk](const Eigen::VectorXd& z, double weight, Eigen::VectorXd* gradient) {
+        return risk->add_excess(z, weight, gradient);
+      });
+  noise_free_.set_excess_weight(std::isfinite(cost) ? std::abs(cost) : 1.0);
 }
 
 void StartChoice::choose(const Gaussian& belief, Plan* previous, PlanInProgress& plan) {
@@ -24,6 +50,7 @@ void StartChoice::choose(const Gaussian& belief, Plan* previous, PlanInProgress&
     gain_change_.setZero();
   }
   noise_free_.place(belief);
+  hold_risk(previous, plan);
   plan.warm = guess_.compare(previous != nullptr ? &previous->policy.inputs : nullptr, gain_change_,
                              noise_free_, evaluator_.policies());
   if (plan.warm) {
@@ -42,7 +69,7 @@ void StartChoice::choose(const Gaussian& belief, Plan* previous, PlanInProgress&
     take_best_minimum(plan);
   } else if (plan.evaluated) {
     plan.accept_candidate();  // the constant inputs, which won
-    evaluator_.freeze_assignments(plan.current->prediction, plan.current->policy);
+    evaluator_.hold(*plan.current);
   } else {
     evaluator_.set_policy(guess_.constant(), gain_change_, *plan.current);
     evaluator_.predict_and_evaluate(*plan.current);
@@ -70,11 +97,12 @@ bool StartChoice::constant_is_clearly_cheaper(const Plan& previous, PlanInProgre
   }
   evaluator_.predict_and_evaluate(constant);
   if (plan.evaluated) {
-    evaluator_.freeze_assignments(current.prediction, current.policy);
+    evaluator_.hold(current);
   } else {
     evaluator_.predict_and_evaluate(current);
     plan.evaluated = true;
   }
+  if (constant.risk.kept != current.risk.kept) return constant.risk.kept;
   return clearly_cheaper(constant.cost.total(), current.cost.total());
 }
 
@@ -92,7 +120,7 @@ void StartChoice::take_best_minimum(PlanInProgress& plan) {
     if (held && plan.evaluated) plan.accept_candidate();
     plan.evaluated = true;
   }
-  if (!held) evaluator_.freeze_assignments(plan.current->prediction, plan.current->policy);
+  if (!held) evaluator_.hold(*plan.current);
 }
 
 }  // namespace qsmpc::controller

@@ -35,6 +35,7 @@ class StartChoice {
   void choose(const Gaussian& belief, Plan* previous, PlanInProgress& plan);
 
  private:
+  void hold_risk(const Plan* previous, PlanInProgress& plan);
   [[nodiscard]] bool constant_is_clearly_cheaper(const Plan& previous, PlanInProgress& plan);
   void take_best_minimum(PlanInProgress& plan);
 
@@ -42,8 +43,9 @@ class StartChoice {
   Eigen::MatrixXd no_noise_;
   NoiseFreeCost noise_free_;
   FirstGuess guess_;
-  std::optional<MultiStartSearch> minima_;  // where there are obstacles
+  std::optional<MultiStartSearch> minima_;  // where there are obstacles, or limits of the risk
   Eigen::MatrixXd gain_change_;
+  Eigen::MatrixXd shifted_;
 };
 
 }  // namespace qsmpc::controller

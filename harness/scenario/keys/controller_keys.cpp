@@ -118,6 +118,12 @@ std::vector<ScenarioKey> plan_keys() {
                  .fallback_words = "from LQR"},
        .read = read_gain,
        .write = gain_text},
+      {.about = {.name = "feedback_effort",
+                 .values = {NumberValue{kPositive}},
+                 .words = "how much more the input weighs in that LQR than in the cost: gains are "
+                          "gentler for more",
+                 .see = "[below](#gains)"},
+       .member = [](Scenario& scenario) -> double& { return scenario.controller.feedback_effort; }},
       {.about = {.name = "optimise_gain",
                  .values = {FlagValue{}},
                  .words = "whether a matrix that is added to the gains is optimised along with the "

@@ -76,6 +76,7 @@ struct ScenarioKey {
 [[nodiscard]] ScenarioKey model_error_key();
 [[nodiscard]] ScenarioKey safe_set_key();
 [[nodiscard]] ScenarioKey target_key();
+[[nodiscard]] ScenarioKey risk_key();
 [[nodiscard]] ScenarioKey estimator_key();
 [[nodiscard]] ScenarioKey controller_key();
 [[nodiscard]] ScenarioKey video_key();

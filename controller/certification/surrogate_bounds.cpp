@@ -1,0 +1,72 @@
+#include "controller/certification/surrogate_bounds.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "controller/certification/disc_surrogate.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// What a region may add without being worked out further …
+constexpr double kNegligible = 1e-8;
+// … and without a search that takes long.
+constexpr double kWorthwhile = 1e-4;
+// From where on another core, which alone costs some 1e-2, may help.
+constexpr double kTryNarrow = 0.03;
+
+/// C3 and C4 of one stage. C4 takes the better of the two for every part of the unsafe set.
+RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const UnsafeSet& unsafe,
+                                      CertificateEffort effort, Eigen::Index stage,
+                                      const SurrogateStage& surrogate) {
+  if (surrogate.leaving >= 1.0) return {.markov = 1.0, .smooth = 1.0};
+  const bool every = effort == CertificateEffort::kEvery;
+  RegionProbability sum{.markov = surrogate.leaving, .smooth = surrogate.leaving};
+  for (const DiscView& disc : unsafe.discs()) {
+    const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
+        [&](const std::vector<Eigen::Index>& axes) {
+          return disc_smoothing(motion, stage, axes, disc.placement);
+        };
+    const DiscSurrogate centre = disc_surrogate(surrogate, disc.placement);
+    const SurrogateLaw state{.law = centre.law,
+                             .error = centre.error,
+                             .higher = centre.higher,
+                             .smoothing = smoothing,
+                             .worthwhile = every ? kNegligible : kWorthwhile};
+    for (const RegionPointer& region : disc.regions) {
+      region->add_probability(stage, state, sum);
+    }
+  }
+  return {.markov = std::min(1.0, sum.markov), .smooth = std::min(1.0, sum.smooth)};
+}
+
+}  // namespace
+
+SurrogateBounds surrogate_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
+                                 CertificateEffort effort, const Executor& run) {
+  SurrogateBounds result;
+  std::vector<RegionProbability>& least = result.bounds;
+  least.assign(motion.policy.horizon(), {.markov = 1.0, .smooth = 1.0});
+  for (const double core : {kWideCore, kNarrowCore}) {
+    std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core);
+    const auto stage = [&](int k) {
+      // Neither bound can be less than the probability of leaving, nor C3 less than C4.
+      if (least[k].markov <= surrogates[k + 1].leaving) return;
+      const RegionProbability bounds = bounds_of_surrogate(
+          motion, unsafe, effort, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1]);
+      least[k] = {.markov = std::min(least[k].markov, bounds.markov),
+                  .smooth = std::min(least[k].smooth, bounds.smooth)};
+    };
+    run(static_cast<int>(least.size()), stage);
+    double largest = 0.0;
+    for (const RegionProbability& bounds : least) largest = std::max(largest, bounds.smooth);
+    const bool in_use = surrogates.back().leaving > 0.0;
+    if (result.surrogates.empty()) result.surrogates = std::move(surrogates);
+    // Without a core in use the narrow one changes nothing.
+    if (largest < kTryNarrow || !in_use) break;
+  }
+  return result;
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,67 @@
+#include "controller/control/mission_budget.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "models/constants.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// The way to the target is longer than the straight line to it by about this factor.
+constexpr double kDetour = 1.2;
+
+Eigen::Vector2d position_of(const models::SystemDescription& system,
+                            const Eigen::Ref<const Eigen::VectorXd>& state) {
+  return {state[system.position_x], state[system.position_y]};
+}
+
+bool has_position(const models::SystemDescription& system) {
+  return system.position_x >= 0 && system.position_y >= 0;
+}
+
+}  // namespace
+
+MissionBudget::MissionBudget(const models::Dynamics& dynamics, double limit,
+                             const Eigen::VectorXd& target)
+    : dynamics_(dynamics), limit_(limit), target_(target) {}
+
+void MissionBudget::reset() {
+  spent_ = 0.0;
+  progress_ = 0.0;
+}
+
+double MissionBudget::expected_periods(const Eigen::VectorXd& mean) const {
+  const models::SystemDescription& system = dynamics_.description();
+  if (!has_position(system) || !(progress_ > 0.0)) return kInfinity;
+  const double distance = (position_of(system, mean) - position_of(system, target_)).norm();
+  return std::ceil(kDetour * distance / progress_);
+}
+
+RiskLimits MissionBudget::limits(const Eigen::VectorXd& mean, Eigen::Index horizon,
+                                 Eigen::Index periods_left) const {
+  RiskLimits limits;
+  if (std::isinf(limit_)) return limits;
+  const double left = std::max(0.0, limit_ - spent_);
+  const double ahead = static_cast<double>(horizon);
+  const double periods = std::min(expected_periods(mean),
+                                  static_cast<double>(std::max<Eigen::Index>(1, periods_left)));
+  limits.first = left;
+  limits.plan = left * std::min(1.0, ahead / periods);
+  return limits;
+}
+
+void MissionBudget::spend(const Plan& plan) {
+  if (!plan.risk.stages.empty()) spent_ += plan.risk.stages.front();
+  const models::SystemDescription& system = dynamics_.description();
+  if (!has_position(system)) return;
+  double length = 0.0;
+  const Eigen::MatrixXd& path = plan.policy.states;
+  for (Eigen::Index k = 0; k + 1 < path.cols(); ++k) {
+    length += (position_of(system, path.col(k + 1)) - position_of(system, path.col(k))).norm();
+  }
+  progress_ = length / static_cast<double>(plan.policy.horizon());
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,57 @@
+#include "controller/planning/risk/augmented_lagrangian.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace qsmpc::controller {
+namespace {
+
+// ρ of a cold start, as a share of the cost: a risk e times too large then costs half as much.
+constexpr double kWeightShare = 0.02;
+// ρ grows by this where a minimisation leaves more than this share of the violation before.
+constexpr double kGrowth = 5.0;
+constexpr double kEnough = 0.3;
+// ρ stays within these shares of the cost.
+constexpr double kLeastShare = 1e-3;
+constexpr double kMostShare = 10.0;
+// A multiplier of a constraint that has room is worth another minimisation if it pushes for more
+// than this share of the cost.
+constexpr double kIdlePush = 1e-4;
+
+}  // namespace
+
+void AugmentedLagrangian::start(RiskConstraint& constraint, double cost, bool warm) {
+  constraint_ = &constraint;
+  last_violation_ = std::numeric_limits<double>::infinity();
+  const double scale = std::max(std::abs(cost), 1e-12);
+  if (!warm || multipliers_.size() != constraint.count()) {
+    multipliers_.setZero(constraint.count());
+    weight_ = kWeightShare * scale;
+    return;
+  }
+  weight_ = std::clamp(weight_, kLeastShare * scale, kMostShare * scale);
+}
+
+double AugmentedLagrangian::add(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+  pushes_ = (multipliers_ + weight_ * constraint_->values(z)).cwiseMax(0.0);
+  constraint_->add_gradient(pushes_, gradient);
+  return (pushes_.squaredNorm() - multipliers_.squaredNorm()) / (2.0 * weight_);
+}
+
+bool AugmentedLagrangian::update(const Eigen::VectorXd& z, double tolerance) {
+  const Eigen::VectorXd& values = constraint_->values(z);
+  if (!values.allFinite()) return false;
+  const double violation = values.size() > 0 ? std::max(0.0, values.maxCoeff()) : 0.0;
+  double idle = 0.0;
+  for (Eigen::Index j = 0; j < values.size(); ++j) {
+    if (values[j] < -tolerance) idle = std::max(idle, multipliers_[j] * -values[j]);
+  }
+  multipliers_ = (multipliers_ + weight_ * values).cwiseMax(0.0);
+  const bool kept = violation <= tolerance;
+  if (!kept && violation > kEnough * last_violation_) weight_ *= kGrowth;
+  last_violation_ = violation;
+  return !kept || idle > kIdlePush * weight_ / kWeightShare;
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,160 @@
+#include "controller/planning/risk/risk_constraint.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "controller/certification/surrogate_bounds.hpp"
+#include "models/constants.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// Risks below e to this are as good as none.
+constexpr double kLeastLog = -60.0;
+
+double log_ratio(double risk, double limit) {
+  if (std::isnan(risk)) return risk;
+  if (!(risk > 0.0)) return kLeastLog;
+  // Of a limit of 0 nothing but 0 is within.
+  return std::max(kLeastLog, std::log(risk) - std::log(std::max(limit, 1e-300)));
+}
+
+}  // namespace
+
+RiskConstraint::RiskConstraint(const models::Dynamics& dynamics, const PlannerSettings& settings)
+    : dynamics_(dynamics),
+      settings_(settings),
+      unsafe_(settings.safe_set),
+      model_(dynamics, unsafe_) {
+  set_limits(settings.risk, 0);
+}
+
+void RiskConstraint::set_limits(const RiskLimits& limits, Eigen::Index period) {
+  limits_ = limits;
+  // Every probability is within 1.
+  for (double* limit : {&limits_.first, &limits_.stage, &limits_.plan}) {
+    if (*limit >= 1.0) *limit = kInfinity;
+  }
+  period_ = period;
+  Eigen::Index count = 0;
+  if (std::isfinite(limits_.first)) ++count;
+  if (std::isfinite(limits_.stage)) count += settings_.horizon;
+  if (std::isfinite(limits_.plan)) ++count;
+  values_.resize(count);
+}
+
+PredictedMotion RiskConstraint::motion_of(const Gaussian& belief, const Policy& policy) const {
+  PredictedMotion motion{.dynamics = dynamics_,
+                         .noise_covariance = settings_.noise_covariance,
+                         .belief = belief,
+                         .policy = policy,
+                         .prediction = no_particles_};
+  if (settings_.model_error) {
+    motion.model_error = &*settings_.model_error;
+    motion.first_period = period_;
+    // From the second period on the belief is the model's prediction for the plant.
+    if (period_ > 0) motion.belief_error = &settings_.model_error->of_period(period_ - 1);
+  }
+  return motion;
+}
+
+void RiskConstraint::hold(const Gaussian& belief, const Policy& policy) {
+  const PredictedMotion motion = motion_of(belief, policy);
+  model_.hold(motion, affine_surrogates(motion));
+}
+
+void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanRisk& out) {
+  const PredictedMotion motion = motion_of(belief, policy);
+  const SurrogateBounds bounds =
+      surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, settings_.run);
+  model_.hold(motion, bounds.surrogates);
+  out.stages.clear();
+  double sum = 0.0;
+  for (const RegionProbability& stage : bounds.bounds) {
+    out.stages.push_back(std::min(stage.markov, stage.smooth));
+    sum += out.stages.back();
+  }
+  out.plan = std::min(1.0, sum);
+  model_.calibrate(out.stages);
+  const Eigen::VectorXd z = policy.inputs.reshaped();
+  const double margin = margin_;
+  margin_ = 0.0;
+  // Calibrated, the model's risks are those certified; beyond 1 they say how far.
+  out.severity = values_.size() > 0 ? values(z).maxCoeff() : kLeastLog;
+  if (std::isnan(out.severity)) out.severity = -kLeastLog;
+  margin_ = margin;
+  judge(out);
+}
+
+/// What is certified decides whether the limits are kept.
+void RiskConstraint::judge(PlanRisk& out) {
+  double excess = kLeastLog;
+  if (std::isfinite(limits_.first)) {
+    excess = std::max(excess, log_ratio(out.stages.front(), limits_.first));
+  }
+  if (std::isfinite(limits_.stage)) {
+    const double most = *std::max_element(out.stages.begin(), out.stages.end());
+    excess = std::max(excess, log_ratio(most, limits_.stage));
+  }
+  double sum = 0.0;
+  for (const double stage : out.stages) sum += stage;
+  if (std::isfinite(limits_.plan)) excess = std::max(excess, log_ratio(sum, limits_.plan));
+  out.kept = excess <= 0.0;
+  if (out.kept) out.severity = std::min(excess, out.severity);
+}
+
+void RiskConstraint::start(bool warm) {
+  margin_ = 0.0;
+  if (warm) {
+    model_.shift_factors();
+  } else {
+    model_.forget_factors();
+  }
+}
+
+const Eigen::VectorXd& RiskConstraint::values(const Eigen::VectorXd& z) {
+  const Eigen::VectorXd& risks = model_.risks(z);
+  Eigen::Index j = 0;
+  if (std::isfinite(limits_.first)) values_[j++] = log_ratio(risks[0], limits_.first) + margin_;
+  if (std::isfinite(limits_.stage)) {
+    for (const double risk : risks) values_[j++] = log_ratio(risk, limits_.stage) + margin_;
+  }
+  if (std::isfinite(limits_.plan)) values_[j++] = log_ratio(risks.sum(), limits_.plan) + margin_;
+  return values_;
+}
+
+void RiskConstraint::add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient) {
+  if (multipliers.isZero(0.0)) return;
+  const Eigen::Index horizon = model_.horizon();
+  weights_.setZero(horizon);
+  // What was evaluated last is still at hand.
+  const Eigen::VectorXd& risks = model_.last_risks();
+  const auto share = [&](double multiplier, double risk) {
+    return multiplier > 0.0 && risk > 0.0 ? multiplier / risk : 0.0;
+  };
+  Eigen::Index j = 0;
+  if (std::isfinite(limits_.first)) weights_[0] += share(multipliers[j++], risks[0]);
+  if (std::isfinite(limits_.stage)) {
+    for (Eigen::Index k = 0; k < horizon; ++k) weights_[k] += share(multipliers[j++], risks[k]);
+  }
+  if (std::isfinite(limits_.plan)) weights_.array() += share(multipliers[j++], risks.sum());
+  model_.add_gradient(weights_, gradient);
+}
+
+double RiskConstraint::add_excess(const Eigen::VectorXd& z, double scale,
+                                  Eigen::VectorXd* gradient) {
+  multipliers_ = scale * values(z).cwiseMax(0.0);
+  if (gradient != nullptr) add_gradient(multipliers_, *gradient);
+  return 0.5 * multipliers_.dot(values_.cwiseMax(0.0));
+}
+
+double RiskConstraint::log_total(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
+  const double sum = model_.risks(z).sum();
+  gradient.setZero();
+  weights_.setConstant(model_.horizon(), sum > 0.0 ? 1.0 / sum : 0.0);
+  model_.add_gradient(weights_, gradient);
+  return std::isnan(sum) ? sum : std::max(kLeastLog, std::log(sum));
+}
+
+}  // namespace qsmpc::controller

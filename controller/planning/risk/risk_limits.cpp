@@ -1,0 +1,26 @@
+#include "controller/planning/risk/risk_limits.hpp"
+
+#include <cmath>
+
+#include "controller/named_entry.hpp"
+
+namespace qsmpc::controller {
+
+bool RiskLimits::any() const {
+  return std::isfinite(first) || std::isfinite(stage) || std::isfinite(plan);
+}
+
+const std::vector<RiskOtherwiseEntry>& risk_otherwise_entries() {
+  static const std::vector<RiskOtherwiseEntry> table = {
+      {"least_risk", "the plan with the least certificate", RiskOtherwise::kLeastRisk},
+      {"brake", "the plan that comes to rest soonest", RiskOtherwise::kBrake},
+      {"previous", "the last plan within its limits goes on", RiskOtherwise::kPrevious},
+  };
+  return table;
+}
+
+RiskOtherwise risk_otherwise(std::string_view name) {
+  return named_entry(risk_otherwise_entries(), name, "fallback").otherwise;
+}
+
+}  // namespace qsmpc::controller

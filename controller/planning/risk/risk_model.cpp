@@ -1,0 +1,241 @@
+#include "controller/planning/risk/risk_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "controller/certification/statistical_linearisation.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// Between these a factor is believed: beyond, what was certified is not made of tails.
+constexpr double kLeastFactor = 0.02;
+constexpr double kMostFactor = 100.0;
+// What is left of a certificate beside its tails counts at most this: it can't be optimised away,
+// and must not hide the slope of what can.
+constexpr double kMostFloor = 1e-3;
+
+/// B times the slopes of the clamps under the surrogate's law at a stage.
+Eigen::MatrixXd response_to_gains(const PredictedMotion& motion, Eigen::Index stage,
+                                  const SurrogateStage& surrogate) {
+  StageError error = StageError::none(surrogate.law.mean.size());
+  error.largest() = surrogate.largest;
+  const std::vector<InputLinearisation> inputs =
+      linearise_inputs(motion, stage, surrogate.law, error);
+  const int count = motion.dynamics.input_dim();
+  Eigen::VectorXd centre(count);
+  Eigen::VectorXd slopes(count);
+  for (int b = 0; b < count; ++b) {
+    centre[b] = inputs[b].saturation.mean;
+    slopes[b] = inputs[b].saturation.slope;
+  }
+  Eigen::MatrixXd by_state(surrogate.law.mean.size(), surrogate.law.mean.size());
+  Eigen::MatrixXd by_input(surrogate.law.mean.size(), count);
+  motion.dynamics.jacobians(surrogate.law.mean, centre, by_state, by_input);
+  return by_input * slopes.asDiagonal();
+}
+
+}  // namespace
+
+RiskModel::RiskModel(const models::Dynamics& dynamics, const UnsafeSet& unsafe)
+    : dynamics_(dynamics),
+      unsafe_(unsafe),
+      state_(dynamics.state_dim(), 1),
+      input_(dynamics.input_dim(), 1),
+      next_(dynamics.state_dim(), 1),
+      adjoint_(dynamics.state_dim(), 1),
+      state_adjoint_(dynamics.state_dim(), 1),
+      input_adjoint_(dynamics.input_dim(), 1) {}
+
+void RiskModel::hold(const PredictedMotion& motion, const std::vector<SurrogateStage>& surrogates) {
+  const Policy& policy = motion.policy;
+  const Eigen::Index horizon = policy.horizon();
+  inputs_ = policy.inputs.rows();
+  decision_.resize(0);
+  held_decision_ = policy.inputs.reshaped();
+  start_ = policy.states.col(0);
+  first_covariance_ = motion.belief.covariance;
+  noise_ = motion.noise_covariance;
+  held_.resize(horizon);
+  stages_.resize(horizon);
+  risks_.resize(horizon);
+  leaving_.resize(horizon);
+  if (factors_.size() != horizon) {
+    factors_.setOnes(horizon);
+    floors_.setZero(horizon);
+  }
+  for (Eigen::Index k = 0; k < horizon; ++k) {
+    const SurrogateStage& stage = surrogates[k + 1];
+    Held& held = held_[k];
+    held.shift = stage.law.mean - policy.states.col(k + 1);
+    held.covariance = stage.law.covariance;
+    held.transition = surrogates[k].transition;
+    held.by_gain.resize(0, 0);
+    if (held.transition.size() > 0) held.by_gain = response_to_gains(motion, k, surrogates[k]);
+    leaving_[k] = stage.leaving;
+    held.reach.clear();
+    held.turn.clear();
+    for (const DiscView& disc : unsafe_.discs()) {
+      const DiscPlacement& placement = disc.placement;
+      const Eigen::Index dim = stage.law.mean.size();
+      held.turn.push_back(Eigen::MatrixXd::Identity(dim, dim));
+      held.reach.push_back(placement.reach());
+      if (placement.at_position()) continue;
+      const int heading = placement.heading();
+      const double angle = stage.law.mean[heading] + placement.bearing();
+      const double variance = std::max(0.0, stage.law.covariance(heading, heading));
+      held.reach.back() *= std::exp(-0.5 * variance);
+      held.turn.back()(placement.x(), heading) -= held.reach.back() * std::sin(angle);
+      held.turn.back()(placement.y(), heading) += held.reach.back() * std::cos(angle);
+    }
+  }
+}
+
+void RiskModel::calibrate(const std::vector<double>& certified) {
+  factors_.setOnes();
+  floors_.setZero();
+  risks(held_decision_);
+  for (Eigen::Index k = 0; k < horizon(); ++k) {
+    const double tails = stages_[k].tails;
+    const double value = certified[k];
+    if (value >= 1.0 && tails >= 0.5) continue;
+    const double explained = std::max(0.0, value - leaving_[k]);
+    factors_[k] = tails > 0.0 ? std::clamp(explained / tails, kLeastFactor, kMostFactor) : 1.0;
+    floors_[k] = std::clamp(value - factors_[k] * tails, 0.0, kMostFloor);
+    if (factors_[k] * tails > value) factors_[k] = value / tails;
+  }
+  decision_.resize(0);
+}
+
+void RiskModel::shift_factors() {
+  const Eigen::Index last = factors_.size() - 1;
+  for (Eigen::Index k = 0; k < last; ++k) {
+    factors_[k] = factors_[k + 1];
+    floors_[k] = floors_[k + 1];
+  }
+  decision_.resize(0);
+}
+
+void RiskModel::forget_factors() {
+  factors_.setOnes();
+  floors_.setZero();
+  decision_.resize(0);
+}
+
+const Eigen::VectorXd& RiskModel::risks(const Eigen::VectorXd& z) {
+  if (decision_.size() == z.size() && decision_ == z) return risks_;
+  roll_out(z);
+  for (Eigen::Index k = 0; k < horizon(); ++k) {
+    add_tails(k);
+    risks_[k] = factors_[k] * stages_[k].tails + floors_[k];
+  }
+  decision_ = z;
+  return risks_;
+}
+
+void RiskModel::roll_out(const Eigen::VectorXd& z) {
+  const Eigen::Index dim = start_.size();
+  const bool with_gains = z.size() > inputs_ * horizon();
+  path_.resize(dim, horizon() + 1);
+  path_.col(0) = start_;
+  for (Eigen::Index k = 0; k < horizon(); ++k) {
+    state_ = path_.col(k);
+    input_ = z.segment(k * inputs_, inputs_);
+    dynamics_.step(state_, input_, next_);
+    path_.col(k + 1) = next_;
+    Evaluated& stage = stages_[k];
+    stage.mean = next_.col(0) + held_[k].shift;
+    if (!with_gains || held_[k].by_gain.size() == 0) {
+      stage.covariance = held_[k].covariance;
+      continue;
+    }
+    const Eigen::Map<const Eigen::MatrixXd> change(z.data() + inputs_ * horizon(), inputs_, dim);
+    const Eigen::MatrixXd step = held_[k].transition + held_[k].by_gain * change;
+    const Eigen::MatrixXd& before = k == 0 ? first_covariance_ : stages_[k - 1].covariance;
+    stage.covariance = step * before * step.transpose() + noise_;
+  }
+}
+
+/// Tails of stage k + 1 with their derivatives by its mean and covariance.
+void RiskModel::add_tails(Eigen::Index k) {
+  Evaluated& stage = stages_[k];
+  const Held& held = held_[k];
+  const Eigen::Index dim = stage.mean.size();
+  stage.tails = 0.0;
+  stage.by_mean.setZero(dim);
+  stage.by_covariance.setZero(dim, dim);
+  if (!stage.mean.allFinite() || !stage.covariance.allFinite()) {
+    stage.tails = std::numeric_limits<double>::quiet_NaN();
+    return;
+  }
+  for (std::size_t d = 0; d < unsafe_.discs().size(); ++d) {
+    const DiscView& disc = unsafe_.discs()[d];
+    const DiscPlacement& placement = disc.placement;
+    disc_law_.mean = stage.mean;
+    double cosine = 1.0;
+    double sine = 0.0;
+    if (placement.at_position()) {
+      disc_law_.covariance = stage.covariance;
+    } else {
+      const double angle = stage.mean[placement.heading()] + placement.bearing();
+      cosine = std::cos(angle);
+      sine = std::sin(angle);
+      disc_law_.mean[placement.x()] += held.reach[d] * cosine;
+      disc_law_.mean[placement.y()] += held.reach[d] * sine;
+      disc_law_.covariance.noalias() =
+          held.turn[d] * stage.covariance.lazyProduct(held.turn[d].transpose());
+    }
+    tails_.clear(dim);
+    for (const RegionPointer& region : disc.regions) {
+      region->add_tail(k + 1, disc_law_, tails_);
+    }
+    stage.tails += tails_.value();
+    stage.by_mean += tails_.by_mean();
+    if (placement.at_position()) {
+      stage.by_covariance += tails_.by_covariance();
+      continue;
+    }
+    stage.by_mean[placement.heading()] +=
+        held.reach[d] *
+        (cosine * tails_.by_mean()[placement.y()] - sine * tails_.by_mean()[placement.x()]);
+    stage.by_covariance.noalias() +=
+        held.turn[d].transpose() * tails_.by_covariance().lazyProduct(held.turn[d]);
+  }
+}
+
+void RiskModel::add_gradient(const Eigen::VectorXd& weights, Eigen::VectorXd& gradient) {
+  adjoint_.setZero();
+  for (Eigen::Index k = horizon() - 1; k >= 0; --k) {
+    adjoint_.col(0) += weights[k] * factors_[k] * stages_[k].by_mean;
+    state_ = path_.col(k);
+    input_ = decision_.segment(k * inputs_, inputs_);
+    dynamics_.pullback(state_, input_, adjoint_, state_adjoint_, input_adjoint_);
+    gradient.segment(k * inputs_, inputs_) += input_adjoint_.col(0);
+    adjoint_ = state_adjoint_;
+  }
+  if (decision_.size() > inputs_ * horizon()) pull_back_gains(weights, gradient);
+}
+
+/// By the change of the gains, through the covariances.
+void RiskModel::pull_back_gains(const Eigen::VectorXd& weights, Eigen::VectorXd& gradient) {
+  const Eigen::Index dim = start_.size();
+  const Eigen::Map<const Eigen::MatrixXd> change(decision_.data() + inputs_ * horizon(), inputs_,
+                                                 dim);
+  Eigen::Map<Eigen::MatrixXd> by_change(gradient.data() + inputs_ * horizon(), inputs_, dim);
+  Eigen::MatrixXd by_covariance = Eigen::MatrixXd::Zero(dim, dim);
+  for (Eigen::Index k = horizon() - 1; k >= 0; --k) {
+    by_covariance += weights[k] * factors_[k] * stages_[k].by_covariance;
+    const Held& held = held_[k];
+    if (held.by_gain.size() == 0) {
+      // The covariance after this step was held.
+      by_covariance.setZero();
+      continue;
+    }
+    const Eigen::MatrixXd step = held.transition + held.by_gain * change;
+    const Eigen::MatrixXd& before = k == 0 ? first_covariance_ : stages_[k - 1].covariance;
+    by_change += 2.0 * held.by_gain.transpose() * by_covariance * step * before;
+    by_covariance = (step.transpose() * by_covariance * step).eval();
+  }
+}
+
+}  // namespace qsmpc::controller

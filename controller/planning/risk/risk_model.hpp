@@ -1,0 +1,97 @@
+// The certified risk of each stage as a smooth function of a plan's decision, with an exact
+// gradient: what the optimiser limits between two certifications. Derivation:
+// docs/theory/planning.md, "Risk".
+//
+// Held are, from the surrogate of a plan: at each stage how far the mean is from the noise-free
+// path, the covariance (a function of a change of the gains, where these are decided), the turn of
+// each disc, and the factor that makes the tails what was certified. The noise-free path moves.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/certification/surrogate_bounds.hpp"
+#include "controller/measure/measures.hpp"
+#include "controller/prediction/policy.hpp"
+#include "controller/prediction/prediction.hpp"
+#include "controller/regions/unsafe_set.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::controller {
+
+class RiskModel {
+ public:
+  /// Refers to both.
+  RiskModel(const models::Dynamics& dynamics, const UnsafeSet& unsafe);
+
+  /// Holds the surrogate of `motion` from now on. Factors stay what they are.
+  void hold(const PredictedMotion& motion, const std::vector<SurrogateStage>& surrogates);
+  /// Makes the risks at the plan that is held what was certified for it (stages 1 … horizon); where
+  /// that is 1, they say how deep it is.
+  void calibrate(const std::vector<double>& certified);
+  /// The factors of each stage become those of the next one: the plan has moved on.
+  void shift_factors();
+  /// All factors become 1.
+  void forget_factors();
+
+  /// Risks of stages 1 … horizon for a decision as HorizonCost takes it: inputs stage by stage, and
+  /// behind them nothing or a change of all gains. ≥ 0; more than 1 deep in the unsafe set.
+  const Eigen::VectorXd& risks(const Eigen::VectorXd& z);
+  /// What it returned last.
+  [[nodiscard]] const Eigen::VectorXd& last_risks() const { return risks_; }
+  /// Adds Σ_k weights_k ∂risk_k/∂z, at the decision last asked for.
+  void add_gradient(const Eigen::VectorXd& weights, Eigen::VectorXd& gradient);
+
+  [[nodiscard]] Eigen::Index horizon() const { return static_cast<Eigen::Index>(held_.size()); }
+
+ private:
+  /// Stage k + 1, and the step to it.
+  struct Held {
+    Eigen::VectorXd shift;              ///< of the mean from the noise-free path
+    Eigen::MatrixXd covariance;         ///< with the gains as they are
+    Eigen::MatrixXd transition;         ///< of the step
+    Eigen::MatrixXd by_gain;            ///< of the step: B times the slopes of the clamps
+    std::vector<double> reach;          ///< of each disc, shrunk by the heading's spread
+    std::vector<Eigen::MatrixXd> turn;  ///< of each disc: its law's covariance is turn S turnᵀ
+  };
+  /// What a risk is made of at the decision at hand.
+  struct Evaluated {
+    Eigen::VectorXd mean;
+    Eigen::MatrixXd covariance;
+    Eigen::VectorXd by_mean;
+    Eigen::MatrixXd by_covariance;
+    double tails = 0.0;
+  };
+
+  void roll_out(const Eigen::VectorXd& z);
+  void add_tails(Eigen::Index k);
+  void pull_back_gains(const Eigen::VectorXd& weights, Eigen::VectorXd& gradient);
+
+  const models::Dynamics& dynamics_;
+  const UnsafeSet& unsafe_;
+  std::vector<Held> held_;
+  std::vector<Evaluated> stages_;
+  Eigen::VectorXd factors_;
+  Eigen::VectorXd floors_;
+  Eigen::VectorXd leaving_;
+  Eigen::MatrixXd first_covariance_;
+  Eigen::MatrixXd noise_;
+  Eigen::VectorXd start_;
+  Eigen::VectorXd decision_;  // at hand; empty if none
+  Eigen::VectorXd held_decision_;
+  Eigen::Index inputs_ = 0;
+  models::StateBatch path_;  // the noise-free path, a column a stage
+  Eigen::VectorXd risks_;
+  TailSum tails_;
+  Gaussian disc_law_;
+  // Scratch of the backward pass, of one column.
+  models::StateBatch state_;
+  models::StateBatch input_;
+  models::StateBatch next_;
+  models::StateBatch adjoint_;
+  models::StateBatch state_adjoint_;
+  models::StateBatch input_adjoint_;
+};
+
+}  // namespace qsmpc::controller

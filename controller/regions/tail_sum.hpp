@@ -1,0 +1,38 @@
+// A smooth stand-in for the probability that a Gaussian is in a region, for optimisation: it has a
+// useful slope of its logarithm far away and deep inside alike. Derivation:
+// docs/theory/planning.md, "Risk".
+#pragma once
+
+#include <span>
+
+#include <Eigen/Core>
+
+namespace qsmpc::controller {
+
+/// Φ(−z), continued below z = 0, where Φ(−z) is flat, by the exponential with the same value and
+/// slope. So it exceeds 1 deep inside of a region: a merit there, and no probability.
+[[nodiscard]] double extended_tail(double z);
+
+/// Σ over parts of extended_tail(z), z being the number of standard deviations between the mean and
+/// the part's nearest point; negative inside.
+class TailSum {
+ public:
+  /// Nothing yet, for laws of `dim` coordinates. Allocates only for another dimension than before.
+  void clear(Eigen::Index dim);
+
+  /// Adds a part. slope: ∂z/∂mean in the coordinates `axes`; ∂z/∂covariance follows from it, as
+  /// −½ z · slope slopeᵀ.
+  void add(double z, std::span<const Eigen::Index> axes, std::span<const double> slope);
+
+  [[nodiscard]] double value() const { return value_; }
+  [[nodiscard]] const Eigen::VectorXd& by_mean() const { return by_mean_; }
+  /// Symmetric, each entry's derivative as if it alone changed.
+  [[nodiscard]] const Eigen::MatrixXd& by_covariance() const { return by_covariance_; }
+
+ private:
+  double value_ = 0.0;
+  Eigen::VectorXd by_mean_;
+  Eigen::MatrixXd by_covariance_;
+};
+
+}  // namespace qsmpc::controller
