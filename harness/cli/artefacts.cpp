@@ -30,6 +30,13 @@ std::string row(const std::string& name, const std::string& value) {
   return fmt::format("  {:<28} {}\n", name, value);
 }
 
+/// "2, the first at 1.25 s, at most 310 N"
+std::string contact_words(const Summary& summary) {
+  if (!summary.first_contact) return "none";
+  return fmt::format("{}, the first at {:.2f} s, at most {:.0f} N", *summary.contacts,
+                     *summary.first_contact, summary.largest_contact);
+}
+
 }  // namespace
 
 void discard_artefacts(const std::string& folder) {
@@ -128,6 +135,10 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
   if (summary.time_to_target)
     text += row("time to target", fmt::format("{:.1f} s", *summary.time_to_target));
   text += row("entered the unsafe set", summary.collision ? "yes" : "no");
+  if (summary.unsafe_between) {
+    text += row("unsafe between instants", *summary.unsafe_between ? "yes" : "no");
+  }
+  if (summary.contacts) text += row("contacts", contact_words(summary));
   text += row("least clearance", fmt::format("{:.3f} m", summary.min_clearance));
   text += row("closed-loop cost", fmt::format("{:.1f}", summary.closed_loop_cost));
   if (!trace.steps.empty()) {

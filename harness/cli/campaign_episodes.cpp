@@ -43,7 +43,8 @@ Scenario scenario_of(const StoredVariant& variant, const std::string& folder, bo
   return parse_scenario(variant.scenario_text,
                         {.file = folder + "/" + kStoreFile + ", variant " + variant.name,
                          .folder = folder,
-                         .files_must_exist = with_files});
+                         .files_must_exist = with_files,
+                         .is_recorded = true});
 }
 
 /// A scenario as text, without what does not change how an episode of a given seed goes.

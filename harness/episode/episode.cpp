@@ -60,6 +60,15 @@ bool at_target(const Scenario& scenario, const models::SystemDescription& descri
   return distance <= scenario.target.radius;
 }
 
+/// Not a number without states.
+double least_clearance(const Eigen::MatrixXd& states, const controller::UnsafeSet& unsafe) {
+  double least = kNotANumber;
+  for (const auto& state : states.colwise()) {
+    least = std::fmin(least, controller::clearance(state, unsafe));
+  }
+  return least;
+}
+
 }  // namespace
 
 /// The closed loop's parts and its state between the steps.
@@ -134,6 +143,8 @@ class EpisodeDriver::Loop {
     const auto start = Clock::now();
     PlantStep result = plant_->advance(record.input, record.disturbance);
     record.timing.simulate = milliseconds_since(start);
+    record.clearance_between = least_clearance(result.between, unsafe_);
+    record.contact = result.contact;
     if (!result.fault) record.residual = one_step_residual(*model_, record, result.state);
     trace.motion.insert(trace.motion.end(), std::make_move_iterator(result.motion.begin()),
                         std::make_move_iterator(result.motion.end()));

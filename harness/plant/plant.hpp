@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "models/constants.hpp"
+
 namespace qsmpc::harness {
 
 /// Where the vehicle was between two control instants, for drawing.
@@ -18,10 +20,22 @@ struct MotionSample {
   std::vector<double> qpos;  ///< generalised position of the MuJoCo model; empty without one
 };
 
+/// How a vehicle touched walls and obstacles that are solid in one control period.
+struct PlantContact {
+  /// N, the largest normal force between the vehicle and one of them, at one place; 0 where it
+  /// touched none, not a number where none is solid.
+  double force = kNotANumber;
+  double time = kNotANumber;  ///< s since reset, when it first touched one in this period
+};
+
 /// What one control period brought.
 struct PlantStep {
   Eigen::VectorXd state;             ///< true state after the disturbance, state_dim
   std::vector<MotionSample> motion;  ///< samples within the period, oldest first
+  /// The states at the simulator's own steps within the period, the last one at its end and before
+  /// the disturbance: state_dim x steps; empty without a simulator.
+  Eigen::MatrixXd between{};
+  PlantContact contact{};
   std::optional<std::string>
       fault;  ///< the simulator's own words when it broke; state is then the last good one
 };

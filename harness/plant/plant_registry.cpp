@@ -5,8 +5,8 @@
 #include <initializer_list>
 
 #include "harness/errors.hpp"
+#include "harness/mujoco/mujoco_model.hpp"
 #include "harness/plant/analytic_plant.hpp"
-#include "harness/plant/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 
 namespace qsmpc::harness {
@@ -40,6 +40,11 @@ std::unique_ptr<Plant> make_analytic(const Scenario& scenario, const PlantVariat
                       .found = scenario.disturbance.kind,
                       .expected = "state, as an analytic plant has no body to push"});
   }
+  if (scenario.plant.solid) {
+    throw InputError({.key = "plant.solid",
+                      .found = "true",
+                      .expected = "false, as an analytic plant has no body to stop"});
+  }
   models::ParameterMap parameters = scenario.model.parameters;
   vary(parameters, "friction", variation.friction, {"front_tyre_stiffness", "rear_tyre_stiffness"});
   vary(parameters, "mass", variation.mass, {"mass", "yaw_inertia", "cart_mass", "pole_mass"});
@@ -61,6 +66,7 @@ std::unique_ptr<Plant> make_mujoco(const Scenario& scenario, const PlantVariatio
        .mapping = scenario.plant.mapping,
        .time_step = scenario.plant.time_step,
        .variation = variation,
+       .solid = scenario.plant.solid ? std::optional(scenario.safe_set) : std::nullopt,
        .force_covariance = pushed ? scenario.disturbance.covariance : Eigen::MatrixXd()});
 }
 

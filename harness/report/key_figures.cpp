@@ -71,6 +71,28 @@ Tile unsafe_tile(const EpisodeView& view) {
           .verdict = verdict};
 }
 
+/// At the simulator's steps between the control instants, where they are known.
+Tile between_tile(const Summary& summary) {
+  const bool unsafe = summary.unsafe_between.value_or(false);
+  return {.name = "Unsafe between control instants",
+          .value = unsafe ? "yes" : "no",
+          .hint = "true state at the simulator's steps, before the disturbance",
+          .verdict = unsafe ? Verdict::kBad : Verdict::kGood};
+}
+
+Tile contact_tile(const Summary& summary) {
+  const int count = summary.contacts.value_or(0);
+  Tile tile{.name = "Contacts",
+            .value = fmt::format("{}", count),
+            .hint = "of the vehicle with solid walls and obstacles",
+            .verdict = count > 0 ? Verdict::kBad : Verdict::kGood};
+  if (summary.first_contact) {
+    tile.hint += fmt::format("; the first at {}, at most {} N", seconds(*summary.first_contact),
+                             format_number(summary.largest_contact));
+  }
+  return tile;
+}
+
 Tile clearance_tile(const EpisodeView& view) {
   const Summary& summary = view.summary();
   Tile tile{.name = "Minimum clearance",
@@ -205,6 +227,8 @@ std::string tiles_html(const EpisodeView& view) {
     tiles.push_back(bound_tile(summary, "Largest plan certificate", summary.horizon_max,
                                "sum over a plan's stages"));
   }
+  if (summary.unsafe_between) tiles.push_back(between_tile(summary));
+  if (summary.contacts) tiles.push_back(contact_tile(summary));
   tiles.push_back(thesis_tile(summary));
   tiles.push_back(solve_tile(trace, summary));
   tiles.push_back(deadline_tile(summary));

@@ -55,7 +55,9 @@ EpisodeDigest digest_of(const Trace& trace) {
 }  // namespace
 
 Scenario scenario_of(const Variant& variant) {
-  Scenario scenario = with_plant(load_scenario(variant.scenario, variant.overrides), variant.plant);
+  std::vector<std::string> overrides = variant.overrides;
+  overrides.emplace_back("vehicle.footprint=point");  // the thesis knows no other
+  Scenario scenario = with_plant(load_scenario(variant.scenario, overrides), variant.plant);
   // One thread an episode, and nothing that depends on how fast it is.
   scenario.controller.threads = 1;
   scenario.controller.deadline = std::numeric_limits<double>::infinity();

@@ -276,4 +276,14 @@ PlantMapping parse_plant_mapping(const std::string& text, const std::string& fil
   return mapping;
 }
 
+PlantMapping own_plant_mapping(const std::optional<std::string>& text, const std::string& file,
+                               const MappedSystem& system) {
+  if (text) return parse_plant_mapping(*text, file, system);
+  throw InputError({.file = file,
+                    .key = "plant.state",
+                    .found = "nothing",
+                    .expected = "where the model has each state and input, in the scenario or in a "
+                                "custom text called \"qsmpc\" of the model"});
+}
+
 }  // namespace qsmpc::harness

@@ -27,6 +27,14 @@ struct MappedSystem {
 [[nodiscard]] PlantMapping parse_plant_mapping(const std::string& text, const std::string& file,
                                                const MappedSystem& system);
 
+/// The name of the custom text of a MuJoCo file that holds its own mapping.
+inline constexpr const char* kMappingText = "qsmpc";
+
+/// The mapping in `text`, that of the MuJoCo file `file`. Throws InputError where there is none,
+/// and as parse_plant_mapping.
+[[nodiscard]] PlantMapping own_plant_mapping(const std::optional<std::string>& text,
+                                             const std::string& file, const MappedSystem& system);
+
 /// `mapping` as what stands between the braces of a mapping in YAML: "state: {…}, input: {…}".
 [[nodiscard]] std::string plant_mapping_text(const PlantMapping& mapping);
 

@@ -30,6 +30,7 @@ struct Scenario {
     std::optional<double> time_step{};  ///< the simulator's, s; else the one in the XML
     /// How the system appears in the MuJoCo model; else what the XML says of itself.
     std::optional<PlantMapping> mapping{};
+    bool solid = false;  ///< whether walls and obstacles stand in the way of the MuJoCo vehicle
   };
   struct GaussianValue {
     Eigen::VectorXd mean;        ///< state_dim

@@ -16,7 +16,10 @@ namespace fs = std::filesystem;
 Scenario read_text(const std::string& text, const ScenarioSource& source, Problems& problems) {
   YamlNode tree = parse_yaml(text, source.file);
   for (const std::string& override : source.overrides) apply_override(tree, override);
-  return read_scenario(tree, {.folder = source.folder, .must_exist = source.files_must_exist},
+  return read_scenario(tree,
+                       {.folder = source.folder,
+                        .must_exist = source.files_must_exist,
+                        .is_recorded = source.is_recorded || !source.files_must_exist},
                        problems);
 }
 

@@ -23,6 +23,9 @@ struct ScenarioSource {
   /// Whether a MuJoCo XML file that is not found is refused; otherwise its name is kept as it is
   /// written, for those who only read a recorded scenario.
   bool files_must_exist = true;
+  /// Whether the text is one that a program wrote, in this version or an earlier one: a vehicle
+  /// without a footprint is then a point. So it is too where files need not exist.
+  bool is_recorded = false;
 };
 
 /// The path of the scenario `path_or_name`: a path, or the name of a shipped one.

@@ -13,6 +13,8 @@ namespace qsmpc::harness {
 struct FileLookup {
   std::string folder;      ///< of the scenario; the current one when empty
   bool must_exist = true;  ///< otherwise a file that is not found keeps the name that was written
+  /// Whether a program wrote the scenario: what it does not say is from before it could be said.
+  bool is_recorded = false;
 };
 
 /// Reads `tree`, with defaults filled in. Everything wrong with it is noted in `problems`; the

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "controller/regions/unsafe_set.hpp"
 #include "harness/text/number_parse.hpp"
 #include "models/linear_algebra.hpp"
 
@@ -56,7 +57,10 @@ std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
                         (point.array() <= obstacle.upper.array()).all();
     if (inside) return fmt::format("a state inside safe_set.obstacles.{}", k);
   }
-  return std::nullopt;
+  if (safe_set.body.is_point()) return std::nullopt;
+  const double clearance = controller::clearance(point, controller::UnsafeSet(safe_set));
+  if (clearance > 0.0) return std::nullopt;
+  return fmt::format("a vehicle that reaches {} m into the unsafe set", -clearance);
 }
 
 std::optional<FrameSize> parse_frame_size(std::string_view text) {

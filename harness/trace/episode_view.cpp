@@ -1,10 +1,7 @@
 #include "harness/trace/episode_view.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <set>
 #include <stdexcept>
 
 #include "controller/regions/unsafe_set.hpp"
@@ -15,20 +12,6 @@ namespace {
 
 double duration_of(const Trace& trace) {
   return trace.steps.empty() ? 0.0 : trace.steps.back().time + trace.scenario.time_step;
-}
-
-std::string clearance_unit_of(const controller::SafeSet& safe_set,
-                              const models::SystemDescription& system) {
-  std::set<std::string> units;
-  const auto add = [&](const controller::Box& box) {
-    for (Eigen::Index i = 0; i < std::min(box.lower.size(), std::ssize(system.states)); ++i) {
-      if (!std::isfinite(box.lower[i]) && !std::isfinite(box.upper[i])) continue;
-      units.insert(system.states[static_cast<std::size_t>(i)].unit);
-    }
-  };
-  add(safe_set.bounds);
-  for (const controller::Box& obstacle : safe_set.obstacles) add(obstacle);
-  return units.size() == 1 ? *units.begin() : "state units";
 }
 
 Eigen::MatrixXd residuals_of(const Trace& trace) {

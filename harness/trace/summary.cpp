@@ -1,6 +1,8 @@
 #include "harness/trace/summary.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -37,6 +39,28 @@ void add_clearance(const EpisodeView& view, Summary& summary) {
     summary.min_clearance = std::min(summary.min_clearance, clearance);
   }
   summary.collision = summary.min_clearance <= 0.0;
+}
+
+/// What happened between the control instants, as far as the plant says.
+void add_between(const Trace& trace, Summary& summary) {
+  bool touches = false;  // in the period before
+  for (const StepRecord& step : trace.steps) {
+    if (!std::isnan(step.clearance_between)) {
+      summary.unsafe_between =
+          summary.unsafe_between.value_or(false) || step.clearance_between <= 0.0;
+    }
+    if (std::isnan(step.contact.force)) continue;
+    const bool touched = touches;
+    touches = !std::isnan(step.contact.time);
+    summary.contacts = summary.contacts.value_or(0) + (touches && !touched ? 1 : 0);
+    if (touches && !summary.first_contact) summary.first_contact = step.contact.time;
+    summary.largest_contact = std::max(summary.largest_contact, step.contact.force);
+  }
+}
+
+template <class Value>
+nlohmann::ordered_json or_null(const std::optional<Value>& value) {
+  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
 }
 
 void add_cost(const Trace& trace, Summary& summary) {
@@ -132,6 +156,7 @@ Summary summarise(const EpisodeView& view) {
     summary.time_to_target = summary.steps * trace.scenario.time_step;
   }
   add_clearance(view, summary);
+  add_between(trace, summary);
   add_cost(trace, summary);
   add_timing(trace, summary);
   add_certificates(view, summary);
@@ -154,6 +179,9 @@ std::string summary_json(const EpisodeView& view, const SummaryOptions& options)
   if (summary.time_to_target) json["time_to_target"] = *summary.time_to_target;
   json["collision"] = summary.collision;
   json["min_clearance"] = summary.min_clearance;
+  json["unsafe_between"] = or_null(summary.unsafe_between);
+  json["contact"] = {{"count", or_null(summary.contacts)},
+                     {"first_time", or_null(summary.first_contact)}};
   json["cost"] = {{"closed_loop", summary.closed_loop_cost}};
   json["ocp_ms"] = timing_json(summary);
   json["deadline_misses"] = summary.deadline_misses;

@@ -24,7 +24,14 @@ struct Summary {
   std::optional<double> time_to_target;  ///< s
   bool collision = false;                ///< the true state entered the unsafe set
   double min_clearance = 0.0;            ///< m, over all true states at the control instants
-  double closed_loop_cost = 0.0;         ///< Σ ½ |x − r|²_Q + |u|²_R along the true states
+  /// Whether the true state was unsafe at a step of the simulator between the control instants,
+  /// before the disturbance; nothing where no such state is known.
+  std::optional<bool> unsafe_between;
+  /// With solid walls and obstacles, how often the vehicle touched them; nothing without.
+  std::optional<int> contacts;
+  std::optional<double> first_contact;  ///< s
+  double largest_contact = 0.0;         ///< N
+  double closed_loop_cost = 0.0;        ///< Σ ½ |x − r|²_Q + |u|²_R along the true states
   Distribution ocp_ms;             ///< wall clock of a step: quantise … certify; 0 without one
   StepTiming breakdown;            ///< medians of the parts, ms
   int deadline_misses = 0;         ///< steps whose wall clock exceeded the control period

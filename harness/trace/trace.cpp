@@ -1,7 +1,11 @@
 #include "harness/trace/trace.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -51,6 +55,20 @@ Eigen::Index completed_periods(const Trace& trace) {
   const auto steps = static_cast<Eigen::Index>(trace.steps.size());
   const bool end_is_known = trace.final_state.size() > 0 && trace.outcome != Outcome::kFault;
   return end_is_known || steps == 0 ? steps : steps - 1;
+}
+
+std::string clearance_unit_of(const controller::SafeSet& safe_set,
+                              const models::SystemDescription& system) {
+  std::set<std::string> units;
+  const auto add = [&](const controller::Box& box) {
+    for (Eigen::Index i = 0; i < std::min(box.lower.size(), std::ssize(system.states)); ++i) {
+      if (!std::isfinite(box.lower[i]) && !std::isfinite(box.upper[i])) continue;
+      units.insert(system.states[static_cast<std::size_t>(i)].unit);
+    }
+  };
+  add(safe_set.bounds);
+  for (const controller::Box& obstacle : safe_set.obstacles) add(obstacle);
+  return units.size() == 1 ? *units.begin() : "state units";
 }
 
 }  // namespace qsmpc::harness

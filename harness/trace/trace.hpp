@@ -14,6 +14,7 @@
 #include "controller/planning/cost/horizon_cost.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/scenario/scenario.hpp"
+#include "models/constants.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -42,6 +43,10 @@ struct StepRecord {
   /// x_{k+1} − w_k − f(x_k, u_k): what of the state at the end neither the model f nor the
   /// disturbance w explains, state_dim; not a number where that state is no result of the plant.
   Eigen::VectorXd residual;
+  /// Least distance to the unsafe set at the simulator's steps within the period, before the
+  /// disturbance; not a number without a simulator, and in traces of earlier versions.
+  double clearance_between = kNotANumber;
+  PlantContact contact;
   Eigen::VectorXd belief_mean;  ///< what the plan was made for, state_dim
   Eigen::MatrixXd belief_covariance;
   // Of the plan; empty where the controller makes none.
@@ -85,6 +90,11 @@ struct Trace {
 /// The true states at the control instants, in their units: state_dim x (steps + 1), or as many
 /// columns as there are steps where the state after the last one is not known.
 [[nodiscard]] Eigen::MatrixXd true_states(const Trace& trace);
+
+/// The unit of distances to the unsafe set: that of the states which the safe set restricts, or
+/// "state units" where they differ.
+[[nodiscard]] std::string clearance_unit_of(const controller::SafeSet& safe_set,
+                                            const models::SystemDescription& system);
 
 /// How many periods the plant came through: those of which the state at the end is a result.
 [[nodiscard]] Eigen::Index completed_periods(const Trace& trace);

@@ -9,6 +9,7 @@
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/coordinate_labels.hpp"
 #include "harness/trace/cost_fields.hpp"
+#include "harness/trace/trace.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -28,6 +29,8 @@ struct TraceSizes {
   std::size_t certified;  // stages with a certificate
   CoordinateLabels states;
   CoordinateLabels inputs;
+  std::string clearance_unit;
+  bool solid;  // whether contacts are recorded
 };
 
 TraceSizes trace_sizes(const Scenario& scenario, const models::SystemDescription& system) {
@@ -36,7 +39,22 @@ TraceSizes trace_sizes(const Scenario& scenario, const models::SystemDescription
           .horizon = static_cast<std::size_t>(parts.stages),
           .certified = static_cast<std::size_t>(certified_stages(parts)),
           .states = labels_of(system.states),
-          .inputs = labels_of(system.inputs)};
+          .inputs = labels_of(system.inputs),
+          .clearance_unit = clearance_unit_of(scenario.safe_set, system),
+          .solid = scenario.plant.solid};
+}
+
+void add_contact(std::vector<DatasetSpec>& layout) {
+  layout.push_back({.path = kContactForcePath,
+                    .axes = {"step"},
+                    .units = {"N"},
+                    .comment = "largest normal force within the period between the vehicle and a "
+                               "solid wall or obstacle, at one place; 0 without contact"});
+  layout.push_back({.path = kContactTimePath,
+                    .axes = {"step"},
+                    .units = {"s"},
+                    .comment = "when the vehicle first touched one within the period; not a "
+                               "number without contact"});
 }
 
 void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
@@ -76,6 +94,12 @@ void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .comment = "what of the state at the end of the period neither the planner's "
                                "model nor the disturbance explains; not a number where the plant "
                                "broke"});
+  layout.push_back({.path = kBetweenPath,
+                    .axes = {"step"},
+                    .units = {n.clearance_unit},
+                    .comment = "least distance to the unsafe set at the simulator's steps within "
+                               "the period, before the disturbance; not a number without them"});
+  if (n.solid) add_contact(layout);
   layout.push_back({.path = "/plant/final_state",
                     .axes = {"state"},
                     .units = n.states.units,
@@ -207,7 +231,8 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario,
 
 bool may_be_missing(std::string_view path) {
   return path == kObservationPath || path == kResidualPath || path == kGainsPath ||
-         path == kDynamicsPath || path == kModelErrorPath || path == "/certificate/smoothed";
+         path == kBetweenPath || path == kDynamicsPath || path == kModelErrorPath ||
+         path == "/certificate/smoothed";
 }
 
 }  // namespace qsmpc::harness

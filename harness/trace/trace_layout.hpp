@@ -21,6 +21,13 @@ inline constexpr const char* kObservationPath = "/plant/observation";
 /// Of the residuals. For traces without it the reader works them out.
 inline constexpr const char* kResidualPath = "/plant/residual";
 
+/// Of the distances from the unsafe set between control instants.
+inline constexpr const char* kBetweenPath = "/plant/clearance_between";
+
+/// Of how the vehicle touched what is solid.
+inline constexpr const char* kContactForcePath = "/plant/contact_force";
+inline constexpr const char* kContactTimePath = "/plant/contact_time";
+
 /// Of the policies' gains.
 inline constexpr const char* kGainsPath = "/plan/gains";
 

@@ -42,6 +42,7 @@ class TraceReader {
   void read_motion();
   void read_final_state();
   void read_plant_and_belief();
+  void read_between();
   void read_policy();
   void read_solution();
   void read_particles();
@@ -74,6 +75,7 @@ Trace TraceReader::read() {
   read_motion();
   read_final_state();
   read_plant_and_belief();
+  read_between();
   if (parts_.stages > 0) read_policy();
   read_solution();
   if (parts_.particles) read_particles();
@@ -195,6 +197,18 @@ void TraceReader::read_plant_and_belief() {
     step.belief_mean = Vector(row_of(means, k, state_dim_), state_dim_);
     step.belief_covariance = Eigen::Map<const RowMajor>(
         row_of(covariances, k, state_dim_ * state_dim_), state_dim_, state_dim_);
+  }
+}
+
+void TraceReader::read_between() {
+  const auto clearances = doubles_if_there(kBetweenPath);
+  const auto forces = doubles_if_there(kContactForcePath);
+  const auto times = doubles_if_there(kContactTimePath);
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    StepRecord& step = trace_.steps[k];
+    if (!clearances.empty()) step.clearance_between = clearances[k];
+    if (!forces.empty()) step.contact.force = forces[k];
+    if (!times.empty()) step.contact.time = times[k];
   }
 }
 

@@ -40,6 +40,7 @@ TraceWriter::TraceWriter(std::string path, const Trace& header)
       file_(Hdf5File::create(partial_path_of(path_))),
       state_dim_(std::ssize(header.system.states)),
       input_dim_(std::ssize(header.system.inputs)),
+      is_solid_(header.scenario.plant.solid),
       parts_(decision_parts(header.scenario)),
       stages_(certified_stages(parts_)) {
   write_trace_header(file_, header);
@@ -128,6 +129,11 @@ void TraceWriter::append_vectors(const StepRecord& record) {
   file_.append("/plant/input", by_rows(record.input));
   file_.append("/plant/disturbance", by_rows(record.disturbance));
   file_.append(kResidualPath, by_rows(record.residual));
+  file_.append(kBetweenPath, std::vector<double>{record.clearance_between});
+  if (is_solid_) {
+    file_.append(kContactForcePath, std::vector<double>{record.contact.force});
+    file_.append(kContactTimePath, std::vector<double>{record.contact.time});
+  }
   file_.append("/belief/mean", by_rows(record.belief_mean));
   file_.append("/belief/covariance", by_rows(record.belief_covariance));
 }

@@ -50,6 +50,7 @@ inline std::string example_scenario(const ExampleTraceOptions& options) {
          "\n"
          "model: {system: dubins, speed: 1.5}\n"
          "plant: {kind: analytic}\n"
+         "vehicle: {footprint: point}\n"
          "time_step: 0.1\n"
          "initial_state: {mean: [0, 0, 0], covariance: [0.01, 0.01, 0.01]}\n"
          "disturbance: {covariance: [0.01, 0.01, 0.001]}\n"

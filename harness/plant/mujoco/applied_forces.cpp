@@ -12,6 +12,8 @@
 namespace qsmpc::harness {
 namespace {
 
+constexpr double kLeastUpright = 0.5;  // vertical part of the normal of what carries a wheel
+
 /// Adds a force at a point, both in the world's axes, to what is applied to a body.
 void push(mjData& data, int body, const Eigen::Vector3d& force, const Eigen::Vector3d& point) {
   const Eigen::Map<const Eigen::Vector3d> centre(data.xipos + std::ptrdiff_t{3} * body);
@@ -120,7 +122,8 @@ void TyreForceBinding::weigh(const mjData& data) {
   loads_.setZero();
   for (int k = 0; k < data.ncon; ++k) {
     const mjContact& contact = data.contact[k];
-    if (contact.efc_address < 0) continue;
+    const bool is_upright = std::abs(contact.frame[2]) > kLeastUpright;  // a wall carries nothing
+    if (contact.efc_address < 0 || !is_upright) continue;
     for (std::size_t w = 0; w < wheels_.size(); ++w) {
       const int body = wheels_[w].body;
       if (model_.geom_bodyid[contact.geom1] != body && model_.geom_bodyid[contact.geom2] != body) {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/mujoco/mujoco_errors.hpp"
 #include "models/linear_algebra.hpp"
 
 namespace qsmpc::harness {

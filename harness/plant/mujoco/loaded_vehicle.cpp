@@ -3,27 +3,13 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco/named_model.hpp"
+#include "harness/mujoco/named_model.hpp"
+#include "harness/plant/mujoco/solid_map.hpp"
 #include "harness/plant/mujoco/vehicle_variation.hpp"
 #include "harness/scenario/plant_mapping_reader.hpp"
 
 namespace qsmpc::harness {
 namespace {
-
-constexpr const char* kMappingText = "qsmpc";  // name of the text in a MuJoCo file
-
-PlantMapping own_mapping(const NamedModel& named, const MappedSystem& system) {
-  const int text = mj_name2id(&named.model, mjOBJ_TEXT, kMappingText);
-  if (text < 0) {
-    throw InputError({.file = named.file,
-                      .key = "plant.state",
-                      .found = "nothing",
-                      .expected = "where the model has each state and input, in the scenario or in "
-                                  "a custom text called \"qsmpc\" of the model"});
-  }
-  return parse_plant_mapping(named.model.text_data + named.model.text_adr[text], named.file,
-                             system);
-}
 
 void check_time_step(const NamedModel& named, const PlantMapping& mapping) {
   if (!mapping.time_steps) return;
@@ -43,12 +29,16 @@ void check_time_step(const NamedModel& named, const PlantMapping& mapping) {
 }  // namespace
 
 LoadedVehicle load_vehicle(const MujocoPlantSetup& setup) {
-  LoadedVehicle loaded{.model = load_mujoco_model(setup.mjcf), .mapping = {}};
+  LoadedVehicle loaded{.model = setup.solid
+                                    ? load_with_solids(setup.mjcf, *setup.solid, setup.system)
+                                    : load_mujoco_model(setup.mjcf),
+                       .mapping = {}};
   const NamedModel named{.model = *loaded.model, .file = setup.mjcf};
   loaded.mapping =
       setup.mapping
           ? *setup.mapping
-          : own_mapping(named, {.description = setup.system, .parameters = setup.parameters});
+          : own_plant_mapping(custom_text(*loaded.model, kMappingText), setup.mjcf,
+                              {.description = setup.system, .parameters = setup.parameters});
   if (setup.time_step) loaded.model->opt.timestep = *setup.time_step;
   check_time_step(named, loaded.mapping);
   vary_vehicle(named, *loaded.model, loaded.mapping, setup.variation);

@@ -1,7 +1,7 @@
 // A vehicle's MuJoCo file as its plant uses it. Private to the MuJoCo plant.
 #pragma once
 
-#include "harness/plant/mujoco/mujoco_model.hpp"
+#include "harness/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 
 namespace qsmpc::harness {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
+#include "harness/mujoco/mujoco_errors.hpp"
 #include "harness/plant/mujoco/force_shooting.hpp"
-#include "harness/plant/mujoco/mujoco_errors.hpp"
 #include "harness/plant/mujoco/simulation.hpp"
 
 namespace qsmpc::harness {
@@ -46,6 +46,8 @@ class MujocoPlant final : public Plant {
       shooting_.emplace(*simulation_, setup.system, setup.force_covariance);
     }
     simulation_->reset(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(state_dim_)));
+    // Not before: a vehicle settles where it happens to be in its file.
+    simulation_->set_solid_standing(true);
   }
 
   MotionSample reset(const Eigen::VectorXd& state) override {
@@ -66,7 +68,7 @@ class MujocoPlant final : public Plant {
     if (!fault_) {
       const MujocoTrap trap;
       try {
-        take_period(input, disturbance, result.motion);
+        take_period(input, disturbance, result);
       } catch (const MujocoError& error) {
         fault_ = fmt::format("{} at {:.3f} s", error.what(), simulation_->time());
       }
@@ -84,21 +86,37 @@ class MujocoPlant final : public Plant {
   }
 
   void take_period(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance,
-                   std::vector<MotionSample>& motion) {
+                   PlantStep& result) {
     if (!input.allFinite()) throw MujocoError("input that is not finite");
     if (!disturbance.allFinite()) throw MujocoError("disturbance that is not finite");
     simulation_->start_period(input);
     if (shooting_ && !disturbance.isZero(0.0)) {
+      // The pull is that of a vehicle that nothing stops.
+      simulation_->set_solid_standing(false);
       simulation_->set_pull(shooting_->solve(*simulation_, disturbance));
+      simulation_->set_solid_standing(true);
     }
-    for (int k = 1; k <= simulation_->period_steps(); ++k) {
+    const int steps = simulation_->period_steps();
+    for (int k = 1; k <= steps; ++k) {
+      const double time = simulation_->time();
       simulation_->step();
-      if (k % sample_steps_ == 0 || k == simulation_->period_steps()) motion.push_back(sample());
+      note_contact(time, result.contact);
+      result.between.conservativeResize(Eigen::Index(state_dim_), k);
+      result.between.col(k - 1) = simulation_->state();
+      if (k % sample_steps_ == 0 || k == steps) result.motion.push_back(sample());
     }
     const bool kicked = !shooting_;
     simulation_->add(kicked ? disturbance
                             : Eigen::VectorXd(Eigen::VectorXd::Zero(disturbance.size())));
-    motion.push_back(sample());
+    note_contact(simulation_->time(), result.contact);
+    result.motion.push_back(sample());
+  }
+
+  /// Adds what the vehicle touches at `time`.
+  void note_contact(double time, PlantContact& contact) const {
+    const double force = simulation_->contact_force();
+    contact.force = std::fmax(contact.force, force);
+    if (force > 0.0 && std::isnan(contact.time)) contact.time = time;
   }
 
   std::size_t state_dim_;

@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/regions/safe_set.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/plant/plant_variation.hpp"
 #include "harness/scenario/plant_mapping.hpp"
@@ -29,6 +30,8 @@ struct MujocoPlantSetup {
   std::optional<PlantMapping> mapping{};  ///< else what the XML says of itself
   std::optional<double> time_step{};      ///< s; else the XML's
   PlantVariation variation{};
+  /// Whose walls and obstacles stand in the vehicle's way; none where nothing is solid.
+  std::optional<controller::SafeSet> solid{};
   /// Where not empty, the disturbance acts as a force, and this is its covariance: state_dim x
   /// state_dim, a scale for how near the force must bring the vehicle to where it should.
   Eigen::MatrixXd force_covariance{};

@@ -11,7 +11,8 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/mujoco/mujoco_errors.hpp"
+#include "models/constants.hpp"
 #include "models/linear_algebra.hpp"
 
 namespace qsmpc::harness {
@@ -80,6 +81,7 @@ Simulation::Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded)
     const int joint = scalar_joint(named, name);
     rolling_.push_back({.dof = model_->jnt_dofadr[joint], .radius = wheel_radius(named, joint)});
   }
+  if (setup.solid) solid_.emplace(named, states_.carrier());
   settle(loaded.mapping.settling);
 }
 
@@ -302,6 +304,14 @@ void Simulation::add(const Eigen::VectorXd& change) {
   check();
   for (TyreForceBinding& tyres : tyres_) tyres.weigh(*data_);
   state_ = states_.read(*data_, next);
+}
+
+void Simulation::set_solid_standing(bool standing) {
+  if (solid_) solid_->set_standing(*model_, standing);
+}
+
+double Simulation::contact_force() const {
+  return solid_ ? solid_->largest_force(*model_, *data_) : kNotANumber;
 }
 
 std::vector<double> Simulation::qpos() const { return copied(data_->qpos, model_->nq); }

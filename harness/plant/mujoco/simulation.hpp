@@ -4,17 +4,19 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 #include <mujoco/mujoco.h>
 
+#include "harness/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/applied_forces.hpp"
 #include "harness/plant/mujoco/control_binding.hpp"
 #include "harness/plant/mujoco/loaded_vehicle.hpp"
-#include "harness/plant/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
+#include "harness/plant/mujoco/solid_map.hpp"
 #include "harness/plant/mujoco/state_binding.hpp"
 
 namespace qsmpc::harness {
@@ -77,6 +79,11 @@ class Simulation {
   [[nodiscard]] int period_steps() const { return period_steps_; }
   [[nodiscard]] double time_step() const { return model_->opt.timestep; }
 
+  /// Whether the vehicle can touch what is solid; at first it cannot.
+  void set_solid_standing(bool standing);
+  /// How it touches what is solid now, see SolidMap; not a number where nothing is solid.
+  [[nodiscard]] double contact_force() const;
+
   [[nodiscard]] SimulationSnapshot snapshot() const;
   void restore(const SimulationSnapshot& snapshot);
 
@@ -117,6 +124,7 @@ class Simulation {
     double radius;
   };
   std::vector<RollingWheel> rolling_;
+  std::optional<SolidMap> solid_;
   int period_steps_;
   long delay_steps_;
 

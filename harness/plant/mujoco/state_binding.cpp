@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/mujoco/mujoco_errors.hpp"
 #include "models/linear_algebra.hpp"
 
 namespace qsmpc::harness {

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-#include "harness/plant/mujoco/named_model.hpp"
+#include "harness/mujoco/named_model.hpp"
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 

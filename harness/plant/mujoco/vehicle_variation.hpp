@@ -3,7 +3,7 @@
 
 #include <mujoco/mujoco.h>
 
-#include "harness/plant/mujoco/named_model.hpp"
+#include "harness/mujoco/named_model.hpp"
 #include "harness/plant/plant_variation.hpp"
 #include "harness/scenario/plant_mapping.hpp"
 

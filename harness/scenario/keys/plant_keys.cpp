@@ -145,6 +145,25 @@ ScenarioKey plant_time_step_key() {
           }};
 }
 
+ScenarioKey solid_key() {
+  return {.about = {.name = "solid",
+                    .values = {FlagValue{}},
+                    .words = "whether the bounds of the position and the obstacles stand in the "
+                             "MuJoCo vehicle's way, and what touches them is recorded",
+                    .see = "[plants](plants.md#solid-walls-and-obstacles)"},
+          .member = [](Scenario& scenario) -> bool& { return scenario.plant.solid; },
+          .check =
+              [](const ScenarioReading& reading, Section& section) {
+                if (!reading.scenario.plant.solid) return;
+                const models::SystemDescription& system = reading.system();
+                if (reading.scenario.plant.kind == "analytic") {
+                  section.note("solid", "false, or plant.kind: mujoco");
+                } else if (system.position_x < 0 || system.position_y < 0) {
+                  section.note("solid", "false, as the system has no position in the plane");
+                }
+              }};
+}
+
 ScenarioKey mapping_key() {
   return {.about = {.values = {MappingValue{plant_mapping_keys()}},
                     .words = "how the system appears in the MuJoCo model",
@@ -191,6 +210,7 @@ ScenarioKey plant_key() {
                 .member = [](Scenario& scenario) -> std::string& { return scenario.plant.kind; }},
                mjcf_key(),
                plant_time_step_key(),
+               solid_key(),
                mapping_key()},
       .layout = SectionLayout::kFlow,
       .after = ReadAfter::kTimeStep,

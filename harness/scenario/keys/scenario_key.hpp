@@ -74,6 +74,7 @@ struct ScenarioKey {
 [[nodiscard]] ScenarioKey initial_state_key();
 [[nodiscard]] ScenarioKey disturbance_key();
 [[nodiscard]] ScenarioKey model_error_key();
+[[nodiscard]] ScenarioKey vehicle_key();
 [[nodiscard]] ScenarioKey safe_set_key();
 [[nodiscard]] ScenarioKey target_key();
 [[nodiscard]] ScenarioKey risk_key();

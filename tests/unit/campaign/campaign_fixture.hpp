@@ -20,6 +20,7 @@ inline harness::Scenario quick_scenario(int horizon = 3) {
       fmt::format("name: quick\n"
                   "model: {{system: dubins, speed: 1.5}}\n"
                   "plant: {{kind: analytic}}\n"
+                  "vehicle: {{footprint: point}}\n"
                   "time_step: 0.1\n"
                   "initial_state: {{mean: [0, 0, 0], covariance: [0.01, 0.01, 0.01]}}\n"
                   "disturbance: {{covariance: [0.01, 0.01, 0.001]}}\n"

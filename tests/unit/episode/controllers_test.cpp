@@ -22,7 +22,7 @@ namespace controllers_test {
 Scenario scenario_of(const std::vector<std::string>& more) {
   std::vector<std::string> overrides = {
       "controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",
-      "limit.steps=6", "plant.kind=analytic"};
+      "limit.steps=6", "plant.kind=analytic", "vehicle.footprint=point"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return load_scenario("dubins_obstacles", overrides);
 }

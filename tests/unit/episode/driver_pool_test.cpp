@@ -15,9 +15,10 @@ namespace qsmpc::harness {
 namespace driver_pool_test {
 
 Scenario short_scenario(const std::string& choice, const std::string& name = "dubins_obstacles") {
-  return load_scenario(name, {"controller.horizon=5",
-                              "controller.quantisation={state: 20, noise: 20, compressed: 20}",
-                              "limit.steps=8", "plant.kind=analytic", choice});
+  return load_scenario(
+      name,
+      {"controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",
+       "limit.steps=8", "plant.kind=analytic", "vehicle.footprint=point", choice});
 }
 
 /// What an episode did, to the last bit.

@@ -17,7 +17,7 @@ namespace episode_faults_test {
 Scenario broken_scenario(const std::vector<std::string>& wrong) {
   std::vector<std::string> overrides = {
       "controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",
-      "limit.steps=12", "plant.kind=mujoco"};
+      "limit.steps=12", "plant.kind=mujoco", "vehicle.footprint=point"};
   overrides.insert(overrides.end(), wrong.begin(), wrong.end());
   return load_scenario("dubins_obstacles", overrides);
 }

@@ -110,7 +110,7 @@ TEST(ComparePlants, the_analytic_plant_is_the_model_but_for_rounding) {
 // The corridor's car turns along arcs, as its joints do: what separates these from the model is
 // MuJoCo's integrator; what separates the wheeled car is tyres, suspension and servos.
 TEST(ComparePlants, in_the_corridor_the_planar_car_is_nearer_to_the_model_than_the_wheeled_one) {
-  const Scenario corridor = load_scenario("dubins_corridor", {});
+  const Scenario corridor = load_scenario("dubins_corridor", {"vehicle.footprint=point"});
   ComparisonOptions options = small_options({"analytic", "mujoco_planar", "mujoco_car"});
   options.paths = 200;
   const auto comparison = compare_plants(corridor, options);

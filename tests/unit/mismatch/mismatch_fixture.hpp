@@ -21,6 +21,7 @@ inline harness::Scenario short_scenario(const std::vector<std::string>& override
       "name: short\n"
       "model: {system: dubins, speed: 1.5}\n"
       "plant: {kind: analytic, mjcf: dubins_car.xml}\n"
+      "vehicle: {footprint: point}\n"
       "seed: 5\n"
       "initial_state: {mean: [0, 0, 0.5], covariance: [0.01, 0.01, 0.01]}\n"
       "disturbance: {covariance: [0.01, 0.01, 0.001]}\n"

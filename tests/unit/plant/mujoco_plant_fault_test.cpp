@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco/mujoco_errors.hpp"
-#include "harness/plant/mujoco/mujoco_model.hpp"
+#include "harness/mujoco/mujoco_errors.hpp"
+#include "harness/mujoco/mujoco_model.hpp"
 #include "models/constants.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"

@@ -18,6 +18,7 @@ inline harness::Scenario small_scenario(const std::vector<std::string>& override
       "name: small\n"
       "model: {system: dubins, speed: 1.5}\n"
       "plant: {kind: analytic}\n"
+      "vehicle: {footprint: point}\n"
       "seed: 7\n"
       "initial_state: {mean: [0, 0, 0], covariance: [0.01, 0.01, 0.01]}\n"
       "disturbance: {covariance: [0.01, 0.01, 0.001]}\n"

@@ -131,6 +131,7 @@ description: every key
 seed: 7
 model: {system: dubins, speed: 2.5}
 plant: {kind: analytic, mjcf: ""}
+vehicle: {footprint: [{radius: 0.5, offset: [0.6, 0.7]}]}
 time_step: 0.2
 initial_state: {mean: [1, 2, 3], covariance: [[2, 1, 0], [1, 2, 0], [0, 0, 1]]}
 disturbance: {covariance: [4, 5, 6], sensor: [[7, 0, 0], [0, 8, 1], [0, 1, 9]]}
@@ -165,6 +166,9 @@ TEST(ScenarioFile, every_key_reaches_its_value) {
   EXPECT_EQ(scenario.seed, 7U);
   EXPECT_EQ(scenario.model.parameters.at("speed"), 2.5);
   EXPECT_EQ(scenario.plant.kind, "analytic");
+  ASSERT_EQ(scenario.safe_set.body.discs.size(), 1U);
+  EXPECT_EQ(scenario.safe_set.body.discs[0].radius, 0.5);
+  EXPECT_EQ(scenario.safe_set.body.discs[0].offset, Eigen::Vector2d(0.6, 0.7));
   EXPECT_EQ(scenario.plant.mjcf, "");
   EXPECT_EQ(scenario.time_step, 0.2);
   EXPECT_EQ(scenario.initial_state.mean, Eigen::Vector3d(1, 2, 3));
@@ -321,7 +325,8 @@ TEST(ScenarioFile, an_xml_file_beside_the_scenario_is_found_and_written_by_its_p
   const TemporaryFolder folder;
   const std::string xml = folder.file("own_car.xml", "<mujoco/>");
   const std::string path = folder.file("s.yaml", minimal_text);
-  const Scenario scenario = load_scenario(path, {"plant={kind: mujoco, mjcf: own_car.xml}"});
+  const Scenario scenario =
+      load_scenario(path, {"plant={kind: mujoco, mjcf: own_car.xml}", "vehicle.footprint=point"});
   EXPECT_TRUE(std::filesystem::equivalent(scenario.plant.mjcf, xml));
   EXPECT_TRUE(std::filesystem::path(scenario.plant.mjcf).is_absolute());
   expect_round_trip(scenario);

@@ -19,7 +19,7 @@ namespace qsmpc::harness {
 inline const std::string minimal_text =
     "name: test\n"
     "model: {system: dubins}\n"
-    "plant: {kind: analytic}\n"
+    "plant: {kind: analytic, mjcf: \"\"}\n"
     "initial_state: {mean: [0, 0, 0]}\n"
     "target: {state: [5, 0, 0]}\n";
 

@@ -53,6 +53,21 @@ TEST(Summary, adds_the_stage_costs_of_the_true_states) {
   EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().closed_loop_cost, 25.0 + 3.0 + 12.0);
 }
 
+TEST(Summary, counts_periods_of_touching_that_follow_each_other_once) {
+  Trace trace = straight_trace(6);
+  EXPECT_FALSE(EpisodeView(trace).summary().contacts.has_value());
+  for (StepRecord& step : trace.steps) step.contact.force = 0.0;
+  EXPECT_EQ(EpisodeView(trace).summary().contacts, 0);
+  for (const std::size_t k : {1U, 2U, 4U}) {
+    trace.steps[k].contact = {.force = 10.0 * static_cast<double>(k),
+                              .time = trace.steps[k].time + 0.05};
+  }
+  const Summary summary = EpisodeView(trace).summary();
+  EXPECT_EQ(summary.contacts, 2);
+  EXPECT_DOUBLE_EQ(*summary.first_contact, 0.15);
+  EXPECT_EQ(summary.largest_contact, 40.0);
+}
+
 TEST(Summary, headings_a_turn_apart_cost_the_same_where_the_target_is_meant_modulo_a_turn) {
   Trace trace = straight_trace(1);
   trace.scenario.controller.cost.state(2, 2) = 6.0;

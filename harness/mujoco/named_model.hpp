@@ -1,5 +1,5 @@
 // Elements of a loaded MuJoCo model by name, and geometry that the low-level loops take from it.
-// Private to the MuJoCo plant: include it from its sources only, since it shows MuJoCo's types.
+// For sources that work on MuJoCo models: it shows MuJoCo's types, as few headers here do.
 #pragma once
 
 #include <string>

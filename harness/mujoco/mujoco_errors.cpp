@@ -1,4 +1,4 @@
-#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/mujoco/mujoco_errors.hpp"
 
 #include <mutex>
 

@@ -1,4 +1,4 @@
-#include "harness/plant/mujoco/named_model.hpp"
+#include "harness/mujoco/named_model.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,7 +1,9 @@
-#include "harness/plant/mujoco/mujoco_model.hpp"
+#include "harness/mujoco/mujoco_model.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <filesystem>
 #include <fstream>
 #include <mutex>
 #include <regex>
@@ -12,11 +14,12 @@
 #include <mujoco/mujoco.h>
 
 #include "harness/errors.hpp"
-#include "harness/plant/mujoco/mujoco_errors.hpp"
+#include "harness/mujoco/mujoco_errors.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
+constexpr const char* kExtendedModel = "qsmpc_extended_model.xml";
 constexpr const char* kExpectedModel = "a MuJoCo model (MJCF) that loads without a warning";
 
 // MuJoCo writes "line 4", "line = 4" or "Line number=4"; its parser says 0 where it knows none.
@@ -32,11 +35,13 @@ SimulatorError model_error(const std::string& path, std::string text) {
       {.file = path, .line = line_in(text), .found = text, .expected = kExpectedModel});
 }
 
-}  // namespace
+struct XmlSource {
+  std::string file;
+  const mjVFS* files;  // in memory; nullptr: on the disk
+};
 
-void MujocoModelDeleter::operator()(mjModel_* model) const { mj_deleteModel(model); }
-
-MujocoModelPtr load_mujoco_model(const std::string& path) {
+/// `path`: what errors name.
+MujocoModelPtr load_xml(const std::string& path, const XmlSource& source) {
   if (!std::ifstream(path).good()) {
     throw InputError({.file = path, .found = "no readable file", .expected = kExpectedModel});
   }
@@ -47,7 +52,8 @@ MujocoModelPtr load_mujoco_model(const std::string& path) {
   std::array<char, 1000> text{};
   MujocoModelPtr model;
   try {
-    model.reset(mj_loadXML(path.c_str(), nullptr, text.data(), static_cast<int>(text.size())));
+    model.reset(
+        mj_loadXML(source.file.c_str(), source.files, text.data(), static_cast<int>(text.size())));
   } catch (const MujocoError& error) {
     throw model_error(path, error.what());
   }
@@ -57,6 +63,37 @@ MujocoModelPtr load_mujoco_model(const std::string& path) {
   }
   if (model == nullptr || text.front() != '\0') throw model_error(path, text.data());
   return model;
+}
+
+}  // namespace
+
+void MujocoModelDeleter::operator()(mjModel_* model) const { mj_deleteModel(model); }
+
+MujocoModelPtr load_mujoco_model(const std::string& path) {
+  return load_xml(path, {.file = path, .files = nullptr});
+}
+
+MujocoModelPtr load_mujoco_model_with(const std::string& path, const std::string& more) {
+  namespace fs = std::filesystem;
+  // In the file's own folder, from which MuJoCo takes the paths in it, but in memory.
+  const std::string file = (fs::path(path).parent_path() / kExtendedModel).string();
+  const std::string text = fmt::format("<mujoco>\n<include file=\"{}\"/>\n{}</mujoco>\n",
+                                       fs::path(path).filename().string(), more);
+  const auto deleter = [](mjVFS* files) {
+    mj_deleteVFS(files);
+    std::default_delete<mjVFS>{}(files);
+  };
+  const std::unique_ptr<mjVFS, decltype(deleter)> files(new mjVFS);
+  mj_defaultVFS(files.get());
+  mj_makeEmptyFileVFS(files.get(), file.c_str(), static_cast<int>(text.size()));
+  std::ranges::copy(text, static_cast<char*>(files->filedata[0]));
+  return load_xml(path, {.file = file, .files = files.get()});
+}
+
+std::optional<std::string> custom_text(const mjModel_& model, const char* name) {
+  const int text = mj_name2id(&model, mjOBJ_TEXT, name);
+  if (text < 0) return std::nullopt;
+  return std::string(model.text_data + model.text_adr[text]);
 }
 
 std::string mujoco_model_digest(const std::string& path) {

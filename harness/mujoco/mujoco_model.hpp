@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 struct mjModel_;
@@ -18,6 +19,14 @@ using MujocoModelPtr = std::unique_ptr<mjModel_, MujocoModelDeleter>;
 /// Throws InputError with file and line (where MuJoCo tells it) on a file that is missing, that is
 /// no valid model, or that MuJoCo warns of.
 [[nodiscard]] MujocoModelPtr load_mujoco_model(const std::string& path);
+
+/// As load_mujoco_model, with `more`, sections of an MJCF file, after those of the file: sections
+/// of one name are one, and sizes given again count. Files that the model names are found as ever.
+[[nodiscard]] MujocoModelPtr load_mujoco_model_with(const std::string& path,
+                                                    const std::string& more);
+
+/// The custom text called `name` of the model, nothing where it has none.
+[[nodiscard]] std::optional<std::string> custom_text(const mjModel_& model, const char* name);
 
 /// A digest of the model that `path` compiles to, with all that it includes: the same for the same
 /// model, and different for others but by chance. 16 hexadecimal digits. Throws as

@@ -1,0 +1,169 @@
+#include "harness/plant/mujoco/solid_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr const char* kSolidName = "qsmpc_solid_";  // before a number
+constexpr double kFarAway = 1000.0;                 // m
+constexpr double kHalfHeight = 5.0;                 // m, about the ground
+constexpr int kSolidContacts = 500;                 // at once
+constexpr int kRowsPerContact = 4;                  // of a pyramidal friction cone
+constexpr int kLowestBit = 8;                       // others are more likely to be the model's own
+
+// Softer than wheels on the ground: a disturbance can put the vehicle 0.3 m deep into a block, and
+// is not to be answered by forces that throw it into the air. Highest priority: the vehicle's own
+// stiffness and friction are meant for the ground.
+constexpr const char* kSolidContact =
+    R"(contype="0" conaffinity="0" condim="3" priority="1000" friction="0.5 0.005 0.0001" )"
+    R"(solref="0.05 1" solimp="0.9 0.95 0.001 0.5 2" margin="0" gap="0" mass="0" rgba="0 0 0 0")";
+
+struct Interval {
+  double lower;
+  double upper;
+};
+
+Interval finite_interval(const controller::Box& box, int axis) {
+  const double lower = box.lower[axis];
+  const double upper = box.upper[axis];
+  if (std::isfinite(lower)) return {lower, std::isfinite(upper) ? upper : lower + kFarAway};
+  return {(std::isfinite(upper) ? upper : 0.0) - kFarAway, std::isfinite(upper) ? upper : kFarAway};
+}
+
+bool is_in_plane(const controller::Box& box, const models::SystemDescription& system) {
+  return std::ranges::all_of(controller::bounded_axes(box), [&](const auto& interval) {
+    return interval.axis == system.position_x || interval.axis == system.position_y;
+  });
+}
+
+class GeomWriter {
+ public:
+  void plane(const Eigen::Vector2d& point, const Eigen::Vector2d& normal) {
+    add(fmt::format(R"(type="plane" size="1 1 1" pos="{} {} 0" zaxis="{} {} 0")", point.x(),
+                    point.y(), normal.x(), normal.y()));
+  }
+  void box(const Interval& x, const Interval& y) {
+    add(fmt::format(R"(type="box" size="{} {} {}" pos="{} {} 0" quat="1 0 0 0")",
+                    0.5 * (x.upper - x.lower), 0.5 * (y.upper - y.lower), kHalfHeight,
+                    0.5 * (x.lower + x.upper), 0.5 * (y.lower + y.upper)));
+  }
+  [[nodiscard]] const std::string& text() const { return text_; }
+
+ private:
+  void add(const std::string& shape) {
+    text_ +=
+        fmt::format("<geom name=\"{}{}\" {} {}/>\n", kSolidName, count_++, shape, kSolidContact);
+  }
+
+  std::string text_;
+  int count_ = 0;
+};
+
+/// A bit that no geom of the model uses.
+int spare_bit(const NamedModel& named) {
+  const mjModel& model = named.model;
+  unsigned used = 0;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    used |= static_cast<unsigned>(model.geom_contype[geom] | model.geom_conaffinity[geom]);
+  }
+  constexpr int kBits = 31;  // MuJoCo's are signed
+  for (int bit = kBits - 1; bit >= kLowestBit; --bit) {
+    if ((used & (1U << bit)) == 0) return 1 << bit;
+  }
+  throw InputError({.file = named.file,
+                    .key = "plant.solid",
+                    .found = "geoms whose contype and conaffinity use all bits",
+                    .expected = "one of the bits 8 to 30 that none uses"});
+}
+
+}  // namespace
+
+std::string solid_geoms(const controller::SafeSet& safe_set,
+                        const models::SystemDescription& system) {
+  GeomWriter writer;
+  const auto wall = [&](int axis, double place, double inward) {
+    if (!std::isfinite(place)) return;
+    const Eigen::Vector2d along =
+        axis == system.position_x ? Eigen::Vector2d::UnitX() : Eigen::Vector2d::UnitY();
+    writer.plane(place * along, inward * along);
+  };
+  for (const int axis : {system.position_x, system.position_y}) {
+    wall(axis, safe_set.bounds.lower[axis], 1.0);
+    wall(axis, safe_set.bounds.upper[axis], -1.0);
+  }
+  for (const controller::Box& obstacle : safe_set.obstacles) {
+    if (!is_in_plane(obstacle, system)) continue;
+    writer.box(finite_interval(obstacle, system.position_x),
+               finite_interval(obstacle, system.position_y));
+  }
+  return writer.text();
+}
+
+MujocoModelPtr load_with_solids(const std::string& mjcf, const controller::SafeSet& safe_set,
+                                const models::SystemDescription& system) {
+  const MujocoModelPtr plain = load_mujoco_model(mjcf);
+  if (plain->opt.collision == mjCOL_PAIR) {
+    throw InputError({.file = mjcf,
+                      .key = "option collision",
+                      .found = "predefined",
+                      .expected = "all, or plant.solid: false"});
+  }
+  MujocoModelPtr model = load_mujoco_model_with(
+      mjcf,
+      fmt::format("<size nconmax=\"{}\" njmax=\"{}\"/>\n<worldbody>\n{}</worldbody>\n",
+                  plain->nconmax + kSolidContacts, plain->njmax + kRowsPerContact * kSolidContacts,
+                  solid_geoms(safe_set, system)));
+  if ((model->opt.disableflags & mjDSBL_CONTACT) != 0) {
+    std::fill_n(model->geom_contype, model->ngeom, 0);
+    std::fill_n(model->geom_conaffinity, model->ngeom, 0);
+    model->opt.disableflags &= ~mjDSBL_CONTACT;
+  }
+  return model;
+}
+
+SolidMap::SolidMap(const NamedModel& named, int carrier) : bit_(spare_bit(named)) {
+  const mjModel& model = named.model;
+  is_solid_.assign(static_cast<std::size_t>(model.ngeom), 0);
+  const int root = model.body_rootid[carrier];
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    const std::string name = model.names + model.name_geomadr[geom];
+    if (name.starts_with(kSolidName)) {
+      solids_.push_back(geom);
+      is_solid_[static_cast<std::size_t>(geom)] = 1;
+    } else if (root > 0 && model.body_rootid[model.geom_bodyid[geom]] == root) {
+      vehicle_.push_back(geom);
+    }
+  }
+}
+
+void SolidMap::set_standing(mjModel& model, bool standing) const {
+  for (const int geom : solids_) model.geom_contype[geom] = standing ? bit_ : 0;
+  for (const int geom : vehicle_) {
+    int& affinity = model.geom_conaffinity[geom];
+    affinity = standing ? affinity | bit_ : affinity & ~bit_;
+  }
+}
+
+double SolidMap::largest_force(const mjModel& model, const mjData& data) const {
+  double largest = 0.0;
+  for (int k = 0; k < data.ncon; ++k) {
+    const mjContact& contact = data.contact[k];
+    const bool is_solid = is_solid_[static_cast<std::size_t>(contact.geom1)] != 0 ||
+                          is_solid_[static_cast<std::size_t>(contact.geom2)] != 0;
+    if (!is_solid || contact.efc_address < 0) continue;
+    std::array<double, 6> force{};
+    mj_contactForce(&model, &data, k, force.data());
+    largest = std::max(largest, force[0]);
+  }
+  return largest;
+}
+
+}  // namespace qsmpc::harness

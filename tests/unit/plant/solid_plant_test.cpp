@@ -1,0 +1,229 @@
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/errors.hpp"
+#include "harness/mujoco/mujoco_model.hpp"
+#include "harness/plant/mujoco/mujoco_plant.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/vehicle_footprint.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/plant/plant_fixture.hpp"
+#include "tests/unit/plant/shipped_plants.hpp"
+
+namespace qsmpc::harness {
+namespace solid_plant_test {
+
+/// A vehicle, and how it is driven straight on.
+struct DrivenVehicle {
+  std::string name;
+  std::string system;
+  std::string mjcf;
+  double speed;     // m/s, at the start
+  bool is_stopped;  // whether a block stops it
+};
+
+std::ostream& operator<<(std::ostream& out, const DrivenVehicle& vehicle) {
+  return out << vehicle.mjcf;
+}
+
+controller::SafeSet map_with(Eigen::Index dim, const std::vector<Eigen::Vector4d>& blocks) {
+  controller::SafeSet map = controller::unbounded_safe_set(dim);
+  for (const Eigen::Vector4d& block : blocks) {
+    controller::Box box = map.bounds;
+    box.lower.head<2>() = Eigen::Vector2d(block[0], block[2]);
+    box.upper.head<2>() = Eigen::Vector2d(block[1], block[3]);
+    map.obstacles.push_back(box);
+  }
+  return map;
+}
+
+class SolidVehicle : public ::testing::TestWithParam<DrivenVehicle> {
+ protected:
+  static constexpr double kPeriod = 0.1;  // s
+
+  SolidVehicle() : setup_(shipped_setup(GetParam().system, GetParam().mjcf)) {
+    dim_ = std::ssize(setup_.system.states);
+    start_ = Eigen::VectorXd::Zero(dim_);
+    if (dim_ > 3) start_[3] = GetParam().speed;
+    input_ = Eigen::VectorXd::Zero(std::ssize(setup_.system.inputs));
+    disturbance_ = Eigen::VectorXd::Zero(dim_);
+    for (const controller::Disc& disc : vehicle_footprint(
+             setup_.mjcf, {}, {.description = setup_.system, .parameters = setup_.parameters})) {
+      front_ = std::max(front_, disc.offset.x() + disc.radius);
+    }
+  }
+
+  /// Drives on for 3 s, at `start_`, over the map.
+  std::vector<PlantStep> drive(const controller::SafeSet& map) {
+    setup_.solid = map;
+    const auto plant = make_mujoco_plant(setup_);
+    plant->reset(start_);
+    std::vector<PlantStep> steps;
+    for (int k = 0; k < 30; ++k) {
+      steps.push_back(plant->advance(input_, disturbance_));
+      EXPECT_FALSE(steps.back().fault.has_value()) << *steps.back().fault;
+    }
+    return steps;
+  }
+
+  MujocoPlantSetup setup_;
+  Eigen::Index dim_ = 0;
+  Eigen::VectorXd start_;
+  Eigen::VectorXd input_;
+  Eigen::VectorXd disturbance_;
+  double front_ = 0.0;  // m, how far the footprint reaches ahead
+};
+
+// The footprint reaches the block before the vehicle does, by no more than it goes beyond it: at
+// most 15 % of the width, and by what the discs' radius adds ahead.
+TEST_P(SolidVehicle, touches_a_block_soon_after_its_footprint_does) {
+  const double block = front_ + 1.0;
+  const auto steps = drive(map_with(dim_, {{block, block + 1.0, -2.0, 2.0}}));
+  const double allowance = 0.6 * front_;
+  double touching = kNotANumber;
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    const PlantStep& step = steps[k];
+    farthest = std::max(farthest, step.state[0]);
+    if (!std::isnan(touching) || !(step.contact.force > 0.0)) continue;
+    const double first = step.contact.time - kPeriod * static_cast<double>(k);
+    const double share = first / kPeriod * static_cast<double>(step.between.cols());
+    touching = step.between(0, std::min(std::lround(share), step.between.cols() - 1));
+  }
+  ASSERT_FALSE(std::isnan(touching));
+  EXPECT_GE(touching + front_, block - 1e-3);
+  EXPECT_LE(touching + front_, block + allowance);
+  if (GetParam().is_stopped) {
+    EXPECT_LE(farthest + front_, block + allowance + 0.2);
+  }
+}
+
+TEST_P(SolidVehicle, that_touches_nothing_has_no_contact_and_moves_as_if_nothing_stood_there) {
+  const auto steps = drive(map_with(dim_, {{front_, front_ + 30.0, 3.0, 5.0}}));
+  setup_.solid.reset();
+  const auto plant = make_mujoco_plant(setup_);
+  plant->reset(start_);
+  for (const PlantStep& step : steps) {
+    EXPECT_EQ(step.contact.force, 0.0);
+    EXPECT_TRUE(std::isnan(step.contact.time));
+    const PlantStep plain = plant->advance(input_, disturbance_);
+    EXPECT_TRUE(std::isnan(plain.contact.force));
+    EXPECT_LT((step.state - plain.state).norm(), 1e-9);
+  }
+}
+
+TEST_P(SolidVehicle, is_stopped_by_a_bound_and_comes_out_of_a_block_that_it_was_put_into) {
+  controller::SafeSet map = map_with(dim_, {});
+  map.bounds.upper[0] = front_ + 0.5;
+  double farthest = 0.0;
+  for (const PlantStep& step : drive(map)) farthest = std::max(farthest, step.state[0]);
+  if (GetParam().is_stopped) {
+    EXPECT_LT(farthest, 0.5 + 0.6 * front_ + 0.2);
+  }
+
+  setup_.solid = map_with(dim_, {{front_, front_ + 2.0, -2.0, 2.0}});
+  const auto plant = make_mujoco_plant(setup_);
+  plant->reset(start_);
+  disturbance_[0] = 0.3;  // m, into the block
+  const PlantStep kicked = plant->advance(input_, disturbance_);
+  EXPECT_GT(kicked.contact.force, 0.0);
+  EXPECT_LE(kicked.contact.time, kPeriod + 1e-9);
+  disturbance_[0] = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    const PlantStep step = plant->advance(input_, disturbance_);
+    ASSERT_FALSE(step.fault.has_value()) << *step.fault;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shipped, SolidVehicle,
+    ::testing::Values(DrivenVehicle{"dubins_car", "dubins", "dubins_car.xml", 1.5, true},
+                      DrivenVehicle{"dubins_planar", "dubins", "dubins_planar.xml", 1.5, false},
+                      DrivenVehicle{"bicycle_car", "bicycle", "bicycle_car.xml", 5.0, true},
+                      DrivenVehicle{"bicycle_planar", "bicycle", "bicycle_planar.xml", 5.0, true}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(SolidPlant, finds_what_a_model_includes_beside_it) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "part.xml")
+      << R"(<mujocoinclude><geom type="box" size="0.4 0.1 0.1" mass="1"/></mujocoinclude>)";
+  std::ofstream(folder / "own.xml") << R"(<mujoco><option gravity="0 0 0"/>
+    <default><geom contype="0" conaffinity="0" friction="9"/></default>
+    <worldbody><body name="base"><freejoint/><include file="part.xml"/></body></worldbody>
+    </mujoco>)";
+  const MujocoModelPtr model = load_mujoco_model_with(
+      folder / "own.xml", "<worldbody><geom name=\"more\" size=\"1\"/></worldbody>\n");
+  EXPECT_NE(model, nullptr);
+}
+
+TEST(SolidPlant, pulls_the_vehicle_as_if_nothing_stood_in_its_way) {
+  MujocoPlantSetup setup = car_setup();
+  setup.force_covariance = Eigen::Vector3d(0.01, 0.01, 0.001).asDiagonal();
+  setup.solid = map_with(3, {{0.7, 1.7, -1.0, 1.0}});
+  const auto plant = make_mujoco_plant(setup);
+  plant->reset(pose(0.0, 0.0, 0.0));
+  for (int k = 0; k < 5; ++k) {
+    const PlantStep step = plant->advance(yaw_rate(0.0), pose(0.1, 0.0, 0.0));
+    ASSERT_FALSE(step.fault.has_value()) << *step.fault;
+    if (step.contact.force > 0.0) return;
+  }
+  FAIL() << "no contact";
+}
+
+TEST(SolidPlant, is_refused_where_there_is_no_body_to_stop) {
+  const std::string text =
+      "name: a\nmodel: {system: SYSTEM}\ninitial_state: {mean: MEAN}\ntarget: {state: MEAN}\n"
+      "plant: {kind: KIND, solid: true}\n";
+  const auto refusal = [&](std::string system, std::string mean, std::string kind) {
+    std::string filled = text;
+    for (const auto& [from, to] : {std::pair{std::string("SYSTEM"), system},
+                                   {"MEAN", mean},
+                                   {"MEAN", mean},
+                                   {"KIND", kind}}) {
+      filled.replace(filled.find(from), from.size(), to);
+    }
+    try {
+      (void)parse_scenario(filled);
+    } catch (const InputError& error) {
+      return error.where();
+    }
+    return InputError::Where{};
+  };
+  const auto analytic = refusal("dubins", "[0, 0, 0]", "analytic");
+  EXPECT_EQ(analytic.key, "plant.solid");
+  EXPECT_THAT(analytic.expected, ::testing::HasSubstr("plant.kind: mujoco"));
+  const auto rail = refusal("double_integrator", "[0, 0]", "mujoco");
+  EXPECT_EQ(rail.key, "plant.solid");
+  EXPECT_THAT(rail.expected, ::testing::HasSubstr("no position"));
+  EXPECT_EQ(refusal("dubins", "[0, 0, 0]", "mujoco").key, "");
+  Scenario scenario = parse_scenario(
+      "name: a\nmodel: {system: dubins}\ninitial_state: {mean: [0, "
+      "0, 0]}\ntarget: {state: [5, 0, 0]}\n");
+  scenario.plant.kind = "analytic";
+  scenario.plant.solid = true;
+  EXPECT_THROW((void)make_plant(scenario), InputError);
+}
+
+TEST(PlantSteps, have_the_states_at_the_simulators_steps) {
+  const auto car = make_car();
+  car->reset(pose(0.0, 0.0, 0.0));
+  const PlantStep step = car->advance(yaw_rate(0.5), pose(0.25, 0.0, 0.0));
+  ASSERT_EQ(step.between.cols(), 50);  // of 2 ms
+  ASSERT_EQ(step.between.rows(), 3);
+  for (Eigen::Index k = 1; k < 50; ++k) {
+    EXPECT_NEAR(step.between(0, k) - step.between(0, k - 1), 0.003, 0.0003);
+  }
+  // The last is the period's end, before the disturbance.
+  EXPECT_NEAR(step.state[0] - step.between(0, 49), 0.25, 1e-6);
+}
+
+}  // namespace solid_plant_test
+}  // namespace qsmpc::harness
