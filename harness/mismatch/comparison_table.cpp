@@ -40,16 +40,17 @@ std::string by_state(const std::string& name, const Eigen::VectorXd& values,
 
 std::string closed_loop_section(const Comparison& comparison) {
   std::string text =
-      fmt::format("\nClosed loop\n  {:<{}}{:>9}{:>9}{:>16}{:>22}{:>14}\n", "plant", kNameWidth - 2,
-                  "reached", "unsafe", "99 % interval", "cost", "clearance");
+      fmt::format("\nClosed loop\n  {:<{}}{:>9}{:>11}{:>13}{:>9}{:>7}{:>8}{:>16}{:>22}{:>14}\n",
+                  "plant", kNameWidth - 2, "reached", "collision", "left bounds", "timeout",
+                  "fault", "unsafe", "99 % interval", "cost", "clearance");
   for (const PlantComparison& plant : comparison.plants) {
     const ClosedLoop& loop = plant.closed_loop;
-    const auto reached = loop.outcomes.find("reached");
     text += plant_name(plant.name);
     text += fmt::format(
-        "{:>9}{:>9}{:>16}{:>22}{:>14}\n",
-        fmt::format("{}/{}", reached == loop.outcomes.end() ? 0 : reached->second, loop.episodes),
-        loop.unsafe,
+        "{:>9}{:>11}{:>13}{:>9}{:>7}{:>8}{:>16}{:>22}{:>14}\n",
+        fmt::format("{}/{}", loop.count(Outcome::kReached), loop.episodes),
+        loop.count(Outcome::kCollision), loop.count(Outcome::kLeftBounds),
+        loop.count(Outcome::kTimeout), loop.count(Outcome::kFault), loop.unsafe,
         fmt::format("[{:.3f}, {:.3f}]", loop.unsafe_limits.lower, loop.unsafe_limits.upper),
         std::isnan(loop.cost_deviation)
             ? fmt::format("{:.5g}", loop.cost)
