@@ -90,7 +90,7 @@ std::optional<PageVerdict> unsafe_verdict(const Comparison& comparison) {
     drives += loop.episodes;
     if (loop.unsafe == 0) continue;
     verdict.sentences.push_back(fmt::format(
-        "On {}: {} of {}, {} by a collision and {} out of the bounds.", name_of(plant), loop.unsafe,
+        "On {}: {} of {} ({} collided, {} left the bounds).", name_of(plant), loop.unsafe,
         loop.episodes, loop.count(Outcome::kCollision), loop.count(Outcome::kLeftBounds)));
   }
   if (unsafe == 0) return std::nullopt;

@@ -181,7 +181,7 @@ std::string safety_sentence(const EpisodeView& view) {
         fmt::format("The true state entered the unsafe set: first at {}.", seconds(*unsafe));
     if (view.scenario().stop_when_unsafe) return entered;
     return fmt::format(
-        "{} The drive went on after that, as limit.stop_when_unsafe says, and ended "
+        "{} The drive went on after that (limit.stop_when_unsafe: false) and ended "
         "after {}{}.",
         entered, seconds(view.duration()), summary.time_to_target ? " at the target" : "");
   }

@@ -84,7 +84,7 @@ std::string format_percent(double share) {
   const double percent = kPercent * share;
   if (percent > 0.0 && percent < kLeast) return "<0.01";
   if (percent > kMostBelow && share < 1.0) return ">99.9";
-  return format_short(percent);
+  return format_short(std::round(percent / kLeast) * kLeast);
 }
 
 bool is_plain_in_table(double value) {

@@ -157,7 +157,9 @@ TEST(Run, a_drive_that_is_unsafe_fails_unless_told_otherwise) {
   EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "left_bounds,fault"}), 0);
   EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "unsafe"}), 1);
   EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "left_safe_set"}), 1) << "the former word";
-  EXPECT_EQ(exit_code("{bounds: {x: [-2, 1], y: [-4, 4]}}", {}), 1);
+  EXPECT_EQ(exit_code("{bounds: {x: [-2, 12], y: [-4, 0.3]}}",
+                      {"--set", "initial_state.mean=[0, 0, 1.2]"}),
+            1);
   EXPECT_EQ(nlohmann::json::parse(read_text(folder.path() + "/summary.json"))["outcome"],
             "left_bounds");
   EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "colision"}), 2);

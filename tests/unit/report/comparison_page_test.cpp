@@ -84,12 +84,12 @@ TEST(ComparisonPage, says_before_all_else_that_drives_were_unsafe) {
   const std::size_t unsafe = page.find("✕ 1 of 4 drives were unsafe");
   ASSERT_NE(unsafe, std::string::npos);
   EXPECT_LT(unsafe, page.find("✓ No certificate is exceeded on any plant"));
-  EXPECT_TRUE(
-      testing::contains(page, "On mujoco_car: 1 of 2, 1 by a collision and 0 out of the bounds."));
+  EXPECT_TRUE(testing::contains(page, "On mujoco_car: 1 of 2 (1 collided, 0 left the bounds)."));
   EXPECT_TRUE(
       testing::contains(page, "<td>1</td><td><strong class=\"alarm\">1</strong></td><td>0</td>"));
-  EXPECT_TRUE(testing::contains(comparison_table(comparison),
-                                "      1/2          1            0        0      0       1"));
+  EXPECT_TRUE(testing::contains(
+      comparison_table(comparison),
+      "        2           1           1             0           0           0\n"));
 }
 
 TEST(ComparisonVerdict, names_the_farthest_plant) {

@@ -67,7 +67,8 @@ TEST(FormatPercent, says_none_and_all_only_where_it_is_so) {
   EXPECT_EQ(format_percent(0.9989), "99.9");
   EXPECT_EQ(format_percent(0.5), "50");
   EXPECT_EQ(format_percent(0.12345), "12.3");
-  EXPECT_EQ(format_percent(0.0012345), "0.123");
+  EXPECT_EQ(format_percent(0.0012345), "0.12");
+  EXPECT_EQ(format_percent(0.09999), "10");
   EXPECT_EQ(format_percent(std::nan("")), "-");
 }
 
