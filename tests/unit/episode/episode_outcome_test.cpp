@@ -74,12 +74,11 @@ TEST(EpisodeOutcome, the_first_unsafe_instant_decides_and_a_timeout_does_not_hid
 }
 
 TEST(EpisodeOutcome, what_an_episode_did_is_not_held_against_the_next_one_of_the_driver) {
-  const Scenario scenario = blind_scenario(kColumn, kGoOn);
+  const Scenario scenario = blind_scenario(kColumn);
   EpisodeDriver driver(scenario);
-  EXPECT_EQ(driver.run({.seed = 2}).outcome, Outcome::kCollision);
-  EpisodeOptions cut{.seed = 2};
-  cut.should_stop = [] { return true; };
-  EXPECT_EQ(driver.run(cut).outcome, Outcome::kInterrupted);
+  const Trace first = driver.run({.seed = 2});
+  EXPECT_EQ(first.outcome, Outcome::kCollision);
+  EXPECT_EQ(driver.run({.seed = 2}).steps.size(), first.steps.size());
 }
 
 TEST(EpisodeOutcome, an_interrupt_after_a_collision_is_an_interrupt) {
