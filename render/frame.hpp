@@ -103,6 +103,7 @@ struct Frame {
   std::vector<HudRow> hud;
   std::vector<StripChart> charts;
   std::string banner;  ///< large text, e.g. "target reached"; empty: none
+  bool alarm = false;  ///< the banner tells of a failure: it is red
 };
 
 /// An image as it is encoded: rows from the top, 3 bytes a pixel (red, green, blue).

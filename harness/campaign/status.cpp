@@ -9,6 +9,7 @@
 
 #include "harness/text/json_text.hpp"
 #include "harness/text/printable.hpp"
+#include "harness/trace/ending.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -17,7 +18,7 @@ constexpr double kWindow = 60.0;  // s, over which the rate is taken
 
 std::string outcomes_text(const std::map<std::string, std::int64_t>& outcomes) {
   std::string text;
-  for (const auto& [outcome, count] : outcomes) {
+  for (const auto& [outcome, count] : in_order(outcomes)) {
     if (count == 0) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", printable(outcome), count);
   }

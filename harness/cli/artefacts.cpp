@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <vector>
@@ -134,7 +135,9 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
   text += row("steps", fmt::format("{}", summary.steps));
   if (summary.time_to_target)
     text += row("time to target", fmt::format("{:.1f} s", *summary.time_to_target));
-  text += row("entered the unsafe set", summary.collision ? "yes" : "no");
+  const std::optional<double> unsafe = view.first_unsafe_time();
+  text += row("entered the unsafe set",
+              unsafe ? fmt::format("yes, first after {:.1f} s", *unsafe) : "no");
   if (summary.unsafe_between) {
     text += row("unsafe between instants", *summary.unsafe_between ? "yes" : "no");
   }

@@ -16,6 +16,7 @@
 #include "harness/cli/campaign_results.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
+#include "harness/cli/fail_on.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
@@ -128,12 +129,9 @@ void add_campaign_options(CLI::App& command, CampaignArguments& arguments) {
                    "both ask for, remove the others");
   command.add_flag("--retry-faults", options.retry_faults,
                    "drive the episodes again whose plant broke");
-  command
-      .add_option("--fail-on", arguments.fail_on,
-                  "exit with 1 if there is any of these (fault, unsafe, timeout, left_safe_set, "
-                  "exceeded: a certificate is refuted, none); default: fault")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"fault", "unsafe", "timeout", "left_safe_set", "exceeded", "none"}));
+  add_fail_on_option(
+      command, arguments.fail_on,
+      {"collision", "left_bounds", kFailOnUnsafe, "timeout", "fault", kFailOnExceeded, "none"});
   command.add_flag("--quiet", arguments.quiet, "no progress");
   command.add_flag("--json", arguments.json, "print campaign.json instead of the table");
 }

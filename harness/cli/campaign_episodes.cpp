@@ -20,6 +20,7 @@
 #include "harness/files/atomic_file.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/ending.hpp"
 #include "harness/trace/hdf5_file.hpp"
 #include "harness/trace/trace_file.hpp"
 
@@ -110,7 +111,10 @@ void compare_with_store(const EpisodeView& view, const EpisodeRow& stored) {
   const auto same = [](double one, double other) {
     return one == other || (std::isnan(one) && std::isnan(other));
   };
-  if (now.outcome == stored.outcome && now.steps == stored.steps && now.unsafe == stored.unsafe &&
+  // A former word tells only that it was unsafe.
+  const bool same_end =
+      now.outcome == stored.outcome || (stored.outcome == kLeftSafeSet && now.unsafe);
+  if (same_end && now.steps == stored.steps && now.unsafe == stored.unsafe &&
       same(now.cost, stored.cost) && same(now.min_clearance, stored.min_clearance)) {
     return;
   }

@@ -11,6 +11,7 @@
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/campaign_episodes.hpp"
+#include "harness/cli/fail_on.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/files/atomic_file.hpp"
@@ -70,11 +71,11 @@ void print_campaign_results(const CampaignStatistics& statistics, const std::str
 
 bool asked_to_tell(const std::vector<std::string>& fail_on, const CampaignStatistics& statistics) {
   return std::ranges::any_of(fail_on, [&](const std::string& name) {
-    if (name == "unsafe") {
+    if (name == kFailOnUnsafe) {
       return std::ranges::any_of(statistics.variants,
                                  [](const auto& variant) { return variant.unsafe.events > 0; });
     }
-    if (name == "exceeded") {
+    if (name == kFailOnExceeded) {
       return is_exceeded(statistics.calibration) ||
              std::ranges::any_of(statistics.variants, [](const auto& variant) {
                return is_exceeded(variant.calibration);

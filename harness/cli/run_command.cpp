@@ -13,6 +13,7 @@
 #include "harness/cli/artefacts.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
+#include "harness/cli/fail_on.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
@@ -44,7 +45,7 @@ struct RunArguments {
   bool verbose = false;
   bool quiet = false;
   bool json = false;
-  std::vector<std::string> fail_on = {"fault"};
+  std::vector<std::string> fail_on = {"collision", "left_bounds", "fault"};
 };
 
 Trace drive(const Scenario& scenario, std::uint64_t seed, const std::string& folder, bool quiet) {
@@ -65,7 +66,7 @@ Trace drive(const Scenario& scenario, std::uint64_t seed, const std::string& fol
 
 bool asked_to_tell(const std::vector<std::string>& fail_on, const Summary& summary) {
   return std::any_of(fail_on.begin(), fail_on.end(), [&](const std::string& name) {
-    return name == summary.outcome || (name == "collision" && summary.collision);
+    return name == summary.outcome || (name == kFailOnUnsafe && summary.collision);
   });
 }
 
@@ -118,12 +119,10 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--seed", arguments->seed, "of all random numbers; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
-  command
-      ->add_option("--fail-on", arguments->fail_on,
-                   "exit with 1 on these outcomes (reached, timeout, left_safe_set, fault, "
-                   "collision, none); default: fault")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"reached", "timeout", "left_safe_set", "fault", "collision", "none"}));
+  // An interrupt has an exit code of its own.
+  add_fail_on_option(
+      *command, arguments->fail_on,
+      {"reached", "collision", "left_bounds", kFailOnUnsafe, "timeout", "fault", "none"});
   command
       ->add_option("--gl", arguments->gl,
                    "what draws the video: osmesa, egl, or auto, the first that is installed")

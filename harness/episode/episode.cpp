@@ -12,12 +12,12 @@
 #include "controller/control/controller.hpp"
 #include "controller/control/decision_motion.hpp"
 #include "controller/estimation/estimator.hpp"
-#include "controller/planning/cost/angular_target.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/random/random_numbers.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/ending.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/trace_file.hpp"
 #include "harness/version.hpp"
@@ -48,16 +48,6 @@ Trace header_of(const Scenario& scenario, const models::SystemDescription& syste
   trace.seed = seed;
   trace.version = kVersion;
   return trace;
-}
-
-bool at_target(const Scenario& scenario, const models::SystemDescription& description,
-               const Eigen::VectorXd& state) {
-  const Eigen::VectorXd offset =
-      controller::target_offset(scenario.target.state, scenario.target.angles, state);
-  const int x = description.position_x;
-  const int y = description.position_y;
-  const double distance = x >= 0 && y >= 0 ? std::hypot(offset[x], offset[y]) : offset.norm();
-  return distance <= scenario.target.radius;
 }
 
 /// Not a number without states.
@@ -94,6 +84,7 @@ class EpisodeDriver::Loop {
   Trace run(const EpisodeOptions& options) {
     options_ = options;
     controller_->reset();
+    unsafe_outcome_.reset();
     belief_ = first_belief();
     Trace trace = header_of(scenario_, model_->description(), options_.seed);
     const GaussianSampler initial(belief_.mean, belief_.covariance);
@@ -124,16 +115,17 @@ class EpisodeDriver::Loop {
       if (options_.should_stop && options_.should_stop()) return Outcome::kInterrupted;
       outcome = step(k, trace);
     }
-    return outcome.value_or(Outcome::kTimeout);
+    return outcome.value_or(unsafe_outcome_.value_or(Outcome::kTimeout));
   }
 
   /// How the episode ends in the present state, if it does.
-  [[nodiscard]] std::optional<Outcome> outcome_now() const {
-    if (scenario_.stop_when_unsafe && controller::clearance(state_, unsafe_) <= 0.0) {
-      return Outcome::kLeftSafeSet;
+  [[nodiscard]] std::optional<Outcome> outcome_now() {
+    if (!unsafe_outcome_) {
+      unsafe_outcome_ = outcome_in(controller::unsafe_part(state_, unsafe_));
     }
-    if (at_target(scenario_, model_->description(), state_)) return Outcome::kReached;
-    return std::nullopt;
+    if (scenario_.stop_when_unsafe && unsafe_outcome_) return unsafe_outcome_;
+    if (!at_target(scenario_, model_->description(), state_)) return std::nullopt;
+    return unsafe_outcome_.value_or(Outcome::kReached);
   }
 
   std::optional<Outcome> step(int k, Trace& trace) {
@@ -273,6 +265,7 @@ class EpisodeDriver::Loop {
   std::unique_ptr<Plant> plant_;
   controller::Gaussian belief_;
   Eigen::VectorXd state_;
+  std::optional<Outcome> unsafe_outcome_;  // what the first unsafe state of it makes of it
 };
 
 Trace trace_header(const Scenario& scenario, std::uint64_t seed) {

@@ -31,6 +31,11 @@ PeriodTallies tallies_of(const std::vector<EpisodeResult>& episodes) {
 
 }  // namespace
 
+std::int64_t ClosedLoop::count(Outcome outcome) const {
+  const auto found = outcomes.find(outcome_name(outcome));
+  return found == outcomes.end() ? 0 : found->second;
+}
+
 EpisodeResult episode_result(const EpisodeView& view) {
   const Trace& trace = view.trace();
   const Summary& summary = view.summary();

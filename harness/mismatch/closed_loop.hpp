@@ -47,7 +47,8 @@ struct EpisodeResult {
 struct ClosedLoop {
   std::int64_t episodes = 0;
   std::map<std::string, std::int64_t> outcomes{};  ///< how many ended how
-  double cost = 0.0;                               ///< mean
+  [[nodiscard]] std::int64_t count(Outcome outcome) const;
+  double cost = 0.0;             ///< mean
   double cost_deviation = 0.0;   ///< its standard error; not a number for one episode
   double min_clearance = 0.0;    ///< the least of all, m
   std::int64_t unsafe = 0;       ///< episodes that entered the unsafe set

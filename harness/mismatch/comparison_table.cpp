@@ -38,18 +38,29 @@ std::string by_state(const std::string& name, const Eigen::VectorXd& values,
   return row + "\n";
 }
 
-std::string closed_loop_section(const Comparison& comparison) {
-  std::string text =
-      fmt::format("\nClosed loop\n  {:<{}}{:>9}{:>9}{:>16}{:>22}{:>14}\n", "plant", kNameWidth - 2,
-                  "reached", "unsafe", "99 % interval", "cost", "clearance");
+std::string drives_section(const Comparison& comparison) {
+  std::string text = fmt::format(
+      "\nWhat became of the drives\n  {:<{}}{:>9}{:>12}{:>12}{:>14}{:>12}{:>12}\n", "plant",
+      kNameWidth - 2, "drives", "reached", "collision", "left bounds", "timeout", "fault");
   for (const PlantComparison& plant : comparison.plants) {
     const ClosedLoop& loop = plant.closed_loop;
-    const auto reached = loop.outcomes.find("reached");
+    text += plant_name(plant.name);
+    text += fmt::format("{:>9}{:>12}{:>12}{:>14}{:>12}{:>12}\n", loop.episodes,
+                        loop.count(Outcome::kReached), loop.count(Outcome::kCollision),
+                        loop.count(Outcome::kLeftBounds), loop.count(Outcome::kTimeout),
+                        loop.count(Outcome::kFault));
+  }
+  return text;
+}
+
+std::string closed_loop_section(const Comparison& comparison) {
+  std::string text = fmt::format("\nClosed loop\n  {:<{}}{:>9}{:>16}{:>22}{:>14}\n", "plant",
+                                 kNameWidth - 2, "unsafe", "99 % interval", "cost", "clearance");
+  for (const PlantComparison& plant : comparison.plants) {
+    const ClosedLoop& loop = plant.closed_loop;
     text += plant_name(plant.name);
     text += fmt::format(
-        "{:>9}{:>9}{:>16}{:>22}{:>14}\n",
-        fmt::format("{}/{}", reached == loop.outcomes.end() ? 0 : reached->second, loop.episodes),
-        loop.unsafe,
+        "{:>9}{:>16}{:>22}{:>14}\n", fmt::format("{}/{}", loop.unsafe, loop.episodes),
         fmt::format("[{:.3f}, {:.3f}]", loop.unsafe_limits.lower, loop.unsafe_limits.upper),
         std::isnan(loop.cost_deviation)
             ? fmt::format("{:.5g}", loop.cost)
@@ -177,8 +188,9 @@ std::string comparison_table(const Comparison& comparison) {
   const models::SystemDescription& system = comparison.system;
   return fmt::format("{}: plants beside the model {}, seed {}\n",
                      printable(comparison.scenario.name), system.name, comparison.scenario.seed) +
-         closed_loop_section(comparison) + one_step_section(comparison, system) +
-         horizon_section(comparison, system) + certificate_section(comparison) +
+         drives_section(comparison) + closed_loop_section(comparison) +
+         one_step_section(comparison, system) + horizon_section(comparison, system) +
+         certificate_section(comparison) +
          "to model: W2 between the laws of plant and model at most, from paths with equal "
          "numbers.\n"
          "W2: between the predicted particles and the plant's paths.\n"

@@ -1,6 +1,7 @@
 #include "harness/report/campaign_charts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -24,6 +25,9 @@ constexpr std::size_t kNameLimit = 90;     // of a variant in a note
 constexpr std::size_t kTitleLimit = 44;    // of a variant in a title
 constexpr double kBeside = 0.12;           // between points of one variant
 constexpr double kRoom = 0.5;              // left and right of the outer variants
+
+/// Of all listed outcomes but the first; those of the bars in web/tables.css.
+constexpr std::array kFailureColours = {kVermilion, kPurple, kBlue, kOrange, kSky};
 
 constexpr const char* kListedBefore = "The numbers are those of the first chart.";
 constexpr const char* kRateLabel = "share of periods that ended unsafe (–)";
@@ -248,20 +252,23 @@ Series rate_series(const CampaignStatistics& statistics, const std::string& name
 
 CampaignFigure outcome_figure(const CampaignStatistics& statistics) {
   const std::vector<std::string> numbers = variant_numbers(statistics);
-  Chart reached = named_chart("Episodes that reached the target (99 % intervals)", numbers);
+  Chart reached = named_chart("Drives that reached the target (99 % intervals)", numbers);
   reached.note = variant_list(statistics);
   reached.x_label = "variant";
-  reached.y_label = "share of episodes (–)";
+  reached.y_label = "share of drives (–)";
   reached.series.push_back(
       rate_series(statistics, "reached", kGreen, &VariantStatistics::reached, 0.0));
-  Chart failed = named_chart("Episodes that failed (99 % intervals)", numbers);
+  Chart failed = named_chart("Drives that did not reach it safely (99 % intervals)", numbers);
   failed.x_label = "variant";
-  failed.y_label = "share of episodes (–)";
+  failed.y_label = "share of drives (–)";
   failed.y_includes = {0.0};
-  failed.series.push_back(rate_series(statistics, "entered the unsafe set", kVermilion,
-                                      &VariantStatistics::unsafe, -kBeside));
-  failed.series.push_back(
-      rate_series(statistics, "fault", kPurple, &VariantStatistics::fault, kBeside));
+  const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
+  double beside = -0.5 * kBeside * static_cast<double>(outcomes.size() - 2);
+  for (std::size_t n = 1; n < outcomes.size(); ++n) {  // all but those that reached it
+    failed.series.push_back(rate_series(statistics, outcomes[n].title, kFailureColours.at(n - 1),
+                                        outcomes[n].rate, beside));
+    beside += kBeside;
+  }
   return {.file = "outcomes.svg", .charts = {std::move(reached), std::move(failed)}};
 }
 
@@ -302,8 +309,8 @@ CampaignFigure difference_figure(const CampaignStatistics& statistics) {
 }  // namespace
 
 std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics) {
-  std::vector<CampaignFigure> figures = {reliability_figure(statistics),
-                                         outcome_figure(statistics)};
+  std::vector<CampaignFigure> figures = {outcome_figure(statistics),
+                                         reliability_figure(statistics)};
   if (!statistics.differences.empty()) figures.push_back(difference_figure(statistics));
   return figures;
 }

@@ -15,8 +15,8 @@ struct CampaignFigure {
   std::vector<Chart> charts;
 };
 
-/// reliability.svg (what was observed against what was certified, of all variants together and of
-/// each of up to 16 variants), outcomes.svg (rates by variant) and, where variants are compared,
+/// outcomes.svg (rates by variant), reliability.svg (what was observed against what was certified,
+/// of all variants together and of each of up to 16 variants) and, where variants are compared,
 /// differences.svg (by pair of variants, one chart a quantity).
 [[nodiscard]] std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics);
 

@@ -9,6 +9,7 @@
 
 #include "harness/figures/svg_figure.hpp"
 #include "harness/report/campaign_charts.hpp"
+#include "harness/report/campaign_outcomes.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/report/table_page.hpp"
 #include "harness/text/html.hpp"
@@ -18,10 +19,7 @@ namespace {
 
 constexpr std::size_t kFifth = 1;   // of spread_shares
 constexpr std::size_t kMedian = 3;  // the same
-
-std::string rate_html(const EpisodeRate& rate) {
-  return number_html(rate.rate) + " " + interval_html(rate.interval);
-}
+constexpr std::size_t kNinetyFifth = 5;
 
 /// The head of a variant's row.
 std::string variant_head(const CampaignStatistics& statistics, std::size_t variant) {
@@ -32,7 +30,7 @@ std::int64_t exceeded_bins(const std::vector<CalibrationBin>& bins) {
   return std::ranges::count_if(bins, &CalibrationBin::exceeded);
 }
 
-PageVerdict verdict(const CampaignStatistics& statistics) {
+PageVerdict certificate_verdict(const CampaignStatistics& statistics) {
   std::int64_t periods = 0;
   std::int64_t unsafe = 0;
   double certified = 0.0;
@@ -43,42 +41,50 @@ PageVerdict verdict(const CampaignStatistics& statistics) {
     certified += variant.certified_periods;
     exceeded += exceeded_bins(variant.calibration);
   }
-  return {.is_good = exceeded == 0,
+  const char* scope =
+      "This is about the certificates alone: whether periods end unsafe more often than was "
+      "certified for them, not whether the drives went well.";
+  if (periods == 0) {
+    return {.mood = PageMood::kOpen, .title = "Certificates: no period yet", .sentences = {}};
+  }
+  return {.mood = exceeded > 0 ? PageMood::kBad : PageMood::kGood,
           .title = exceeded > 0 ? "Certificates are exceeded" : "No certificate is refuted",
-          .sentences = {fmt::format(
-              "{} of {} periods ended unsafe; their certificates add up to {}. p = {} against “no "
-              "certificate is too low”.",
-              unsafe, periods, number_html(certified), number_html(statistics.p_value))}};
+          .sentences = {
+              fmt::format("{} of {} periods ended unsafe; their certificates add up to {} "
+                          "(p = {}).",
+                          unsafe, periods, number_html(certified), number_html(statistics.p_value)),
+              scope}};
 }
 
 std::string kicker(const CampaignStatistics& statistics) {
-  std::string text =
-      fmt::format("{} of {} episodes", statistics.done, statistics.campaign.episodes);
-  for (const auto& [outcome, count] : statistics.outcomes) {
-    text += fmt::format(", {} {}", escape_html(outcome), count);
-  }
+  std::string text = fmt::format("{} of {} drives", statistics.done, statistics.campaign.episodes);
   const Shard& shard = statistics.campaign.shard;
   if (shard.count > 1) text += fmt::format(", shard {} of {}", shard.index, shard.count);
   return fmt::format("<p class=\"kicker\">{}, seeds {}</p>\n", text,
                      escape_html(statistics.campaign.seeds));
 }
 
-std::string outcomes_table(const CampaignStatistics& statistics) {
-  PageTable table{.label = "Episodes, by variant",
-                  .heads = {"variant", "done", "reached", "unsafe", "faults", "cost",
-                            "clearance, 5 % (m)", "time (s)"},
+std::string spread_table(const CampaignStatistics& statistics) {
+  PageTable table{.label = "Cost, clearance and time, by variant",
+                  .heads = {"variant", "cost, mean", "median", "95 %", "clearance, 5 % (m)",
+                            "median (m)", "time to target, median (s)", "95 % (s)"},
                   .rows = {}};
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
-    table.rows.push_back({variant_head(statistics, n), fmt::format("{}", variant.done),
-                          rate_html(variant.reached), rate_html(variant.unsafe),
-                          fmt::format("{}", variant.fault.events), number_html(variant.cost.mean),
-                          number_html(variant.min_clearance.quantiles[kFifth]),
-                          number_html(variant.time_to_target.quantiles[kMedian])});
+    std::vector<std::string> row = {variant_head(statistics, n)};
+    for (const double value :
+         {variant.cost.mean, variant.cost.quantiles[kMedian], variant.cost.quantiles[kNinetyFifth],
+          variant.min_clearance.quantiles[kFifth], variant.min_clearance.quantiles[kMedian],
+          variant.time_to_target.quantiles[kMedian],
+          variant.time_to_target.quantiles[kNinetyFifth]}) {
+      row.push_back(number_html(value));
+    }
+    table.rows.push_back(std::move(row));
   }
-  return section_head("Episodes",
-                      "Shares with their 99 % intervals; the mean cost, the clearance that 5 % do "
-                      "not exceed, the median time of those that arrived.") +
+  return section_head(
+             "Cost, clearance, time",
+             "Means and percentiles. A drive that faulted ranks as the worst. Times are of "
+             "the drives that arrived.") +
          table_html(table);
 }
 
@@ -99,7 +105,7 @@ std::string certificates_table(const CampaignStatistics& statistics) {
   }
   return section_head("Certificates of the next step, and planning",
                       "p is small where more periods end unsafe than certified for them.") +
-         table_html(table);
+         verdict_html(certificate_verdict(statistics)) + table_html(table);
 }
 
 std::string differences_table(const CampaignStatistics& statistics) {
@@ -145,6 +151,12 @@ std::string files_html(const ListedEpisode& episode) {
   return html;
 }
 
+/// To be seen where the drive was unsafe.
+std::string worst_outcome_html(const EpisodeRow& row) {
+  const std::string outcome = escape_html(row.outcome);
+  return row.unsafe ? "<strong class=\"alarm\">" + outcome + "</strong>" : outcome;
+}
+
 std::string worst_table(const CampaignStatistics& statistics,
                         const std::vector<ListedEpisode>& worst) {
   if (worst.empty()) return {};
@@ -160,7 +172,7 @@ std::string worst_table(const CampaignStatistics& statistics,
     const auto position = static_cast<std::size_t>(variant - statistics.variants.begin());
     table.rows.push_back(
         {variant == statistics.variants.end() ? "" : variant_head(statistics, position),
-         fmt::format("{}", row.seed), escape_html(row.outcome),
+         fmt::format("{}", row.seed), worst_outcome_html(row),
          row.unsafe ? "<strong>yes</strong>" : "no", number_html(row.min_clearance),
          number_html(row.cost), files_html(episode)});
   }
@@ -188,7 +200,7 @@ std::string campaign_page(const CampaignStatistics& statistics,
                       .version = statistics.campaign.version,
                       .kind = PageKind::kTables},
                      "<h1>" + name + "</h1>\n" + kicker(statistics) +
-                         verdict_html(verdict(statistics)) + outcomes_table(statistics) +
+                         campaign_outcomes(statistics) + spread_table(statistics) +
                          certificates_table(statistics) + differences_table(statistics) +
                          worst_table(statistics, worst) + figures(statistics));
 }

@@ -21,9 +21,9 @@ struct ListedEpisode {
   std::vector<std::string> commands{};  ///< that make what is not there, one a line
 };
 
-/// The page as UTF-8 text: whether the certificates hold, rates, certificates, differences, the
-/// `worst` episodes, each linked to what there is of it, and the figures. It loads nothing and runs
-/// no script; texts are escaped.
+/// The page as UTF-8 text: what became of the drives, cost and times, certificates, differences,
+/// the `worst` episodes, each linked to what there is of it, and the figures. It loads nothing and
+/// runs no script; texts are escaped.
 [[nodiscard]] std::string campaign_page(const CampaignStatistics& statistics,
                                         const std::vector<ListedEpisode>& worst = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
@@ -79,18 +80,37 @@ std::string stages_text(const std::vector<int>& stages) {
   return text;
 }
 
+std::optional<PageVerdict> unsafe_verdict(const Comparison& comparison) {
+  PageVerdict verdict;
+  std::int64_t unsafe = 0;
+  std::int64_t drives = 0;
+  for (const PlantComparison& plant : comparison.plants) {
+    const ClosedLoop& loop = plant.closed_loop;
+    unsafe += loop.unsafe;
+    drives += loop.episodes;
+    if (loop.unsafe == 0) continue;
+    verdict.sentences.push_back(fmt::format(
+        "On {}: {} of {} ({} collided, {} left the bounds).", name_of(plant), loop.unsafe,
+        loop.episodes, loop.count(Outcome::kCollision), loop.count(Outcome::kLeftBounds)));
+  }
+  if (unsafe == 0) return std::nullopt;
+  verdict.title = fmt::format("{} of {} drives were unsafe", unsafe, drives);
+  return verdict;
+}
+
 PageVerdict comparison_verdict(const Comparison& comparison) {
   PageVerdict verdict;
   for (const PlantComparison& plant : comparison.plants) {
     const std::string text = exceeded_text(plant);
     if (!text.empty()) verdict.sentences.push_back(text);
   }
-  verdict.is_good = verdict.sentences.empty();
-  verdict.title = verdict.is_good ? "No certificate is exceeded on any plant"
-                                  : fmt::format("Certificates are exceeded on {} of {} plants",
-                                                verdict.sentences.size(), comparison.plants.size());
+  const bool is_good = verdict.sentences.empty();
+  verdict.mood = is_good ? PageMood::kGood : PageMood::kBad;
+  verdict.title = is_good ? "No certificate is exceeded on any plant"
+                          : fmt::format("Certificates are exceeded on {} of {} plants",
+                                        verdict.sentences.size(), comparison.plants.size());
   verdict.sentences.push_back(farthest_text(comparison));
-  if (verdict.is_good) {
+  if (is_good) {
     verdict.sentences.push_back(fmt::format(
         "This is no proof: none of {} paths unsafe is still compatible with a "
         "probability of {}.",

@@ -1,6 +1,10 @@
 // What a comparison says first.
 #pragma once
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "harness/mismatch/comparison.hpp"
 #include "harness/report/table_page.hpp"
 
@@ -25,5 +29,8 @@ inline constexpr double kExceededBelow = 0.01;
 /// Not good where a certificate is exceeded, under the plan or in closed loop. It says on which
 /// plants, and which plant is farthest from the model.
 [[nodiscard]] PageVerdict comparison_verdict(const Comparison& comparison);
+
+/// That drives were unsafe, and on which plants; none where all were safe.
+[[nodiscard]] std::optional<PageVerdict> unsafe_verdict(const Comparison& comparison);
 
 }  // namespace qsmpc::harness

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -54,7 +55,9 @@ Tile time_tile(const Summary& summary) {
   return {.name = "Time to target",
           .value = reached ? seconds(*summary.time_to_target) : "not reached",
           .hint = fmt::format("{} control step{}", summary.steps, summary.steps == 1 ? "" : "s"),
-          .verdict = reached ? Verdict::kGood : Verdict::kWarn};
+          .verdict = !reached            ? Verdict::kWarn
+                     : summary.collision ? Verdict::kPlain
+                                         : Verdict::kGood};
 }
 
 Tile unsafe_tile(const EpisodeView& view) {
@@ -168,16 +171,20 @@ struct Ending {
   std::string text;
 };
 
-Ending ending_of(const Trace& trace, const Summary& summary) {
-  const std::string after = " after " + seconds(summary.steps * trace.scenario.time_step);
-  switch (trace.outcome) {
+Ending ending_of(const EpisodeView& view) {
+  const Summary& summary = view.summary();
+  const double end = view.duration();
+  const std::string after = " after " + seconds(end);
+  const std::string after_unsafe = " after " + seconds(view.first_unsafe_time().value_or(end));
+  switch (view.trace().outcome) {
     case Outcome::kReached:
-      if (!summary.collision) return {Verdict::kGood, "Target reached" + after};
-      return {Verdict::kBad, "Target reached" + after + ", but through the unsafe set"};
+      return {Verdict::kGood, "Target reached" + after};
+    case Outcome::kCollision:
+      return {Verdict::kBad, "Collision" + after_unsafe};
+    case Outcome::kLeftBounds:
+      return {Verdict::kBad, "Left the bounds" + after_unsafe};
     case Outcome::kTimeout:
       return {Verdict::kWarn, "Target not reached: time ran out" + after};
-    case Outcome::kLeftSafeSet:
-      return {Verdict::kBad, "Left the safe set" + after};
     case Outcome::kFault:
       return {Verdict::kBad, summary.steps == 0 ? "The simulator failed at the start"
                                                 : "The simulator failed" + after};
@@ -191,16 +198,21 @@ std::string safety_sentence(const EpisodeView& view) {
   const Summary& summary = view.summary();
   if (summary.steps == 0) return "No control step was made.";
   if (!has_true_state(view)) return {};
-  if (summary.collision) {
-    return "The true state entered the unsafe set at one control instant or more.";
+  if (const std::optional<double> unsafe = view.first_unsafe_time()) {
+    const std::string entered =
+        fmt::format("The true state entered the unsafe set: first at {}.", seconds(*unsafe));
+    if (view.scenario().stop_when_unsafe) return entered;
+    return fmt::format(
+        "{} The drive went on after that (limit.stop_when_unsafe: false) and ended "
+        "after {}{}.",
+        entered, seconds(view.duration()), summary.time_to_target ? " at the target" : "");
   }
   return "The true state was outside of the unsafe set at every control instant.";
 }
 
 std::string outcome_html(const EpisodeView& view) {
   const Trace& trace = view.trace();
-  const Summary& summary = view.summary();
-  const Ending ending = ending_of(trace, summary);
+  const Ending ending = ending_of(view);
   const char* sign = ending.verdict == Verdict::kGood  ? "✓"
                      : ending.verdict == Verdict::kBad ? "✕"
                                                        : "!";

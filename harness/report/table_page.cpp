@@ -11,8 +11,15 @@
 namespace qsmpc::harness {
 
 std::string verdict_html(const PageVerdict& verdict) {
-  std::string html = fmt::format("<div class=\"outcome {}\"><span class=\"badge\">{} {}</span>",
-                                 verdict.is_good ? "good" : "bad", verdict.is_good ? "✓" : "✕",
+  const bool is_good = verdict.mood == PageMood::kGood;
+  const bool is_bad = verdict.mood == PageMood::kBad;
+  std::string html = fmt::format("<div class=\"outcome{}\"><span class=\"badge\">{} {}</span>",
+                                 is_good  ? " good"
+                                 : is_bad ? " bad"
+                                          : "",
+                                 is_good  ? "✓"
+                                 : is_bad ? "✕"
+                                          : "!",
                                  escape_html(verdict.title));
   for (const std::string& sentence : verdict.sentences) {
     html += "<p>" + escape_html(sentence) + "</p>";

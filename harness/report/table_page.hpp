@@ -1,7 +1,7 @@
 // Pages of tables and figures that nothing moves in: of comparisons and campaigns.
 //
 //   framed_page({.title = "Plants", .version = kVersion, .kind = PageKind::kTables},
-//               verdict_html({.is_good = true, .title = "All is well"}) +
+//               verdict_html({.mood = PageMood::kGood, .title = "All is well"}) +
 //                   table_html({.label = "Outcomes", .heads = {"plant", "reached"},
 //                               .rows = {{"car", "8"}}}));
 //
@@ -16,9 +16,11 @@
 
 namespace qsmpc::harness {
 
-/// What is to be known before everything else.
+enum class PageMood { kGood, kOpen, kBad };
+
+/// What is to be known before the rest of a page or of a section.
 struct PageVerdict {
-  bool is_good = false;
+  PageMood mood = PageMood::kBad;
   std::string title;                   ///< a few words
   std::vector<std::string> sentences;  ///< each a paragraph
 };

@@ -42,7 +42,7 @@ double median_of_episodes(const std::vector<double>& numbers) {
 std::vector<double> arrival_times(const Sample& sample) {
   std::vector<double> times;
   for (const EpisodeDigest& episode : sample.episodes) {
-    if (episode.outcome == "reached") times.push_back(episode.duration);
+    if (episode.arrived) times.push_back(episode.duration);
   }
   return times;
 }

@@ -30,7 +30,7 @@ EpisodeDigest digest_of(const Trace& trace) {
   const EpisodeView view(trace);
   const Summary& summary = view.summary();
   EpisodeDigest digest{.seed = trace.seed,
-                       .outcome = summary.outcome,
+                       .arrived = summary.time_to_target.has_value(),
                        .unsafe = summary.collision,
                        .duration = static_cast<double>(summary.steps) * trace.scenario.time_step,
                        .cost = summary.closed_loop_cost,
@@ -114,7 +114,7 @@ std::vector<double> over_episodes(const Sample& sample,
 
 int safe_arrivals(const Sample& sample) {
   return static_cast<int>(std::ranges::count_if(sample.episodes, [](const EpisodeDigest& episode) {
-    return episode.outcome == "reached" && !episode.unsafe;
+    return episode.arrived && !episode.unsafe;
   }));
 }
 

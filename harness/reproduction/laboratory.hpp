@@ -29,7 +29,7 @@ struct Variant {
 /// What is kept of an episode. A period is a column or an entry.
 struct EpisodeDigest {
   std::uint64_t seed = 0;
-  std::string outcome;
+  bool arrived = false;             ///< it ended at the target, safely or not
   bool unsafe = false;              ///< the true state entered the unsafe set
   double duration = 0.0;            ///< of the episode, s of simulated time
   double optimisation_s = 0.0;      ///< wall clock of all plans: quantise … optimise

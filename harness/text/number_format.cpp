@@ -76,6 +76,17 @@ std::string format_fixed(double value, int decimals) {
   return zero && text.starts_with('-') ? text.substr(1) : with_minus_sign(text);
 }
 
+std::string format_percent(double share) {
+  constexpr double kPercent = 100.0;
+  constexpr double kLeast = 0.01;      // shown
+  constexpr double kMostBelow = 99.9;  // of three digits
+  if (std::isnan(share)) return "-";
+  const double percent = kPercent * share;
+  if (percent > 0.0 && percent < kLeast) return "<0.01";
+  if (percent > kMostBelow && share < 1.0) return ">99.9";
+  return format_short(std::round(percent / kLeast) * kLeast);
+}
+
 bool is_plain_in_table(double value) {
   const double size = std::abs(value);
   return size == 0.0 || (size >= kLeastPlainInTable && size < kEndOfPlainInTable);

@@ -19,6 +19,12 @@ namespace qsmpc::harness {
 /// `value` with `decimals` digits after the point.
 [[nodiscard]] std::string format_fixed(double value, int decimals);
 
+/// A share of something, 0 to 1, in percent without the sign, with three significant digits and at
+/// most two decimals: "0" and "100" only for exactly 0 and 1, else "<0.01" and ">99.9" next to
+/// them;
+/// "-" for what is not a number.
+[[nodiscard]] std::string format_percent(double share);
+
 /// Whether a table shows `value` as a plain decimal: zero, or of a size from 0.01 to below 10 000.
 /// Others, and what is not a number, take an exponent there or a mark.
 [[nodiscard]] bool is_plain_in_table(double value);

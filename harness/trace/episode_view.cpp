@@ -42,4 +42,11 @@ EpisodeView::EpisodeView(const Trace& trace)
   summary_ = summarise(*this);
 }
 
+std::optional<double> EpisodeView::first_unsafe_time() const {
+  for (Eigen::Index k = 0; k < clearances_.size(); ++k) {
+    if (clearances_[k] <= 0.0) return static_cast<double>(k) * scenario().time_step;
+  }
+  return std::nullopt;
+}
+
 }  // namespace qsmpc::harness

@@ -5,6 +5,7 @@
 //   view.summary().outcome;
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -39,6 +40,8 @@ class EpisodeView {
   [[nodiscard]] const std::string& clearance_unit() const { return clearance_unit_; }
   /// Of each of these states from the unsafe set.
   [[nodiscard]] const Eigen::VectorXd& clearances() const { return clearances_; }
+  /// s, of the first of these states that is unsafe; none where all are safe.
+  [[nodiscard]] std::optional<double> first_unsafe_time() const;
   /// How many periods the plant came through: those of which the state at the end is a result.
   [[nodiscard]] Eigen::Index periods() const { return residuals_.cols(); }
   /// Whether the true state at the end of period k < periods() is unsafe.

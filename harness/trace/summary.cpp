@@ -11,6 +11,7 @@
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/text/json_text.hpp"
+#include "harness/trace/ending.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "harness/trace/json_values.hpp"
 #include "models/constants.hpp"
@@ -152,7 +153,7 @@ Summary summarise(const EpisodeView& view) {
   summary.outcome = outcome_name(trace.outcome);
   summary.fault = trace.fault;
   summary.steps = static_cast<int>(trace.steps.size());
-  if (trace.outcome == Outcome::kReached) {
+  if (ended_at_target(trace)) {
     summary.time_to_target = summary.steps * trace.scenario.time_step;
   }
   add_clearance(view, summary);

@@ -21,7 +21,7 @@ struct Summary {
   std::string outcome;
   std::string fault;  ///< the simulator's words; empty without a fault
   int steps = 0;
-  std::optional<double> time_to_target;  ///< s
+  std::optional<double> time_to_target;  ///< s; also of a drive that was unsafe on its way
   bool collision = false;                ///< the true state entered the unsafe set
   double min_clearance = 0.0;            ///< m, over all true states at the control instants
   /// Whether the true state was unsafe at a step of the simulator between the control instants,

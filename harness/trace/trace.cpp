@@ -12,10 +12,11 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::array<std::pair<Outcome, const char*>, 5> kOutcomeNames = {{
+constexpr std::array<std::pair<Outcome, const char*>, 6> kOutcomeNames = {{
     {Outcome::kReached, "reached"},
+    {Outcome::kCollision, "collision"},
+    {Outcome::kLeftBounds, "left_bounds"},
     {Outcome::kTimeout, "timeout"},
-    {Outcome::kLeftSafeSet, "left_safe_set"},
     {Outcome::kFault, "fault"},
     {Outcome::kInterrupted, "interrupted"},
 }};
@@ -29,12 +30,26 @@ const char* outcome_name(Outcome outcome) {
   throw std::invalid_argument("not an outcome");
 }
 
+const std::vector<std::string>& outcome_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const auto& [value, name] : kOutcomeNames) all.emplace_back(name);
+    return all;
+  }();
+  return names;
+}
+
+std::string outcome_list() {
+  std::string list;
+  for (const std::string& name : outcome_names()) list += (list.empty() ? "" : ", ") + name;
+  return list;
+}
+
 Outcome outcome_from_name(const std::string& name) {
   for (const auto& [value, known] : kOutcomeNames) {
     if (name == known) return value;
   }
-  throw std::invalid_argument(
-      "\"" + name + "\" is no outcome: reached, timeout, left_safe_set, fault or interrupted");
+  throw std::invalid_argument("\"" + name + "\" is no outcome: " + outcome_list());
 }
 
 Eigen::MatrixXd true_states(const Trace& trace) {

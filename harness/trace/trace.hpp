@@ -65,11 +65,22 @@ struct StepRecord {
   StepTiming timing;
 };
 
-/// How an episode ended.
-enum class Outcome { kReached, kTimeout, kLeftSafeSet, kFault, kInterrupted };
+/// What became of a drive. Its first unsafe control instant decides, also where the drive went on
+/// after it (limit.stop_when_unsafe: false); a fault or an interrupt is told before that.
+enum class Outcome {
+  kReached,     ///< it arrived, and was safe at every control instant
+  kCollision,   ///< it entered an obstacle
+  kLeftBounds,  ///< it left the bounds, in no obstacle at that instant
+  kTimeout,     ///< it was safe all the time, and did not arrive
+  kFault,       ///< the simulator gave up
+  kInterrupted
+};
 
-/// "reached", "timeout", "left_safe_set", "fault" or "interrupted".
+/// "reached", "collision", "left_bounds", "timeout", "fault" or "interrupted".
 [[nodiscard]] const char* outcome_name(Outcome outcome);
+/// All of them in this order, and the same as one text, separated by commas.
+[[nodiscard]] const std::vector<std::string>& outcome_names();
+[[nodiscard]] std::string outcome_list();
 /// The inverse of `outcome_name`; throws std::invalid_argument.
 [[nodiscard]] Outcome outcome_from_name(const std::string& name);
 

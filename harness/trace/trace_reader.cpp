@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/cost_fields.hpp"
+#include "harness/trace/ending.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/system_group.hpp"
 #include "harness/trace/trace_file.hpp"
@@ -37,6 +39,7 @@ class TraceReader {
     throw InputError({.file = file_.path(), .key = key, .found = found, .expected = expected});
   }
   void read_header();
+  void read_outcome();
   void read_description();
   void check_shapes();
   void read_motion();
@@ -82,6 +85,7 @@ Trace TraceReader::read() {
   read_budgets();
   read_certificates();
   read_timing();
+  read_outcome();
   if (!file_.has_dataset(kResidualPath)) add_residuals(trace_, *model_of(trace_.scenario));
   return std::move(trace_);
 }
@@ -100,9 +104,10 @@ void TraceReader::read_header() {
   trace_.fault = file_.text("/", "fault");
   const std::string outcome = file_.text("/", "outcome");
   try {
-    trace_.outcome = outcome_from_name(outcome);
+    // Which part of the unsafe set it was is told by the states, which are read later.
+    trace_.outcome = outcome == kLeftSafeSet ? Outcome::kCollision : outcome_from_name(outcome);
   } catch (const std::invalid_argument&) {
-    refuse("/@outcome", outcome, "reached, timeout, left_safe_set, fault or interrupted");
+    refuse("/@outcome", outcome, outcome_list());
   }
   const std::string& path = file_.path();
   trace_.scenario = parse_scenario(
@@ -110,6 +115,20 @@ void TraceReader::read_header() {
       {.file = path, .folder = path.substr(0, path.rfind('/') + 1), .files_must_exist = false});
   parts_ = decision_parts(trace_.scenario);
   stages_ = static_cast<std::size_t>(certified_stages(parts_));
+}
+
+/// Earlier versions had one word for both parts of the unsafe set, and none for a drive that went
+/// on after it was unsafe: that one was "reached" or "timeout".
+void TraceReader::read_outcome() {
+  const bool is_left_safe_set = file_.text("/", "outcome") == kLeftSafeSet;
+  const bool may_hide_it =
+      trace_.outcome == Outcome::kReached || trace_.outcome == Outcome::kTimeout;
+  if (!is_left_safe_set && !may_hide_it) return;
+  const std::optional<Outcome> unsafe = first_unsafe_outcome(trace_);
+  if (unsafe) trace_.outcome = *unsafe;
+  if (is_left_safe_set && !unsafe) {
+    refuse("/@outcome", kLeftSafeSet, "a trace with a state in the unsafe set");
+  }
 }
 
 /// Of a trace from before it was recorded, from its scenario.

@@ -33,20 +33,32 @@ render::PlanarRectangle planar_sides(const models::SystemDescription& system,
   return {lower.x(), upper.x(), lower.y(), upper.y()};
 }
 
-std::string banner(Outcome outcome, double time) {
-  switch (outcome) {
+/// What became of a drive that ended at `time` (s), and whether that is a failure.
+void add_banner(const EpisodeView& view, double time, render::Frame& frame) {
+  const double unsafe = view.first_unsafe_time().value_or(time);
+  switch (view.trace().outcome) {
     case Outcome::kReached:
-      return fmt::format("target reached after {:.1f} s", time);
+      frame.banner = fmt::format("target reached after {:.1f} s", time);
+      break;
+    case Outcome::kCollision:
+      frame.banner = fmt::format("collision after {:.1f} s", unsafe);
+      frame.alarm = true;
+      break;
+    case Outcome::kLeftBounds:
+      frame.banner = fmt::format("left the bounds after {:.1f} s", unsafe);
+      frame.alarm = true;
+      break;
     case Outcome::kTimeout:
-      return fmt::format("target not reached in {:.1f} s", time);
-    case Outcome::kLeftSafeSet:
-      return fmt::format("left the safe set at {:.1f} s", time);
+      frame.banner = fmt::format("target not reached in {:.1f} s", time);
+      break;
     case Outcome::kFault:
-      return "simulator fault";
+      frame.banner = "simulator fault";
+      frame.alarm = true;
+      break;
     case Outcome::kInterrupted:
-      return "interrupted";
+      frame.banner = "interrupted";
+      break;
   }
-  return {};
 }
 
 // The safe set in the plane of position.
@@ -138,7 +150,7 @@ render::Frame EpisodeFrames::at(double time) const {
   frame.qpos = track_.qpos(now);
   frame.pose = track_.pose(now);
   if (steps_.empty()) {
-    frame.banner = banner(view_.trace().outcome, now);
+    add_banner(view_, now, frame);
     return frame;
   }
   frame.followed = track_.smooth_pose(now);
@@ -155,9 +167,7 @@ render::Frame EpisodeFrames::at(double time) const {
   add_belief(steps_[step], frame);
   if (overlays_.ghost) frame.ghost = ghost(step, now);
   frame.charts = strip_charts(view_, ranges_, step);
-  if (time >= duration() - kTimeTolerance) {
-    frame.banner = banner(view_.trace().outcome, duration());
-  }
+  if (time >= duration() - kTimeTolerance) add_banner(view_, duration(), frame);
   return frame;
 }
 

@@ -23,6 +23,7 @@ constexpr double kLeastPanel = 19.0;       // letters wide
 constexpr double kLeastBandChart = 11.0;   // letters wide
 constexpr double kMostCovered = 0.42;      // of the width, by a panel
 constexpr double kMostLegendShare = 0.12;  // of the height
+constexpr float kBannerOpacity = 0.86F;
 
 bool has_panel(const Frame& frame) {
   return !frame.title.empty() || !frame.hud.empty() || !frame.charts.empty();
@@ -184,7 +185,9 @@ void Hud::draw_banner(const Frame& frame, const PixelRectangle& area, Image& ima
   const double top = area.y + std::max(64.0 * style_.scale, 24.0);
   const PixelRectangle panel{left, top, width, 2.07 * style_.banner.size()};
   Canvas canvas(image, panel);
-  canvas.fill_rectangle(panel, hud_colour::kPanel.with_alpha(0.86F), 12.0 * style_.scale);
+  const Colour ground =
+      frame.alarm ? hud_colour::kAlarm : hud_colour::kPanel.with_alpha(kBannerOpacity);
+  canvas.fill_rectangle(panel, ground, 12.0 * style_.scale);
   canvas.draw_text(style_.banner, text, {left + inset, top + 1.37 * style_.banner.size()},
                    hud_colour::kText);
 }

@@ -38,6 +38,7 @@ inline constexpr Colour kBand{0.075F, 0.095F, 0.13F};
 inline constexpr Colour kChartGround{0.0F, 0.0F, 0.0F, 0.32F};
 inline constexpr Colour kChartLine{1.0F, 1.0F, 1.0F, 0.14F};
 inline constexpr Colour kLimit{1.0F, 1.0F, 1.0F, 0.85F};
+inline constexpr Colour kAlarm{0.72F, 0.10F, 0.07F, 0.92F};  // white text on it is legible
 inline constexpr Colour kText{0.96F, 0.97F, 0.98F};
 inline constexpr Colour kFaintText{0.66F, 0.71F, 0.78F};
 // Okabe and Ito's colours, which any colour vision tells apart.

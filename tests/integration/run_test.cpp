@@ -131,6 +131,40 @@ TEST(Run, tells_an_outcome_that_it_was_asked_to_tell) {
       0);
 }
 
+TEST(Run, a_drive_that_is_unsafe_fails_unless_told_otherwise) {
+  const TemporaryFolder folder;
+  const auto exit_code = [&](const char* safe_set, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"--no-video",
+                                          "--set",
+                                          std::string("safe_set=") + safe_set,
+                                          "--set",
+                                          "limit.steps=20",
+                                          "--set",
+                                          "controller.penalty={box: 0, obstacle: 0}",
+                                          "--set",
+                                          "target.state=[3, 0, 0]",
+                                          "--set",
+                                          "plant.kind=analytic"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_qsmpc(small_run(folder.path(), arguments)).exit_code;
+  };
+  constexpr const char* kInTheWay =
+      "{bounds: {x: [-2, 12], y: [-4, 4]}, obstacles: [{x: [0.8, 1.5], y: [-3, 3]}]}";
+  EXPECT_EQ(exit_code(kInTheWay, {}), 1);
+  EXPECT_EQ(nlohmann::json::parse(read_text(folder.path() + "/summary.json"))["outcome"],
+            "collision");
+  EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "none"}), 0);
+  EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "left_bounds,fault"}), 0);
+  EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "unsafe"}), 1);
+  EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "left_safe_set"}), 1) << "the former word";
+  EXPECT_EQ(exit_code("{bounds: {x: [-2, 12], y: [-4, 0.3]}}",
+                      {"--set", "initial_state.mean=[0, 0, 1.2]"}),
+            1);
+  EXPECT_EQ(nlohmann::json::parse(read_text(folder.path() + "/summary.json"))["outcome"],
+            "left_bounds");
+  EXPECT_EQ(exit_code(kInTheWay, {"--fail-on", "colision"}), 2);
+}
+
 struct Broken {
   const char* name;
   const char* text;      // of the scenario file

@@ -45,6 +45,10 @@ std::string spread_fields(const Spread& spread) {
   return fields;
 }
 
+std::string rate_head(const std::string& name) {
+  return fmt::format(",{0},{0}_rate,{0}_interval.lower,{0}_interval.upper", name);
+}
+
 std::string rate_fields(const EpisodeRate& rate) {
   return "," +
          without_end(line_of(rate.events, rate.rate, rate.interval.lower, rate.interval.upper));
@@ -52,11 +56,11 @@ std::string rate_fields(const EpisodeRate& rate) {
 
 std::string variant_line(const VariantStatistics& variant) {
   const Distribution& times = variant.ocp_ms;
-  return without_end(line_of(variant.name, variant.scenario, variant.settings, variant.plant,
-                             variant.episodes, variant.done)) +
-         rate_fields(variant.reached) + rate_fields(variant.unsafe) + rate_fields(variant.fault) +
-         spread_fields(variant.cost) + spread_fields(variant.min_clearance) +
-         spread_fields(variant.time_to_target) + "," +
+  std::string line = without_end(line_of(variant.name, variant.scenario, variant.settings,
+                                         variant.plant, variant.episodes, variant.done));
+  for (const ListedOutcome& outcome : listed_outcomes()) line += rate_fields(variant.*outcome.rate);
+  return line + rate_fields(variant.unsafe) + spread_fields(variant.cost) +
+         spread_fields(variant.min_clearance) + spread_fields(variant.time_to_target) + "," +
          line_of(variant.periods, variant.unsafe_periods, variant.unsafe_step_rate(),
                  variant.certified_step_rate(), variant.p_value, times.median, times.p95, times.p99,
                  times.max, times.mean, variant.deadline_misses);
@@ -85,11 +89,9 @@ std::string calibration_lines(const std::string& variant,
 }  // namespace
 
 std::string variants_csv(const CampaignStatistics& statistics) {
-  std::string csv =
-      "variant,scenario,settings,plant,episodes,done,"
-      "reached,reached_rate,reached_interval.lower,reached_interval.upper,"
-      "unsafe,unsafe_rate,unsafe_interval.lower,unsafe_interval.upper,"
-      "fault,fault_rate,fault_interval.lower,fault_interval.upper";
+  std::string csv = "variant,scenario,settings,plant,episodes,done";
+  for (const ListedOutcome& outcome : listed_outcomes()) csv += rate_head(outcome.name);
+  csv += rate_head("unsafe");
   csv += spread_head("cost") + spread_head("min_clearance") + spread_head("time_to_target");
   csv +=
       ",periods,unsafe_periods,unsafe_step_rate,certified_step_rate,exceedance_p_value,"

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/text/json_text.hpp"
+#include "harness/trace/ending.hpp"
 #include "harness/trace/json_values.hpp"
 
 namespace qsmpc::harness {
@@ -71,6 +72,12 @@ Json differences_json(const CampaignStatistics& statistics, std::size_t variant)
   return json;
 }
 
+Json outcomes_json(const std::map<std::string, std::int64_t>& outcomes) {
+  Json json = Json::object();
+  for (const auto& [outcome, count] : in_order(outcomes)) json[outcome] = count;
+  return json;
+}
+
 Json times_json(const VariantStatistics& variant) {
   const Distribution& times = variant.ocp_ms;
   return {{"median", times.median}, {"p95", times.p95},
@@ -80,41 +87,42 @@ Json times_json(const VariantStatistics& variant) {
 
 Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
   const VariantStatistics& variant = statistics.variants[number];
-  return {{"scenario", variant.scenario},
-          {"settings", variant.settings},
-          {"plant", variant.plant},
-          {"episodes", variant.episodes},
-          {"done", variant.done},
-          {"outcomes", variant.outcomes},
-          {"reached_rate", variant.reached.rate},
-          {"reached_interval", interval_json(variant.reached.interval)},
-          {"fault_rate", variant.fault.rate},
-          {"fault_interval", interval_json(variant.fault.interval)},
-          {"empirical",
-           {{"unsafe_rate", variant.unsafe.rate},
-            {"unsafe_interval", interval_json(variant.unsafe.interval)}}},
-          {"cost", spread_json(variant.cost)},
-          {"min_clearance", spread_json(variant.min_clearance)},
-          {"time_to_target", spread_json(variant.time_to_target)},
-          {"periods", variant.periods},
-          {"unsafe_periods", variant.unsafe_periods},
-          {"unsafe_step_rate", variant.unsafe_step_rate()},
-          {"certified_step_rate", variant.certified_step_rate()},
-          {"exceedance_p_value", variant.p_value},
-          {"calibration", calibration_json(variant.calibration, variant.published)},
-          {"differences", differences_json(statistics, number)},
-          {"ocp_ms", times_json(variant)}};
+  Json json{{"scenario", variant.scenario}, {"settings", variant.settings},
+            {"plant", variant.plant},       {"episodes", variant.episodes},
+            {"done", variant.done},         {"outcomes", outcomes_json(variant.outcomes)}};
+  for (const ListedOutcome& outcome : listed_outcomes()) {
+    const EpisodeRate& rate = variant.*outcome.rate;
+    json[outcome.name + "_rate"] = rate.rate;
+    json[outcome.name + "_interval"] = interval_json(rate.interval);
+  }
+  json.update({{"empirical",
+                {{"unsafe_rate", variant.unsafe.rate},
+                 {"unsafe_interval", interval_json(variant.unsafe.interval)}}},
+               {"cost", spread_json(variant.cost)},
+               {"min_clearance", spread_json(variant.min_clearance)},
+               {"time_to_target", spread_json(variant.time_to_target)},
+               {"periods", variant.periods},
+               {"unsafe_periods", variant.unsafe_periods},
+               {"unsafe_step_rate", variant.unsafe_step_rate()},
+               {"certified_step_rate", variant.certified_step_rate()},
+               {"exceedance_p_value", variant.p_value},
+               {"calibration", calibration_json(variant.calibration, variant.published)},
+               {"differences", differences_json(statistics, number)},
+               {"ocp_ms", times_json(variant)}});
+  return json;
 }
 
 }  // namespace
 
 std::string campaign_json(const CampaignStatistics& statistics) {
   const StoredCampaign& campaign = statistics.campaign;
-  Json json{
-      {"name", campaign.name},          {"version", campaign.version},
-      {"seeds", campaign.seeds},        {"shard", {campaign.shard.index, campaign.shard.count}},
-      {"episodes", campaign.episodes},  {"done", statistics.done},
-      {"outcomes", statistics.outcomes}};
+  Json json{{"name", campaign.name},
+            {"version", campaign.version},
+            {"seeds", campaign.seeds},
+            {"shard", {campaign.shard.index, campaign.shard.count}},
+            {"episodes", campaign.episodes},
+            {"done", statistics.done},
+            {"outcomes", outcomes_json(statistics.outcomes)}};
   json["variants"] = Json::object();
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     json["variants"][statistics.variants[n].name] = variant_json(statistics, n);

@@ -9,6 +9,7 @@
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
+#include "harness/trace/ending.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -17,8 +18,10 @@ constexpr std::size_t kNameWidth = 28;   // of variants
 constexpr std::size_t kTitleLimit = 76;  // of a variant's name in a line of its own
 constexpr std::size_t kFullName = 100;
 constexpr std::size_t kOutcomeLimit = 16;
-constexpr double kSurprising = 0.01;  // a p-value below it is marked
-constexpr std::size_t kMedian = 3;    // of spread_shares
+constexpr std::size_t kDoneWidth = 7;   // of the number of drives
+constexpr std::size_t kRateWidth = 14;  // of the limits of a rate in percent
+constexpr double kSurprising = 0.01;    // a p-value below it is marked
+constexpr std::size_t kMedian = 3;      // of spread_shares
 constexpr std::size_t kFifth = 1;
 constexpr std::size_t kNinetyFifth = 5;
 
@@ -43,10 +46,10 @@ std::string probability(double value) {
   return std::isfinite(value) ? fmt::format("{:.2g}", value) : "-";
 }
 
-std::string rate_with_limits(const EpisodeRate& rate) {
-  if (!std::isfinite(rate.rate)) return "-";
-  return fmt::format("{:.4f} [{:.4f}, {:.4f}]", rate.rate, rate.interval.lower,
-                     rate.interval.upper);
+std::string limits_in_percent(const EpisodeRate& rate) {
+  if (!std::isfinite(rate.rate)) return "";
+  return fmt::format("[{}, {}]", format_percent(rate.interval.lower),
+                     format_percent(rate.interval.upper));
 }
 
 std::string mean_with_error(const Spread& spread) {
@@ -61,10 +64,13 @@ std::string head(const CampaignStatistics& statistics) {
   if (campaign.shard.count > 1) {
     text += fmt::format(", shard {} of {}", campaign.shard.index, campaign.shard.count);
   }
-  text += "\n ";
-  for (const auto& [outcome, count] : statistics.outcomes) {
-    text += fmt::format(" {} {}{}", count, printable(outcome, kOutcomeLimit),
-                        outcome == statistics.outcomes.rbegin()->first ? "" : ",");
+  text += "\n";
+  const char* before = "  ";
+  for (const auto& [outcome, count] : in_order(statistics.outcomes)) {
+    const double share = static_cast<double>(count) / static_cast<double>(statistics.done);
+    text += fmt::format("{}{} {} ({} %)", before, count, printable(outcome, kOutcomeLimit),
+                        format_percent(share));
+    before = ", ";
   }
   return text + "\n";
 }
@@ -80,22 +86,32 @@ std::string long_names(const CampaignStatistics& statistics) {
   return text.empty() ? text : "\nVariants with long names\n" + text;
 }
 
+/// Two lines a variant: its shares, and their intervals.
 std::string outcome_section(const CampaignStatistics& statistics) {
-  std::string text = fmt::format("\nEpisodes (99 % intervals)\n{}{:>9}{:>27}{:>27}{:>10}\n",
-                                 head_name("variant"), "done", "reached", "unsafe", "faults");
+  const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
+  std::string text = fmt::format("\nWhat became of the drives, in %, with 99 % intervals\n{}{:>{}}",
+                                 head_name("variant"), "done", kDoneWidth);
+  for (const ListedOutcome& outcome : outcomes) {
+    text += fmt::format("{:>{}}", outcome.title, kRateWidth);
+  }
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
-    text += fmt::format("{}{:>9}{:>27}{:>27}{:>10}\n", name_of(statistics, n), variant.done,
-                        rate_with_limits(variant.reached), rate_with_limits(variant.unsafe),
-                        variant.fault.events);
+    text += fmt::format("\n{}{:>{}}", name_of(statistics, n), variant.done, kDoneWidth);
+    std::string limits = fmt::format("\n{}{:>{}}", head_name(""), "", kDoneWidth);
+    for (const ListedOutcome& outcome : outcomes) {
+      const EpisodeRate& rate = variant.*outcome.rate;
+      text += fmt::format("{:>{}}", format_percent(rate.rate), kRateWidth);
+      limits += fmt::format("{:>{}}", limits_in_percent(rate), kRateWidth);
+    }
+    text += limits;
   }
-  return text;
+  return text + "\n";
 }
 
 std::string spread_section(const CampaignStatistics& statistics) {
   std::string text = fmt::format(
-      "\nCost, least clearance (m), time to target (s): mean, and what 5 %, 50 %, 95 % are not "
-      "above\n{}{:>20}{:>9}{:>9}{:>10}{:>10}{:>9}{:>10}\n",
+      "\nCost, least clearance (m), time to target (s): mean; 5th, 50th and 95th "
+      "percentiles\n{}{:>20}{:>9}{:>9}{:>10}{:>10}{:>9}{:>10}\n",
       head_name("variant"), "cost", "median", "95 %", "clear 5 %", "median", "time", "95 %");
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
@@ -112,8 +128,8 @@ std::string spread_section(const CampaignStatistics& statistics) {
 
 std::string certificate_section(const CampaignStatistics& statistics) {
   std::string text = fmt::format(
-      "\nNext-step certificates\n{}{:>10}{:>9}{:>12}{:>12}{:>10}{:>16}\n", head_name("variant"),
-      "periods", "unsafe", "observed", "certified", "p", "bins exceeded");
+      "\nNext-step certificates: do they hold?\n{}{:>10}{:>9}{:>12}{:>12}{:>10}{:>16}\n",
+      head_name("variant"), "periods", "unsafe", "observed", "certified", "p", "bins exceeded");
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
     const auto filled = std::ranges::count_if(
@@ -196,9 +212,10 @@ std::string campaign_table(const CampaignStatistics& statistics) {
          spread_section(statistics) + certificate_section(statistics) +
          calibration_section(statistics) + difference_section(statistics) +
          time_section(statistics) +
-         "unsafe: the true state entered the unsafe set. An episode that faulted ranks as the "
-         "worst."
-         "\np: small where more periods end unsafe than certified for them; !: chance alone in at "
+         "collision, left bounds: where the true state first was unsafe, also of a drive that went "
+         "on.\n"
+         "A drive that faulted ranks as the worst. bins exceeded, p: of the certificates alone;\n"
+         "p: small where more periods end unsafe than certified for them; !: chance alone in at "
          "most 1 of 100.\n";
 }
 

@@ -1,8 +1,10 @@
 #include "harness/campaign/statistics/variant_statistics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "harness/campaign/statistics/paired_difference.hpp"
+#include "harness/trace/ending.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -39,6 +41,30 @@ double VariantStatistics::certified_step_rate() const {
   return share_of(certified_periods, periods);
 }
 
+const std::vector<ListedOutcome>& listed_outcomes() {
+  static const std::vector<ListedOutcome> listed = {
+      {outcome_name(Outcome::kReached), "reached", "reached the target",
+       &VariantStatistics::reached},
+      {outcome_name(Outcome::kCollision), "collision", "collided", &VariantStatistics::collision},
+      {outcome_name(Outcome::kLeftBounds), "left bounds", "left the bounds",
+       &VariantStatistics::left_bounds},
+      {outcome_name(Outcome::kTimeout), "timeout", "ran out of time", &VariantStatistics::timeout},
+      {outcome_name(Outcome::kFault), "fault", "faulted", &VariantStatistics::fault}};
+  return listed;
+}
+
+std::vector<ListedOutcome> outcomes_of(const std::vector<VariantStatistics>& variants) {
+  std::vector<ListedOutcome> listed = listed_outcomes();
+  const ListedOutcome former{kLeftSafeSet, "left safe set", "left the safe set",
+                             &VariantStatistics::left_safe_set};
+  if (std::ranges::any_of(variants, [&](const VariantStatistics& variant) {
+        return (variant.*former.rate).events > 0;
+      })) {
+    listed.push_back(former);
+  }
+  return listed;
+}
+
 void VariantTally::add(const EpisodeRow& row) {
   ++done_;
   ++outcomes_[row.outcome];
@@ -63,15 +89,19 @@ void VariantTally::add(std::int64_t period, const PeriodRow& row) {
 }
 
 VariantStatistics VariantTally::result() const {
-  const auto episodes_that = [&](Outcome outcome) {
-    const auto found = outcomes_.find(outcome_name(outcome));
-    return found == outcomes_.end() ? std::int64_t{0} : found->second;
+  const auto rate_of = [&](const char* outcome) {
+    const auto found = outcomes_.find(outcome);
+    return episode_rate(found == outcomes_.end() ? 0 : found->second, done_);
   };
   return {.done = done_,
           .outcomes = outcomes_,
-          .reached = episode_rate(episodes_that(Outcome::kReached), done_),
+          .reached = rate_of(outcome_name(Outcome::kReached)),
+          .collision = rate_of(outcome_name(Outcome::kCollision)),
+          .left_bounds = rate_of(outcome_name(Outcome::kLeftBounds)),
+          .timeout = rate_of(outcome_name(Outcome::kTimeout)),
+          .fault = rate_of(outcome_name(Outcome::kFault)),
+          .left_safe_set = rate_of(kLeftSafeSet),
           .unsafe = episode_rate(unsafe_, done_),
-          .fault = episode_rate(episodes_that(Outcome::kFault), done_),
           .deadline_misses = deadline_misses_,
           .periods = calibration_.periods(),
           .unsafe_periods = calibration_.unsafe(),

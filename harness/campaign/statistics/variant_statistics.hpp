@@ -70,12 +70,16 @@ struct VariantStatistics {
   std::int64_t done = 0;
   std::map<std::string, std::int64_t> outcomes{};
   EpisodeRate reached{};
-  EpisodeRate unsafe{};  ///< the true state entered the unsafe set
+  EpisodeRate collision{};
+  EpisodeRate left_bounds{};
+  EpisodeRate timeout{};
   EpisodeRate fault{};
-  Spread cost{};            ///< a faulted episode ranks as infinite
-  Spread min_clearance{};   ///< m; a faulted episode ranks as −∞
-  Spread time_to_target{};  ///< s; of the episodes that reached it only
-  Distribution ocp_ms{};    ///< of all periods; not numbers without one
+  EpisodeRate left_safe_set{};  ///< collision or left_bounds, of earlier versions
+  EpisodeRate unsafe{};         ///< the true state entered the unsafe set
+  Spread cost{};                ///< a faulted episode ranks as infinite
+  Spread min_clearance{};       ///< m; a faulted episode ranks as −∞
+  Spread time_to_target{};      ///< s; of the episodes that reached it only
+  Distribution ocp_ms{};        ///< of all periods; not numbers without one
   std::int64_t deadline_misses = 0;
   std::int64_t periods = 0;
   std::int64_t unsafe_periods = 0;  ///< that ended in the unsafe set
@@ -88,6 +92,20 @@ struct VariantStatistics {
   [[nodiscard]] double unsafe_step_rate() const;
   [[nodiscard]] double certified_step_rate() const;
 };
+
+/// An outcome as tables and figures show it.
+struct ListedOutcome {
+  std::string name;   ///< as in `VariantStatistics::outcomes`
+  std::string title;  ///< a few words
+  std::string verb;   ///< what a drive did that ended so: "52 collided"
+  EpisodeRate VariantStatistics::*rate = nullptr;
+};
+
+/// Those that a drive of this version may end with, in their order.
+[[nodiscard]] const std::vector<ListedOutcome>& listed_outcomes();
+/// The same, and after them those of earlier versions that some of `variants` have.
+[[nodiscard]] std::vector<ListedOutcome> outcomes_of(
+    const std::vector<VariantStatistics>& variants);
 
 /// What is counted while a variant's episodes and periods stream by. Memory does not grow.
 class VariantTally {

@@ -33,7 +33,8 @@ struct EpisodeTiming {
 struct EpisodeRow {
   std::int64_t variant = 0;  ///< index in the campaign
   std::uint64_t seed = 0;
-  std::string outcome;  ///< outcome_name of how it ended; never "interrupted"
+  /// outcome_name of how it ended, never "interrupted"; of earlier versions also kLeftSafeSet.
+  std::string outcome;
   std::string fault{};  ///< the simulator's words; empty without a fault
   int steps = 0;
   std::optional<double> time_to_target{};  ///< s; where it was reached

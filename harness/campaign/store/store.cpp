@@ -257,8 +257,9 @@ std::optional<std::string> Store::outcome(std::int64_t variant, std::uint64_t se
   std::optional<std::string> outcome;
   const std::lock_guard lock(implementation_->mutex);
   with_store_errors(implementation_->path, [&] {
-    SQLite::Statement statement(implementation_->database,
-                                "SELECT outcome FROM episode WHERE variant = ? AND seed = ?");
+    SQLite::Statement statement(
+        implementation_->database,
+        "SELECT " + outcome_column() + " FROM episode WHERE variant = ? AND seed = ?");
     statement.bind(1, variant);
     statement.bind(2, stored_seed(seed));
     if (statement.executeStep()) outcome = statement.getColumn(0).getString();

@@ -7,6 +7,8 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include "harness/trace/ending.hpp"
+
 namespace qsmpc::harness {
 namespace {
 
@@ -46,11 +48,10 @@ void insert_periods(SQLite::Database& database, const EpisodeRow& row) {
 }  // namespace
 
 std::string episode_columns(const std::string& e, const std::string& t) {
-  std::string columns;
-  for (const char* name :
-       {"variant", "seed", "outcome", "fault", "steps", "time_to_target", "unsafe", "min_clearance",
-        "cost", "next_step_max", "next_step_sum", "horizon_max", "thesis_max", "iterations_median",
-        "fallbacks", "trace", "version"}) {
+  std::string columns = fmt::format("{0}.variant, {0}.seed, {1}, ", e, outcome_column(e + "."));
+  for (const char* name : {"fault", "steps", "time_to_target", "unsafe", "min_clearance", "cost",
+                           "next_step_max", "next_step_sum", "horizon_max", "thesis_max",
+                           "iterations_median", "fallbacks", "trace", "version"}) {
     columns += fmt::format("{}.{}, ", e, name);
   }
   return columns + fmt::format("{0}.finished_at, {0}.wall_ms, {0}.deadline_misses", t);
@@ -89,8 +90,15 @@ EpisodeRow episode_of(SQLite::Statement& statement, int first) {
   return row;
 }
 
+std::string outcome_column(const std::string& prefix) {
+  return fmt::format(
+      "CASE WHEN {0}unsafe AND {0}outcome IN ('{1}', '{2}') THEN '{3}' ELSE {0}outcome END", prefix,
+      outcome_name(Outcome::kReached), outcome_name(Outcome::kTimeout), kLeftSafeSet);
+}
+
 std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database) {
-  SQLite::Statement statement(database, "SELECT outcome, count(*) FROM episode GROUP BY outcome");
+  SQLite::Statement statement(database,
+                              "SELECT " + outcome_column() + ", count(*) FROM episode GROUP BY 1");
   std::map<std::string, std::int64_t> outcomes;
   while (statement.executeStep()) {
     outcomes[statement.getColumn(0).getString()] = statement.getColumn(1).getInt64();

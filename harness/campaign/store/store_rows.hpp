@@ -40,6 +40,11 @@ inline constexpr int kEpisodeColumns = 20;
 /// The tables whose rows belong to an episode; `variant` is a column of each.
 inline constexpr std::array kEpisodeTables{"episode", "episode_timing", "period", "period_timing"};
 
+/// The outcome of the episode whose columns begin with `prefix` ("" or "e."), in SQL. Rows of
+/// earlier versions have one word for both parts of the unsafe set, and none for a drive that went
+/// on after it was unsafe: all of these become that one word, for no row tells the parts apart.
+[[nodiscard]] std::string outcome_column(const std::string& prefix = {});
+
 /// Episodes by how they ended.
 [[nodiscard]] std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database);
 

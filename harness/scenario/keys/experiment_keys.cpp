@@ -48,7 +48,9 @@ ScenarioKey limit_key() {
                 .member = [](Scenario& scenario) -> int& { return scenario.step_limit; }},
                {.about = {.name = "stop_when_unsafe",
                           .values = {FlagValue{}},
-                          .words = "whether it ends when the true state is unsafe"},
+                          .words = "whether it ends when the true state is unsafe; else it goes "
+                                   "on, and its outcome is "
+                                   "`collision` or `left_bounds` all the same"},
                 .member = [](Scenario& scenario) -> bool& { return scenario.stop_when_unsafe; }}},
       .layout = SectionLayout::kFlow,
       .table = "experiment"};

@@ -76,7 +76,7 @@ TEST(PairedDifference, is_the_mean_over_the_pairs) {
   PairedDifference difference;
   difference.add(row(0, "reached", 10.0, 0.5), row(0, "reached", 13.0, 0.4));
   difference.add(row(1, "timeout", 10.0, 0.5), row(1, "reached", 9.0, 0.5));
-  difference.add(row(2, "reached", 10.0, 0.5), row(2, "left_safe_set", 14.0, -0.1));
+  difference.add(row(2, "reached", 10.0, 0.5), row(2, "collision", 14.0, -0.1));
   const std::vector<MeanDifference> result = difference.result();
   const MeanDifference cost = difference_of(result, "cost");
   EXPECT_DOUBLE_EQ(cost.mean, 2.0);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
@@ -13,6 +14,7 @@
 #include "harness/campaign/statistics/campaign_table.hpp"
 #include "harness/campaign/store/store.hpp"
 #include "harness/files/text_file.hpp"
+#include "harness/text/number_format.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
@@ -126,9 +128,13 @@ TEST(CampaignJson, has_the_documented_keys) {
   EXPECT_EQ(json["done"], 2 * kSeeds - 1);
   EXPECT_EQ(json["outcomes"]["reached"], 2 * kSeeds - 2);
   const Json& variant = json["variants"]["three"];
-  for (const char* key : {"outcomes", "reached_rate", "reached_interval", "unsafe_step_rate",
-                          "certified_step_rate", "ocp_ms", "empirical", "calibration"}) {
+  for (const char* key : {"outcomes", "unsafe_step_rate", "certified_step_rate", "ocp_ms",
+                          "empirical", "calibration", "cost", "differences"}) {
     EXPECT_TRUE(variant.contains(key)) << key;
+  }
+  for (const char* outcome : {"reached", "collision", "left_bounds", "timeout", "fault"}) {
+    EXPECT_TRUE(variant[outcome + std::string("_rate")].is_number()) << outcome;
+    EXPECT_EQ(variant[outcome + std::string("_interval")].size(), 2U) << outcome;
   }
   for (const char* key : {"median", "p95", "p99", "max", "mean", "deadline_misses"}) {
     EXPECT_TRUE(variant["ocp_ms"].contains(key)) << key;
@@ -166,6 +172,28 @@ TEST(CampaignTable, keeps_its_lines_short_and_marks_names_that_it_cuts) {
   EXPECT_EQ(table.find("inf"), std::string::npos);
 }
 
+TEST(CampaignTable, says_first_what_became_of_the_drives) {
+  CampaignStatistics statistics = filled_statistics();
+  statistics.outcomes = {{"collision", 30}, {"reached", 9}};
+  VariantTally tally;
+  for (int n = 0; n < 40; ++n) {
+    tally.add({.outcome = n < 30 ? "collision" : "reached", .unsafe = n < 30});
+  }
+  statistics.variants[0] = tally.result();
+  const std::string table = campaign_table(statistics);
+  EXPECT_NE(table.find("  9 reached (23.1 %), 30 collision (76.9 %)\n"), std::string::npos);
+  const std::size_t head =
+      table.find("reached     collision   left bounds       timeout         fault");
+  ASSERT_NE(head, std::string::npos) << table;
+  EXPECT_LT(head, table.find("Next-step certificates"));
+  EXPECT_NE(table.find("     25            75             0             0             0\n"),
+            std::string::npos)
+      << table;
+  EXPECT_NE(table.find(fmt::format("[{}, {}]", format_percent(clopper_pearson(30, 40, 0.005).lower),
+                                   format_percent(clopper_pearson(30, 40, 0.005).upper))),
+            std::string::npos);
+}
+
 /// Fields of a line, quotes considered.
 std::size_t field_count(const std::string& line) {
   std::size_t count = 1;
@@ -175,6 +203,15 @@ std::size_t field_count(const std::string& line) {
     count += letter == ',' && !quoted ? 1 : 0;
   }
   return count;
+}
+
+TEST(CampaignCsv, has_four_columns_of_each_outcome) {
+  const std::string csv = variants_csv(filled_statistics());
+  for (const char* name : {"reached", "collision", "left_bounds", "timeout", "fault", "unsafe"}) {
+    EXPECT_NE(csv.find(fmt::format(",{0},{0}_rate,{0}_interval.lower,{0}_interval.upper,", name)),
+              std::string::npos)
+        << name;
+  }
 }
 
 TEST(CampaignCsv, every_line_has_the_fields_of_its_head) {

@@ -68,12 +68,15 @@ TEST_F(Status, tells_who_works_on_it_and_how_fast) {
 }
 
 TEST(ProgressNote, tells_rate_time_left_and_outcomes) {
-  const CampaignProgress progress{.done = 60,
-                                  .total = 100,
-                                  .fresh = 20,
-                                  .elapsed = 40.0,
-                                  .outcomes = {{"fault", 0}, {"reached", 57}, {"timeout", 3}}};
-  EXPECT_EQ(progress_note(progress), "0.5 episodes/s, 1 min 20 s left, reached 57, timeout 3");
+  const CampaignProgress progress{
+      .done = 60,
+      .total = 100,
+      .fresh = 20,
+      .elapsed = 40.0,
+      .outcomes = {
+          {"collision", 2}, {"fault", 0}, {"left_safe_set", 1}, {"reached", 54}, {"timeout", 3}}};
+  EXPECT_EQ(progress_note(progress),
+            "0.5 episodes/s, 1 min 20 s left, reached 54, collision 2, timeout 3, left_safe_set 1");
 }
 
 TEST(Durations, are_told_in_their_two_largest_units) {

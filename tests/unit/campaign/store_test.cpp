@@ -156,6 +156,33 @@ TEST_F(StoreTest, a_reader_sees_one_state_while_episodes_are_added) {
   EXPECT_THAT(StoreReader(folder.path()).outcomes(), ElementsAre(Pair("reached", 2)));
 }
 
+// Rows of versions that had one word for both parts of the unsafe set, and called a drive that went
+// on after it was unsafe by how it ended.
+TEST_F(StoreTest, former_drives_that_were_unsafe_have_the_former_word) {
+  Store store = open(testing::quick_campaign(6));
+  const auto add = [&](std::uint64_t seed, const char* outcome, bool unsafe) {
+    EpisodeRow row = testing::example_row(0, seed, outcome);
+    row.unsafe = unsafe;
+    store.add(row, false);
+  };
+  add(5, "reached", false);
+  add(6, "reached", true);
+  add(7, "timeout", true);
+  add(8, "left_safe_set", true);
+  add(9, "collision", true);
+  add(10, "fault", true);
+  EXPECT_EQ(store.outcome(0, 6), "left_safe_set");
+  const auto counts = ElementsAre(Pair("collision", 1), Pair("fault", 1), Pair("left_safe_set", 3),
+                                  Pair("reached", 1));
+  EXPECT_THAT(store.outcomes(), counts);
+  const StoreReader reader(folder.path());
+  EXPECT_THAT(reader.outcomes(), counts);
+  std::vector<std::string> read;
+  reader.for_each_episode(0, [&](const EpisodeRow& row) { read.push_back(row.outcome); });
+  EXPECT_THAT(read, ElementsAre("reached", "left_safe_set", "left_safe_set", "left_safe_set",
+                                "collision", "fault"));
+}
+
 TEST_F(StoreTest, counts_what_was_finished_lately) {
   Store store = open(testing::quick_campaign());
   for (const std::uint64_t seed : {5U, 6U, 7U}) store.add(testing::example_row(0, seed), false);

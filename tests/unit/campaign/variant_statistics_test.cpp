@@ -33,7 +33,7 @@ Spread spread_of(const SpreadTally& tally, std::vector<double> values) {
 TEST(VariantTally, counts_every_episode_also_one_that_faulted) {
   VariantTally tally;
   for (int n = 0; n < 7; ++n) tally.add(row("reached", 10.0, 0.2));
-  tally.add(row("left_safe_set", 5.0, -0.1));
+  tally.add(row("collision", 5.0, -0.1));
   tally.add(row("timeout", 30.0, 0.1));
   tally.add(row("fault", 2.0, 0.4));
   const VariantStatistics statistics = tally.result();
@@ -45,6 +45,37 @@ TEST(VariantTally, counts_every_episode_also_one_that_faulted) {
   EXPECT_DOUBLE_EQ(statistics.fault.rate, 0.1);
   EXPECT_EQ(statistics.fault.events, 1);
   EXPECT_EQ(statistics.deadline_misses, 20);
+}
+
+TEST(VariantTally, has_a_rate_with_limits_of_each_outcome) {
+  VariantTally tally;
+  for (const char* outcome : {"reached", "collision", "collision", "collision", "left_bounds",
+                              "left_bounds", "timeout", "timeout", "timeout", "timeout"}) {
+    tally.add(row(outcome, 1.0, 0.1));
+  }
+  const VariantStatistics statistics = tally.result();
+  EXPECT_DOUBLE_EQ(statistics.collision.rate, 0.3);
+  EXPECT_EQ(statistics.collision.interval.lower, clopper_pearson(3, 10, 0.005).lower);
+  EXPECT_DOUBLE_EQ(statistics.left_bounds.rate, 0.2);
+  EXPECT_EQ(statistics.left_bounds.interval.upper, clopper_pearson(2, 10, 0.005).upper);
+  EXPECT_DOUBLE_EQ(statistics.timeout.rate, 0.4);
+  EXPECT_EQ(statistics.fault.events, 0);
+}
+
+TEST(ListedOutcomes, have_the_former_word_only_where_it_is_needed) {
+  VariantTally tally;
+  for (const std::string& outcome : outcome_names()) tally.add(row(outcome, 1.0, 0.1));
+  std::vector<VariantStatistics> variants = {tally.result()};
+  ASSERT_EQ(listed_outcomes().size() + 1, outcome_names().size()) << "none is interrupted";
+  for (std::size_t n = 0; n < listed_outcomes().size(); ++n) {
+    EXPECT_EQ(listed_outcomes()[n].name, outcome_names()[n]);
+    EXPECT_EQ((variants[0].*listed_outcomes()[n].rate).events, 1) << n;
+  }
+  EXPECT_EQ(outcomes_of(variants).size(), listed_outcomes().size());
+  tally.add(row("left_safe_set", 1.0, -0.1));
+  variants.push_back(tally.result());
+  ASSERT_EQ(outcomes_of(variants).size(), listed_outcomes().size() + 1);
+  EXPECT_EQ((variants[1].*outcomes_of(variants).back().rate).events, 1);
 }
 
 TEST(VariantTally, of_nothing_knows_nothing) {

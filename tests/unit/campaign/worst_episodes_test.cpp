@@ -26,10 +26,10 @@ EpisodeRow row(const std::string& outcome, bool unsafe, double clearance, double
 TEST(WorstEpisodes, are_unsafe_or_faulted_ones_then_those_of_least_clearance_then_of_highest_cost) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const std::vector<EpisodeRow> wanted = {
-      row("fault", false, nan, 1.0, 1),       row("reached", true, -0.5, 1.0, 2),
-      row("timeout", true, -0.1, 9.0, 3),     row("fault", false, 2.0, 1.0, 4),
-      row("left_safe_set", false, 0.0, 1, 5), row("reached", false, 0.3, 9.0, 6),
-      row("reached", false, 0.3, 8.0, 7),     row("reached", false, 0.3, 8.0, 8),
+      row("fault", false, nan, 1.0, 1),   row("reached", true, -0.5, 1.0, 2),
+      row("timeout", true, -0.1, 9.0, 3), row("fault", false, 2.0, 1.0, 4),
+      row("collision", false, 0.0, 1, 5), row("reached", false, 0.3, 9.0, 6),
+      row("reached", false, 0.3, 8.0, 7), row("reached", false, 0.3, 8.0, 8),
       row("timeout", false, 0.4, nan, 9)};
   std::vector<EpisodeRow> sorted(wanted.rbegin(), wanted.rend());
   std::ranges::sort(sorted, is_worse);

@@ -188,22 +188,6 @@ TEST(Episode, a_target_angle_is_reached_whole_turns_away_where_it_is_meant_modul
             Outcome::kReached);
 }
 
-TEST(Episode, ends_when_the_true_state_is_unsafe_unless_told_to_go_on) {
-  // Without a penalty the way to the target leads through the obstacle.
-  const std::vector<std::string> blind = {
-      "safe_set.obstacles=[{x: [0.6, 1.5], y: [-2, 2]}]", "target={state: [3, 0, 0], radius: 0.5}",
-      "controller.penalty={box: 0, obstacle: 0}", "limit.steps=20"};
-  const Trace stopped = run_episode(small_scenario(blind), {.seed = 2});
-  EXPECT_EQ(stopped.outcome, Outcome::kLeftSafeSet);
-  EXPECT_LE(controller::clearance(stopped.final_state, stopped.scenario.safe_set), 0.0);
-
-  std::vector<std::string> on = blind;
-  on.emplace_back("limit.stop_when_unsafe=false");
-  const Trace through = run_episode(small_scenario(on), {.seed = 2});
-  EXPECT_GT(through.steps.size(), stopped.steps.size());
-  EXPECT_NE(through.outcome, Outcome::kLeftSafeSet);
-}
-
 TEST(Episode, times_out_after_its_limit) {
   const Trace trace = run_episode(small_scenario({"limit.steps=3"}), {.seed = 2});
   EXPECT_EQ(trace.outcome, Outcome::kTimeout);

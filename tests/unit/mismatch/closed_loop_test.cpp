@@ -24,12 +24,11 @@ EpisodeResult judged(const std::string& outcome, double cost, double clearance) 
 }
 
 TEST(ClosedLoop, counts_outcomes_and_unsafe_episodes_with_their_limits) {
-  const ClosedLoop loop =
-      closed_loop_of({judged("reached", 10.0, 0.4), judged("reached", 14.0, 0.2),
-                      judged("left_safe_set", 6.0, -0.1)});
+  const ClosedLoop loop = closed_loop_of(
+      {judged("reached", 10.0, 0.4), judged("reached", 14.0, 0.2), judged("collision", 6.0, -0.1)});
   EXPECT_EQ(loop.episodes, 3);
   EXPECT_EQ(loop.outcomes.at("reached"), 2);
-  EXPECT_EQ(loop.outcomes.at("left_safe_set"), 1);
+  EXPECT_EQ(loop.outcomes.at("collision"), 1);
   EXPECT_DOUBLE_EQ(loop.cost, 10.0);
   EXPECT_DOUBLE_EQ(loop.cost_deviation, std::sqrt(32.0 / 2.0 / 3.0));
   EXPECT_DOUBLE_EQ(loop.min_clearance, -0.1);
@@ -39,7 +38,7 @@ TEST(ClosedLoop, counts_outcomes_and_unsafe_episodes_with_their_limits) {
 }
 
 TEST(ClosedLoop, unsafe_periods_are_held_against_what_was_certified_for_them) {
-  EpisodeResult episode = judged("left_safe_set", 1.0, -0.1);
+  EpisodeResult episode = judged("collision", 1.0, -0.1);
   episode.certified = {1e-3, 2e-3, 3e-3};
   episode.unsafe_next = {0, 0, 1};
   const ClosedLoop loop = closed_loop_of({episode});
@@ -61,7 +60,7 @@ TEST(EpisodeResult, says_of_each_period_what_was_certified_and_what_happened) {
                                "controller.input_bounds.yaw_rate=[-0.2, 0.2]"});
   const Trace trace = run_episode(scenario, {.seed = 3});
   const EpisodeResult result = episode_result(EpisodeView(trace));
-  ASSERT_EQ(result.outcome, "left_safe_set");
+  ASSERT_EQ(result.outcome, "left_bounds");
   EXPECT_EQ(result.seed, 3U);
   ASSERT_EQ(result.certified.size(), trace.steps.size());
   EXPECT_EQ(result.certified[1], trace.steps[1].certificates.front().value);

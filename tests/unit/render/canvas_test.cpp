@@ -202,6 +202,23 @@ TEST(hud, threads_draw_the_same_pictures_at_once_as_one_alone) {
   }
 }
 
+TEST(hud, a_banner_that_is_an_alarm_is_red) {
+  const auto redness = [](bool alarm) {
+    Frame frame;
+    frame.banner = "collision";
+    frame.alarm = alarm;
+    Image image = black_image(640, 360);
+    Hud(640, 360).draw(frame, image);
+    int surplus = 0;
+    for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
+      surplus += image.rgb[i] - image.rgb[i + 1] > 100 ? 1 : 0;
+    }
+    return surplus;
+  };
+  EXPECT_EQ(redness(false), 0);
+  EXPECT_GT(redness(true), 1000);
+}
+
 TEST(hud, draws_nothing_for_a_frame_that_says_nothing) {
   Image image = black_image(640, 360);
   const Hud hud(640, 360);

@@ -7,7 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "harness/figures/svg_figure.hpp"
+#include "harness/report/campaign_outcomes.hpp"
 #include "harness/report/campaign_page.hpp"
+#include "harness/text/number_format.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc::harness {
@@ -53,8 +55,8 @@ const Series* series_of(const Chart& chart, const std::string& name) {
 TEST(CampaignFigures, are_documents_with_texts_that_are_escaped) {
   const std::vector<CampaignFigure> figures = campaign_figures(example());
   ASSERT_EQ(figures.size(), 3U);
-  EXPECT_EQ(figures[0].file, "reliability.svg");
-  EXPECT_EQ(figures[1].file, "outcomes.svg");
+  EXPECT_EQ(figures[0].file, "outcomes.svg");
+  EXPECT_EQ(figures[1].file, "reliability.svg");
   EXPECT_EQ(figures[2].file, "differences.svg");
   for (const CampaignFigure& figure : figures) {
     const std::string svg = svg_figure(figure.charts);
@@ -77,7 +79,7 @@ TEST(CampaignFigures, of_no_episodes_exist) {
 }
 
 TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_as_limits) {
-  const Chart chart = campaign_figures(example())[0].charts[0];
+  const Chart chart = campaign_figures(example())[1].charts[0];
   const Series* exceeded = series_of(chart, "certificate: exceeded");
   ASSERT_NE(exceeded, nullptr) << "one of ten where one of a thousand is certified";
   EXPECT_EQ(exceeded->x.size(), 1U);
@@ -95,7 +97,7 @@ TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_as_limits) {
 }
 
 TEST(ReliabilityFigure, shades_what_is_above_the_diagonal) {
-  const Chart chart = campaign_figures(example())[0].charts[0];
+  const Chart chart = campaign_figures(example())[1].charts[0];
   ASSERT_EQ(chart.areas.size(), 1U);
   for (std::size_t i = 0; i < chart.areas[0].x.size(); ++i) {
     EXPECT_GE(chart.areas[0].y[i], chart.areas[0].x[i]);
@@ -107,12 +109,12 @@ TEST(ReliabilityFigure, shades_what_is_above_the_diagonal) {
 
 TEST(ReliabilityFigure, has_a_chart_for_each_of_several_variants) {
   CampaignStatistics statistics = example();
-  EXPECT_EQ(campaign_figures(statistics)[0].charts.size(), 4U);
+  EXPECT_EQ(campaign_figures(statistics)[1].charts.size(), 4U);
   statistics.variants.pop_back();
   statistics.differences.clear();
-  EXPECT_EQ(campaign_figures(statistics)[0].charts.size(), 2U);
+  EXPECT_EQ(campaign_figures(statistics)[1].charts.size(), 2U);
   statistics.variants.assign(100, statistics.variants[0]);
-  EXPECT_LT(campaign_figures(statistics)[0].charts.size(), 20U);
+  EXPECT_LT(campaign_figures(statistics)[1].charts.size(), 20U);
 }
 
 TEST(ReliabilityFigure, says_which_of_many_variants_have_a_chart) {
@@ -120,7 +122,7 @@ TEST(ReliabilityFigure, says_which_of_many_variants_have_a_chart) {
   const VariantStatistics exceeded = statistics.variants[1];
   statistics.variants.assign(40, statistics.variants[0]);
   statistics.variants[33] = exceeded;
-  const std::vector<Chart> charts = campaign_figures(statistics)[0].charts;
+  const std::vector<Chart> charts = campaign_figures(statistics)[1].charts;
   ASSERT_EQ(charts.size(), 2U + 16U);
   EXPECT_TRUE(testing::contains(charts[0].note, "Of 40 variants, 16 have a chart of their own"));
   EXPECT_TRUE(charts[2].title.starts_with("1: ")) << charts[2].title;
@@ -130,14 +132,14 @@ TEST(ReliabilityFigure, says_which_of_many_variants_have_a_chart) {
 TEST(OutcomeFigure, has_room_for_many_variants) {
   CampaignStatistics statistics = example();
   statistics.variants.assign(100, statistics.variants[0]);
-  const Chart chart = campaign_figures(statistics)[1].charts[0];
+  const Chart chart = campaign_figures(statistics)[0].charts[0];
   EXPECT_EQ(chart.series[0].x.size(), 100U);
   EXPECT_LE(std::ranges::count_if(chart.x_names, [](const auto& name) { return !name.empty(); }),
             20);
 }
 
 TEST(CampaignFigures, begin_the_certified_axis_where_the_least_value_is) {
-  const std::vector<Chart> charts = campaign_figures(example())[0].charts;
+  const std::vector<Chart> charts = campaign_figures(example())[1].charts;
   for (const Chart& chart : charts) {
     // The least of the example, 1e-9, or the decade below it by rounding of its mean.
     EXPECT_LE(chart.least_x, 1.0001e-9) << chart.title;
@@ -182,7 +184,109 @@ TEST(CampaignPage, links_what_there_is_of_the_worst_episodes_and_says_how_to_mak
             testing::occurrences(page, "<table"));
 }
 
-TEST(CampaignPage, says_first_whether_a_certificate_is_refuted) {
+/// 40 drives: 9 reached the target, 2 left the bounds, 1 faulted, 28 collided.
+VariantStatistics crashing_variant() {
+  VariantTally tally;
+  for (int n = 0; n < 40; ++n) {
+    EpisodeRow row;
+    row.outcome = n < 9 ? "reached" : n < 11 ? "left_bounds" : n < 12 ? "fault" : "collision";
+    row.unsafe = n >= 9 && n != 11;
+    tally.add(row);
+    tally.add(0, {.certified = 1.0, .published = 1.0, .unsafe = row.unsafe});
+  }
+  VariantStatistics statistics = tally.result();
+  statistics.name = "blind";
+  return statistics;
+}
+
+CampaignStatistics crashing_campaign() {
+  CampaignStatistics statistics;
+  statistics.variants = {variant("sound", 2000), crashing_variant()};
+  statistics.calibration = statistics.variants[1].calibration;
+  statistics.published = statistics.variants[1].published;
+  return statistics;
+}
+
+TEST(CampaignPage, says_first_how_many_drives_were_unsafe_and_certificates_after_that) {
+  const CampaignStatistics statistics = crashing_campaign();
+  const std::string page = campaign_page(statistics);
+  EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
+  const std::size_t verdict = page.find(
+      "<div class=\"outcome bad\"><span class=\"badge\">✕ 2.88 % of 1040 drives were unsafe; 97 % "
+      "reached the target safely</span>");
+  ASSERT_NE(verdict, std::string::npos);
+  EXPECT_TRUE(testing::contains(page,
+                                "<p>1009 reached the target, 28 collided, 2 left the bounds, 0 ran "
+                                "out of time, 1 faulted.</p>"));
+  EXPECT_TRUE(testing::contains(page, "Most often in variant 2: 75 % of its drives (blind).</p>"));
+  // Its certificates hold, which is no good news of the drives.
+  const std::size_t tick = page.find("✓ No certificate is refuted");
+  ASSERT_NE(tick, std::string::npos);
+  EXPECT_EQ(page.find("✓"), tick);
+  EXPECT_LT(verdict, page.find("What became of the drives"));
+  EXPECT_LT(page.find("What became of the drives"), page.find("Certificates of the next step"));
+  EXPECT_LT(page.find("Certificates of the next step"), tick);
+  EXPECT_TRUE(testing::contains(page, "This is about the certificates alone"));
+}
+
+TEST(CampaignPage, has_a_bar_of_all_drives_and_the_rates_of_each_variant) {
+  const std::string page = campaign_page(crashing_campaign());
+  EXPECT_EQ(testing::occurrences(page, "<svg class=\"bar\""), 2);
+  EXPECT_TRUE(testing::contains(
+      page,
+      "<rect class=\"fill-collision\" x=\"22.500\" y=\"0\" width=\"70.000\" height=\"10\">"
+      "<title>collision 70 %</title>"));
+  EXPECT_TRUE(testing::contains(
+      page, "aria-label=\"reached 22.5 %, collision 70 %, left bounds 5 %, fault 2.5 %\""));
+  const RateInterval limits = clopper_pearson(28, 40, 0.005);
+  EXPECT_TRUE(testing::contains(
+      page, "<strong class=\"alarm\">70 %</strong><br/><span class=\"soft\">[" +
+                format_percent(limits.lower) + ", " + format_percent(limits.upper) + "]</span>"));
+  EXPECT_FALSE(testing::contains(page, "Left safe set"));
+}
+
+TEST(CampaignPage, shows_the_former_word_where_a_store_has_it) {
+  CampaignStatistics statistics = crashing_campaign();
+  VariantTally tally;
+  tally.add({.outcome = "left_safe_set", .unsafe = true});
+  statistics.variants[0] = tally.result();
+  const std::string page = campaign_page(statistics);
+  EXPECT_TRUE(testing::contains(page, "Left safe set: the same of drives of an earlier version"));
+  EXPECT_TRUE(testing::contains(page, "<rect class=\"fill-left_safe_set\" x=\"0.000\""));
+}
+
+TEST(OutcomeVerdict, is_good_only_where_every_drive_arrived_safely) {
+  const auto mood_of = [](const std::string& outcome, bool unsafe) {
+    VariantTally tally;
+    for (int n = 0; n < 5; ++n) tally.add({.outcome = "reached"});
+    tally.add({.outcome = outcome, .unsafe = unsafe});
+    CampaignStatistics statistics;
+    statistics.variants = {tally.result()};
+    return outcome_verdict(statistics).mood;
+  };
+  EXPECT_EQ(mood_of("reached", false), PageMood::kGood);
+  EXPECT_EQ(mood_of("timeout", false), PageMood::kOpen);
+  EXPECT_EQ(mood_of("fault", false), PageMood::kOpen);
+  EXPECT_EQ(mood_of("fault", true), PageMood::kBad);
+  EXPECT_EQ(mood_of("collision", true), PageMood::kBad);
+  EXPECT_EQ(mood_of("left_bounds", true), PageMood::kBad);
+  CampaignStatistics none;
+  none.variants = {VariantTally().result()};
+  EXPECT_EQ(outcome_verdict(none).mood, PageMood::kOpen);
+}
+
+TEST(OutcomeFigure, has_a_series_of_every_way_to_fail) {
+  const Chart failed = campaign_figures(crashing_campaign())[0].charts[1];
+  ASSERT_EQ(failed.series.size(), 4U);
+  const Series* collision = series_of(failed, "collision");
+  ASSERT_NE(collision, nullptr);
+  EXPECT_DOUBLE_EQ(collision->y[1], 0.7);
+  EXPECT_DOUBLE_EQ(series_of(failed, "left bounds")->y[1], 0.05);
+  EXPECT_NE(series_of(failed, "timeout"), nullptr);
+  EXPECT_NE(series_of(failed, "fault"), nullptr);
+}
+
+TEST(CampaignPage, says_whether_a_certificate_is_refuted) {
   EXPECT_TRUE(testing::contains(campaign_page(example()), "Certificates are exceeded"));
   CampaignStatistics sound = example();
   sound.variants = {variant("seldom", 2000)};
@@ -191,7 +295,7 @@ TEST(CampaignPage, says_first_whether_a_certificate_is_refuted) {
   const std::string page = campaign_page(sound);
   EXPECT_TRUE(testing::contains(page, "No certificate is refuted"));
   EXPECT_TRUE(testing::contains(
-      page, "<p>1 of 2000 periods ended unsafe; their certificates add up to 1."));
+      page, "<p>1 of 2000 periods ended unsafe; their certificates add up to 1 (p = "));
   EXPECT_FALSE(testing::contains(page, "Differences"));
 }
 

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "harness/mismatch/comparison_file.hpp"
+#include "harness/mismatch/comparison_table.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_verdict.hpp"
 #include "tests/unit/mismatch/mismatch_fixture.hpp"
@@ -64,13 +65,31 @@ TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
   car.exceeded_stages = {1, 2, 3};
   car.closed_loop.p_value = 1e-4;
   const PageVerdict verdict = comparison_verdict(comparison);
-  EXPECT_FALSE(verdict.is_good);
+  EXPECT_EQ(verdict.mood, PageMood::kBad);
   EXPECT_EQ(verdict.title, "Certificates are exceeded on 1 of 2 plants");
   EXPECT_EQ(verdict.sentences[0],
             "On mujoco_car at stages 1 to 3 of the plan and in closed loop (p = 1 × 10⁻⁴).");
   const std::string page = comparison_page(comparison);
   EXPECT_LT(page.find("class=\"outcome bad\""), page.find("<h2>"));
   EXPECT_TRUE(testing::contains(page, "<strong>1 to 3</strong>"));
+}
+
+TEST(ComparisonPage, says_before_all_else_that_drives_were_unsafe) {
+  Comparison comparison = example();
+  EXPECT_FALSE(unsafe_verdict(comparison).has_value());
+  ClosedLoop& loop = comparison.plants[1].closed_loop;
+  loop.outcomes = {{"collision", 1}, {"reached", 1}};
+  loop.unsafe = 1;
+  const std::string page = comparison_page(comparison);
+  const std::size_t unsafe = page.find("✕ 1 of 4 drives were unsafe");
+  ASSERT_NE(unsafe, std::string::npos);
+  EXPECT_LT(unsafe, page.find("✓ No certificate is exceeded on any plant"));
+  EXPECT_TRUE(testing::contains(page, "On mujoco_car: 1 of 2 (1 collided, 0 left the bounds)."));
+  EXPECT_TRUE(
+      testing::contains(page, "<td>1</td><td><strong class=\"alarm\">1</strong></td><td>0</td>"));
+  EXPECT_TRUE(testing::contains(
+      comparison_table(comparison),
+      "        2           1           1             0           0           0\n"));
 }
 
 TEST(ComparisonVerdict, names_the_farthest_plant) {

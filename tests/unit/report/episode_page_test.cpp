@@ -150,10 +150,36 @@ TEST(EpisodePage, shows_the_numbers_of_the_summary) {
 TEST(EpisodePage, entering_the_unsafe_set_is_never_shown_as_success) {
   Trace trace = testing::example_trace();
   trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);  // inside of the first obstacle
+  trace.outcome = Outcome::kCollision;
   const std::string page = episode_page(EpisodeView(trace), with_video());
   EXPECT_TRUE(testing::contains(page, "<section class=\"outcome bad\">"));
-  EXPECT_TRUE(testing::contains(page, "Target reached after 0.6 s, but through the unsafe set"));
+  EXPECT_TRUE(testing::contains(page, "✕ Collision after 0.2 s"));
+  EXPECT_TRUE(testing::contains(page, "entered the unsafe set: first at 0.2 s."));
+  EXPECT_FALSE(testing::contains(page, "✓"));
+  EXPECT_FALSE(testing::contains(page, "Target reached"));
   EXPECT_TRUE(testing::contains(page, "Entered the unsafe set</dt><dd class=\"value\">yes</dd>"));
+}
+
+TEST(EpisodePage, says_that_a_drive_went_on_after_its_collision) {
+  Trace trace = testing::example_trace();
+  trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);
+  trace.outcome = Outcome::kCollision;
+  trace.scenario.stop_when_unsafe = false;
+  const std::string page = episode_page(EpisodeView(trace), with_video());
+  EXPECT_TRUE(testing::contains(page, "The drive went on after that"));
+  EXPECT_TRUE(testing::contains(page, "and ended after 0.6 s.")) << "not at the target";
+  trace.final_state = trace.scenario.target.state;
+  EXPECT_TRUE(testing::contains(episode_page(EpisodeView(trace), with_video()),
+                                "and ended after 0.6 s at the target."));
+}
+
+TEST(EpisodePage, leaving_the_bounds_is_a_failure) {
+  Trace trace = testing::example_trace();
+  trace.final_state[0] = -1.5;
+  trace.outcome = Outcome::kLeftBounds;
+  const std::string page = episode_page(EpisodeView(trace), with_video());
+  EXPECT_TRUE(testing::contains(page, "<section class=\"outcome bad\">"));
+  EXPECT_TRUE(testing::contains(page, "✕ Left the bounds after 0.6 s"));
 }
 
 TEST(EpisodePage, says_what_a_certificate_does_not_cover) {

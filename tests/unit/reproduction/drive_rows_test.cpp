@@ -18,9 +18,8 @@ using ::testing::DoubleEq;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-EpisodeDigest drive(double duration, const std::string& outcome, bool unsafe,
-                    std::vector<double> certified) {
-  EpisodeDigest digest{.outcome = outcome, .unsafe = unsafe, .duration = duration};
+EpisodeDigest drive(double duration, bool arrived, bool unsafe, std::vector<double> certified) {
+  EpisodeDigest digest{.arrived = arrived, .unsafe = unsafe, .duration = duration};
   digest.optimisation_s = 2.0 * duration;
   digest.inputs = Eigen::MatrixXd::Zero(1, static_cast<Eigen::Index>(certified.size()));
   digest.published = certified;
@@ -31,9 +30,8 @@ EpisodeDigest drive(double duration, const std::string& outcome, bool unsafe,
 
 Sample example() {
   Sample sample;
-  sample.episodes = {
-      drive(1.0, "reached", false, {0.1, 0.3}), drive(3.0, "reached", true, {0.5, 0.2}),
-      drive(9.0, "timeout", false, {0.2, 0.2}), drive(2.0, "reached", false, {0.4, 0.0})};
+  sample.episodes = {drive(1.0, true, false, {0.1, 0.3}), drive(3.0, true, true, {0.5, 0.2}),
+                     drive(9.0, false, false, {0.2, 0.2}), drive(2.0, true, false, {0.4, 0.0})};
   return sample;
 }
 
@@ -95,7 +93,7 @@ TEST(FallsWithinNoise, leaves_out_seeds_without_a_number) {
 
 TEST(DriveRows, medians_leave_out_drives_that_end_before_their_first_period) {
   Sample sample = example();
-  sample.episodes.push_back(drive(0.0, "left_safe_set", true, {}));
+  sample.episodes.push_back(drive(0.0, false, true, {}));
   ExperimentResult result;
   add_drive_rows({.name = "a", .variant = {}}, sample, result);
   EXPECT_DOUBLE_EQ(row_called(result, "certified").here, 0.35);

@@ -59,6 +59,19 @@ TEST(FormatFixed, zero_has_no_sign) {
   EXPECT_EQ(format_fixed(-2.5, 1), "−2.5");
 }
 
+TEST(FormatPercent, says_none_and_all_only_where_it_is_so) {
+  EXPECT_EQ(format_percent(0.0), "0");
+  EXPECT_EQ(format_percent(1.0), "100");
+  EXPECT_EQ(format_percent(1e-9), "<0.01");
+  EXPECT_EQ(format_percent(1.0 - 1e-9), ">99.9");
+  EXPECT_EQ(format_percent(0.9989), "99.9");
+  EXPECT_EQ(format_percent(0.5), "50");
+  EXPECT_EQ(format_percent(0.12345), "12.3");
+  EXPECT_EQ(format_percent(0.0012345), "0.12");
+  EXPECT_EQ(format_percent(0.09999), "10");
+  EXPECT_EQ(format_percent(std::nan("")), "-");
+}
+
 TEST(PlainInTable, holds_for_zero_and_ordinary_sizes) {
   for (const double value : {0.0, -0.0, 0.01, -0.01, 1.0, -9999.9}) {
     EXPECT_TRUE(is_plain_in_table(value)) << value;

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/trace/ending.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "tests/support/described_trace.hpp"
 
@@ -85,6 +86,44 @@ TEST(Summary, clearance_and_collision_are_those_of_all_true_states) {
   trace.final_state[1] = 2.5;  // beyond the bound at 2
   EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().min_clearance, -0.5);
   EXPECT_TRUE(EpisodeView(trace).summary().collision);
+}
+
+TEST(Summary, time_to_target_is_that_of_every_drive_that_ended_at_it) {
+  Trace trace = straight_trace(4);
+  trace.outcome = Outcome::kReached;
+  EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().time_to_target.value(), 0.4);
+  // Through an obstacle, and on to the target.
+  trace.outcome = Outcome::kCollision;
+  trace.scenario.stop_when_unsafe = false;
+  EXPECT_FALSE(EpisodeView(trace).summary().time_to_target.has_value());
+  trace.final_state = trace.scenario.target.state;
+  EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().time_to_target.value(), 0.4);
+  EXPECT_EQ(EpisodeView(trace).summary().outcome, "collision");
+  trace.outcome = Outcome::kFault;
+  EXPECT_FALSE(EpisodeView(trace).summary().time_to_target.has_value());
+  // Stopped at an obstacle next to the target.
+  trace.outcome = Outcome::kLeftBounds;
+  trace.scenario.stop_when_unsafe = true;
+  EXPECT_FALSE(EpisodeView(trace).summary().time_to_target.has_value());
+}
+
+TEST(Outcomes, are_told_in_the_order_of_their_names_and_unknown_ones_last) {
+  const auto ordered =
+      in_order({{"collision", 2}, {"fault", 0}, {"left_safe_set", 1}, {"reached", 7}});
+  ASSERT_EQ(ordered.size(), 4U);
+  EXPECT_EQ(ordered[0], (std::pair<std::string, std::int64_t>("reached", 7)));
+  EXPECT_EQ(ordered[1].first, "collision");
+  EXPECT_EQ(ordered[2].first, "fault");
+  EXPECT_EQ(ordered[3].first, "left_safe_set");
+}
+
+TEST(EpisodeView, first_unsafe_time_is_that_of_the_first_unsafe_state) {
+  Trace trace = straight_trace(3);
+  EXPECT_FALSE(EpisodeView(trace).first_unsafe_time().has_value());
+  trace.final_state[1] = 2.5;
+  EXPECT_DOUBLE_EQ(EpisodeView(trace).first_unsafe_time().value(), 0.3);
+  trace.steps[1].state[1] = -1.0;  // on the bound
+  EXPECT_DOUBLE_EQ(EpisodeView(trace).first_unsafe_time().value(), 0.1);
 }
 
 TEST(Summary, quantiles_are_nearest_ranks) {

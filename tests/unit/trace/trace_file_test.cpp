@@ -93,15 +93,17 @@ void copy_dataset(const Hdf5File& from, Hdf5File& to, const DatasetSpec& spec) {
   }
 }
 
-/// Writes `old_file`: the trace in `file` without some datasets, or the group /system.
+/// Writes `old_file`: the trace in `file` without some datasets, or the group /system, and with
+/// another word for its outcome where one is given.
 void copy_without(const std::string& file, const std::vector<std::string>& missing,
-                  const std::string& old_file) {
+                  const std::string& old_file, const std::string& outcome = {}) {
   const Hdf5File written = Hdf5File::open(file);
   Hdf5File old = Hdf5File::create(old_file);
   old.set_integer("/", "schema", 1);
   for (const char* name : {"version", "scenario", "outcome", "fault"}) {
     old.set_text("/", name, written.text("/", name));
   }
+  if (!outcome.empty()) old.set_text("/", "outcome", outcome);
   old.set_unsigned("/", "seed", written.unsigned_integer("/", "seed"));
   const Scenario scenario = parse_scenario(written.text("/", "scenario"));
   const models::SystemDescription system = read_system(written);
@@ -147,6 +149,35 @@ TEST_F(TraceFile, a_trace_from_before_measurement_noise_is_of_a_planner_that_saw
     expected.observation = expected.state;
     testing::expect_same_step(read.steps[k], expected);
   }
+}
+
+/// What the reader makes of `trace` if it had been recorded with the outcome `recorded`.
+Outcome outcome_read(const Trace& trace, const std::string& recorded, const std::string& file) {
+  write_trace(file, trace);
+  copy_without(file, {}, file + "-old.h5", recorded);
+  return read_trace(file + "-old.h5").outcome;
+}
+
+TEST_F(TraceFile, the_former_word_for_unsafe_becomes_what_the_states_say) {
+  Trace trace = testing::example_trace();
+  EXPECT_THROW((void)outcome_read(trace, "left_safe_set", path()), InputError);
+  trace.final_state = Eigen::Vector3d(3.0, 4.0, 0.0);  // in an obstacle
+  EXPECT_EQ(outcome_read(trace, "left_safe_set", path()), Outcome::kCollision);
+  trace.final_state = Eigen::Vector3d(3.0, -1.5, 0.0);
+  EXPECT_EQ(outcome_read(trace, "left_safe_set", path()), Outcome::kLeftBounds);
+  EXPECT_THROW((void)outcome_read(trace, "left_the_safe_set", path()), InputError);
+}
+
+TEST_F(TraceFile, a_former_drive_that_went_on_after_it_was_unsafe_is_no_success_either) {
+  Trace trace = testing::example_trace();
+  EXPECT_EQ(outcome_read(trace, "timeout", path()), Outcome::kTimeout);
+  EXPECT_EQ(outcome_read(trace, "reached", path()), Outcome::kReached);
+  trace.steps[3].state = Eigen::Vector3d(12.5, 4.0, 0.0);  // out of the bounds
+  trace.steps[4].state = Eigen::Vector3d(3.0, 4.0, 0.0);   // in an obstacle, but later
+  EXPECT_EQ(outcome_read(trace, "reached", path()), Outcome::kLeftBounds);
+  EXPECT_EQ(outcome_read(trace, "timeout", path()), Outcome::kLeftBounds);
+  EXPECT_EQ(outcome_read(trace, "fault", path()), Outcome::kFault);
+  EXPECT_EQ(outcome_read(trace, "interrupted", path()), Outcome::kInterrupted);
 }
 
 TEST_F(TraceFile, a_trace_from_before_the_description_gets_it_and_the_residuals_from_its_scenario) {
@@ -278,10 +309,11 @@ TEST_F(TraceFile, threads_may_write_traces_at_the_same_time) {
 }
 
 TEST(OutcomeName, every_outcome_has_a_name_that_leads_back_to_it) {
-  for (const Outcome outcome : {Outcome::kReached, Outcome::kTimeout, Outcome::kLeftSafeSet,
-                                Outcome::kFault, Outcome::kInterrupted}) {
+  for (const Outcome outcome : {Outcome::kReached, Outcome::kCollision, Outcome::kLeftBounds,
+                                Outcome::kTimeout, Outcome::kFault, Outcome::kInterrupted}) {
     EXPECT_EQ(outcome_from_name(outcome_name(outcome)), outcome);
   }
+  EXPECT_EQ(outcome_list(), "reached, collision, left_bounds, timeout, fault, interrupted");
   EXPECT_THROW(static_cast<void>(outcome_from_name("won")), std::invalid_argument);
 }
 

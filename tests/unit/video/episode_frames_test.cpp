@@ -96,6 +96,21 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));
 }
 
+TEST(episode_frames, a_collision_is_told_when_it_was_and_as_an_alarm) {
+  Trace trace = straight_trace();
+  EXPECT_FALSE(EpisodeFrames(EpisodeView(trace)).at(0.6).alarm);
+  trace.scenario.safe_set.bounds.upper[0] = 2.5 * kStride;  // left between 0.2 s and 0.3 s
+  for (const auto& [outcome, words] :
+       {std::pair(Outcome::kCollision, "collision after 0.3 s"),
+        std::pair(Outcome::kLeftBounds, "left the bounds after 0.3 s")}) {
+    trace.outcome = outcome;
+    const EpisodeView view(trace);
+    const render::Frame frame = EpisodeFrames(view).at(0.6);
+    EXPECT_EQ(frame.banner, words);
+    EXPECT_TRUE(frame.alarm);
+  }
+}
+
 TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
   Trace trace = straight_trace();
   controller::Box obstacle = controller::unbounded_safe_set(3).bounds;
