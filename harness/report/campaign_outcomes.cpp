@@ -99,6 +99,7 @@ bool is_unsafe(const ListedOutcome& outcome) {
 
 std::string outcome_legend(const std::vector<ListedOutcome>& outcomes) {
   std::vector<LegendEntry> entries;
+  entries.reserve(outcomes.size());
   for (const ListedOutcome& outcome : outcomes) {
     entries.push_back(area_entry(fill_of(outcome), outcome.title));
   }

@@ -199,7 +199,7 @@ std::string safety_sentence(const EpisodeView& view) {
   if (summary.steps == 0) return "No control step was made.";
   if (!has_true_state(view)) return {};
   if (const std::optional<double> unsafe = view.first_unsafe_time()) {
-    const std::string entered =
+    std::string entered =
         fmt::format("The true state entered the unsafe set: first at {}.", seconds(*unsafe));
     if (view.scenario().stop_when_unsafe) return entered;
     return fmt::format(

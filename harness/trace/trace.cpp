@@ -33,6 +33,7 @@ const char* outcome_name(Outcome outcome) {
 const std::vector<std::string>& outcome_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;
+    all.reserve(kOutcomeNames.size());
     for (const auto& [value, name] : kOutcomeNames) all.emplace_back(name);
     return all;
   }();
