@@ -60,9 +60,10 @@ struct Decision {
   std::optional<CostParts> cost{};              ///< of the policy, as far as the controller sees it
   /// How the optimisation ended; empty where nothing is optimised.
   std::optional<SolverStatus> status{};
-  int evaluations = 0;         ///< of cost and gradient
-  bool fallback = false;       ///< nothing usable came out; the previous plan goes on
-  bool risk_exceeded = false;  ///< a limit of the risk is, as far as the controller certifies
+  int evaluations = 0;             ///< of cost and gradient
+  bool fallback = false;           ///< nothing usable came out; the previous plan goes on
+  const PlanRisk* risk = nullptr;  ///< of a policy that was planned within limits; else null
+  bool risk_exceeded = false;      ///< a limit of the risk is, as far as the controller certifies
   PlanTiming timing{};
 };
 

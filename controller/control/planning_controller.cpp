@@ -19,6 +19,7 @@ const Decision& PlanningController::decide(const Situation& situation) {
   decision_.status = plan.status;
   decision_.evaluations = plan.evaluations;
   decision_.fallback = plan.fallback;
+  decision_.risk = plan.risk.stages.empty() ? nullptr : &plan.risk;
   decision_.risk_exceeded = !plan.risk.kept;
   decision_.timing = plan.timing;
   return decision_;

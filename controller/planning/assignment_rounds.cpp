@@ -31,7 +31,9 @@ constexpr int kRiskRounds = 3;
 // Minimisations in one round until multipliers have settled, and how far, in logarithms of the
 // risk, from a limit that is asked to be kept by as much more.
 constexpr int kMultiplierRounds = 6;
-constexpr double kRiskTolerance = 0.01;
+constexpr double kRiskTolerance = 0.02;
+// They need be no more precise than this, relatively, as the multipliers change what is minimised.
+constexpr double kMultiplierTolerance = 1e-6;
 // Rounds that minimise the risk itself, and what the cost counts for beside it: that many units of
 // the logarithm for all of it.
 constexpr int kLeastRiskRounds = 2;
@@ -184,6 +186,7 @@ SolverOptions AssignmentRounds::solver_options(const PlanInProgress& plan) const
   SolverOptions options{.max_evaluations = settings_.max_evaluations - plan.evaluations,
                         .constraint_tolerance = kConstraintTolerance};
   if (plan.warm) options.relative_tolerance = kWarmTolerance;
+  if (aim_ == Aim::kAugmented) options.relative_tolerance = kMultiplierTolerance;
   options.relative_tolerance = std::max(options.relative_tolerance, tolerance_);
   if (plan.deadline != PlanInProgress::Clock::time_point::max()) {
     // Time for the prediction that belongs to the result.
