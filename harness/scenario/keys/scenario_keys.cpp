@@ -12,8 +12,8 @@ const std::vector<ScenarioKey>& scenario_keys() {
     std::vector<ScenarioKey> all = experiment_keys();
     for (ScenarioKey (*make)() :
          {model_key, plant_key, vehicle_key, time_step_key, initial_state_key, disturbance_key,
-          model_error_key, safe_set_key, target_key, risk_key, estimator_key, controller_key, limit_key,
-          video_key}) {
+          model_error_key, safe_set_key, target_key, risk_key, estimator_key, controller_key,
+          limit_key, video_key}) {
       all.push_back(make());
     }
     return all;
