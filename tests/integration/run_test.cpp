@@ -144,7 +144,9 @@ TEST(Run, a_drive_that_is_unsafe_fails_unless_told_otherwise) {
                                           "--set",
                                           "target.state=[3, 0, 0]",
                                           "--set",
-                                          "plant.kind=analytic"};
+                                          "plant.kind=analytic",
+                                          "--set",
+                                          "vehicle.footprint=point"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_qsmpc(small_run(folder.path(), arguments)).exit_code;
   };
@@ -284,13 +286,20 @@ TEST(Run, a_killed_episode_can_be_rendered_and_reported_as_far_as_it_came) {
 TEST(Run, a_fault_of_the_plant_is_an_outcome_with_mujocos_words) {
   const TemporaryFolder folder;
   const std::string xml = folder.file("bad.xml", "<mujoco><worldbody><oops/></worldbody></mujoco>");
-  const ProcessResult result = run_qsmpc(
-      small_run(folder.path() + "/out", {"--set", "plant.mjcf=" + xml}), {.folder = folder.path()});
+  const ProcessResult result =
+      run_qsmpc(small_run(folder.path() + "/out",
+                          {"--set", "plant.mjcf=" + xml, "--set", "vehicle.footprint=point"}),
+                {.folder = folder.path()});
   EXPECT_EQ(result.exit_code, 1) << result.errors;
   EXPECT_THAT(result.errors, HasSubstr("oops"));
   const auto summary = nlohmann::json::parse(read_text(folder.path() + "/out/summary.json"));
   EXPECT_EQ(summary["outcome"], "fault");
   EXPECT_FALSE(exists(folder.path() + "/MUJOCO_LOG.TXT"));
+  // Where the footprint is to come from the file, it is a wrong file.
+  const ProcessResult refused =
+      run_qsmpc(small_run(folder.path() + "/none", {"--set", "plant.mjcf=" + xml}));
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.errors, HasSubstr("oops"));
 }
 
 TEST(Commands, list_and_validate_and_help) {

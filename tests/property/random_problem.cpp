@@ -208,6 +208,7 @@ Problem random_problem(Generator& generator) {
                                      .cwiseMax(0.01);
   settings.safe_set = random_safe_set(generator, family, path, spread);
   settings.safe_set.body = random_body(generator, family, spread);
+  if (chance(generator, 0.3)) settings.risk.plan = log_uniform(generator, -3.0, -0.3);
   return problem;
 }
 

@@ -22,7 +22,8 @@ struct Problem {
 
 /// Any of the systems with correlated belief and noise (sometimes singular), 1 to 8 stages, 10 to
 /// 200 points, any propagator, open loop, LQR or a random gain, bounds a short way off the path,
-/// 0 to 5 obstacles beside it, and a point or up to four discs for a body.
+/// 0 to 5 obstacles beside it, a point or up to four discs for a body, and sometimes a limit of the
+/// plan's risk.
 [[nodiscard]] Problem random_problem(Generator& generator);
 
 }  // namespace qsmpc::testing

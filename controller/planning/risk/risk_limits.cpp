@@ -1,13 +1,12 @@
 #include "controller/planning/risk/risk_limits.hpp"
 
-#include <cmath>
-
 #include "controller/named_entry.hpp"
 
 namespace qsmpc::controller {
 
 bool RiskLimits::any() const {
-  return std::isfinite(first) || std::isfinite(stage) || std::isfinite(plan);
+  // Every probability is within 1.
+  return first < 1.0 || stage < 1.0 || plan < 1.0;
 }
 
 const std::vector<RiskOtherwiseEntry>& risk_otherwise_entries() {

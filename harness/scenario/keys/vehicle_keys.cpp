@@ -37,7 +37,6 @@ void read_from_mjcf(ScenarioReading& reading, Section& section, const std::strin
         plant.mjcf, plant.mapping,
         {.description = reading.system(), .parameters = reading.scenario.model.parameters});
   } catch (const InputError& error) {
-    if (plant.kind == "mujoco") return reading.problems.add(error.where());
     section.note(key, "point, discs, or a MuJoCo XML file whose vehicle can be measured",
                  error.what());
   }
@@ -45,8 +44,8 @@ void read_from_mjcf(ScenarioReading& reading, Section& section, const std::strin
 
 void read_discs(ScenarioReading& reading, Section& section, const KeyDescription& about) {
   const models::SystemDescription& system = reading.system();
-  if (!has_position(system)) section.note(about.name, kNoPosition);
   const std::size_t count = section.list_size(about.name);
+  if (!has_position(system)) return section.note(about.name, kNoPosition);
   if (count < 1 || count > kMostFootprintDiscs) {
     section.note(about.name, fmt::format("1 to {} discs", kMostFootprintDiscs));
   }

@@ -205,7 +205,7 @@ TEST(BrokenCampaign, a_plant_that_cannot_be_made_is_refused_before_anything_runs
   EXPECT_THAT(named.found, HasSubstr("broken.xml: "));
 
   const InputError::Where set =
-      folder.problem(two_lines + "variants:\n  a: {plant.kind: mujoco, plant.mjcf: broken.xml}\n");
+      folder.problem(two_lines + "variants:\n  a: {plant.mjcf: broken.xml, plant.kind: mujoco}\n");
   EXPECT_EQ(set.line, 4);
   EXPECT_EQ(set.key, "variants.a.plant.mjcf");
 

@@ -75,7 +75,7 @@ TEST(CampaignFile, expands_scenarios_slowest_then_variants_then_the_grid_then_pl
 TEST(CampaignFile, names_say_only_what_differs) {
   const CampaignFolder folder;
   const std::string seeds = "seeds: [0]\n";
-  EXPECT_THAT(names_of(folder.load("scenario: a.yaml\nplants: [analytic, mujoco]\n" + seeds)),
+  EXPECT_THAT(names_of(folder.load("scenario: dubins_trap\nplants: [analytic, mujoco]\n" + seeds)),
               ElementsAre("analytic", "mujoco"));
   EXPECT_THAT(names_of(folder.load("scenarios: [a.yaml, b.yaml]\n" + seeds)),
               ElementsAre("test", "other"));

@@ -186,6 +186,24 @@ TEST(EpisodePage, entering_the_unsafe_set_is_never_shown_as_success) {
   EXPECT_TRUE(testing::contains(page, "Entered the unsafe set</dt><dd class=\"value\">yes</dd>"));
 }
 
+TEST(EpisodePage, tells_contacts_and_what_was_between_the_instants_where_they_are_known) {
+  Trace trace = testing::example_trace();
+  const std::string plain = episode_page(EpisodeView(trace), with_video());
+  EXPECT_FALSE(testing::contains(plain, "Unsafe between control instants"));
+  EXPECT_FALSE(testing::contains(plain, "Contacts</dt>"));
+  for (StepRecord& step : trace.steps) {
+    step.clearance_between = 0.5;
+    step.contact.force = 0.0;
+  }
+  trace.steps[1].clearance_between = -0.1;
+  trace.steps[1].contact = {.force = 12.0, .time = 0.15};
+  const std::string page = episode_page(EpisodeView(trace), with_video());
+  EXPECT_TRUE(
+      testing::contains(page, "Unsafe between control instants</dt><dd class=\"value\">yes</dd>"));
+  EXPECT_TRUE(testing::contains(page, "Contacts</dt><dd class=\"value\">1</dd>"));
+  EXPECT_TRUE(testing::contains(page, "the first at 0.15 s, at most 12"));
+}
+
 TEST(EpisodePage, says_that_a_drive_went_on_after_its_collision) {
   Trace trace = testing::example_trace();
   trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);

@@ -224,6 +224,76 @@ TEST(Shapes, probabilities_with_an_error_are_not_below_the_simulated) {
   });
 }
 
+// The tails are smooth stand-ins: at least the probability, with the derivatives that they say.
+TEST(Shapes, tails_hold_the_probability_and_have_their_derivatives) {
+  constexpr int kSamples = 4000;
+  int inside = 0;
+  for_every_shape([&](const UnsafeRegion& region, Generator& generator) {
+    for (const bool diagonal : {true, false}) {
+      Gaussian law{.mean = random_matrix(generator, 3, 1, 1.3),
+                   .covariance = random_covariance(generator, diagonal)};
+      if (region.signed_distance(kStage, law.mean) <= 0.0) ++inside;
+      TailSum sum;
+      const auto value_of = [&](const Gaussian& at) {
+        TailSum one;
+        one.clear(3);
+        region.add_tail(kStage, at, one);
+        return one.value();
+      };
+      sum.clear(3);
+      region.add_tail(kStage, law, sum);
+      constexpr double kStep = 1e-6;
+      for (int a = 0; a < 3; ++a) {
+        Gaussian moved = law;
+        moved.mean[a] += kStep;
+        const double high = value_of(moved);
+        moved.mean[a] -= 2.0 * kStep;
+        const double slope = (high - value_of(moved)) / (2.0 * kStep);
+        EXPECT_NEAR(sum.by_mean()[a], slope, 1e-4 * (1.0 + std::abs(slope)));
+        for (int b = 0; b < 3; ++b) {
+          const double step = 1e-3 * std::sqrt(law.covariance(a, a) * law.covariance(b, b)) * 1e-2;
+          moved = law;
+          moved.covariance(a, b) += 0.5 * step;
+          moved.covariance(b, a) += 0.5 * step;
+          const double wide = value_of(moved);
+          moved.covariance(a, b) -= step;
+          moved.covariance(b, a) -= step;
+          const double by_covariance = (wide - value_of(moved)) / (2.0 * step);
+          EXPECT_NEAR(sum.by_covariance()(a, b), by_covariance,
+                      2e-3 * (1.0 + std::abs(by_covariance)));
+        }
+      }
+      const Eigen::MatrixXd root = law.covariance.llt().matrixL();
+      int unsafe = 0;
+      for (int k = 0; k < kSamples; ++k) {
+        const Eigen::Vector3d state = law.mean + root * standard_normal(generator);
+        if (region.signed_distance(kStage, state) <= 0.0) ++unsafe;
+      }
+      const double simulated = static_cast<double>(unsafe) / kSamples;
+      EXPECT_GE(sum.value(), simulated - 5.0 * std::sqrt(0.25 / kSamples));
+    }
+  });
+  EXPECT_GT(inside, 5);
+}
+
+TEST(Shapes, tails_grow_with_the_depth_where_probabilities_are_one) {
+  const Box block{.lower = Eigen::Vector3d(-1.0, -1.0, -kInfinity),
+                  .upper = Eigen::Vector3d(1.0, 1.0, kInfinity)};
+  const RegionPointer box = make_region("box", block);
+  double last = 0.0;
+  for (const double x : {1.5, 1.0, 0.8, 0.4, 0.2}) {
+    TailSum sum;
+    sum.clear(3);
+    box->add_tail(
+        kStage,
+        {.mean = Eigen::Vector3d(x, 0.0, 0.0), .covariance = 1e-4 * Eigen::Matrix3d::Identity()},
+        sum);
+    EXPECT_GT(sum.value(), last);
+    last = sum.value();
+  }
+  EXPECT_GT(last, 1e20);
+}
+
 TEST(Shapes, answer_what_is_not_a_number_or_unknown) {
   EXPECT_THROW((void)make_region("star", {}), std::invalid_argument);
   for_every_shape([](const UnsafeRegion& region, Generator& /*generator*/) {

@@ -1,0 +1,174 @@
+// The smooth model of a plan's risk: what it says at the plan that it was made from, and its
+// derivatives by inputs and gains.
+#include "controller/planning/risk/risk_model.hpp"
+
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "controller/planning/risk/risk_constraint.hpp"
+#include "tests/unit/controller/measure/random_measures.hpp"
+#include "tests/unit/controller/planning/planner_fixture.hpp"
+
+namespace qsmpc::controller {
+namespace risk_model_test {
+
+using namespace testing;
+
+constexpr Eigen::Index kHorizon = 5;
+
+/// A system among walls and a block, with a body, under a policy with gains.
+struct Case {
+  std::unique_ptr<const models::Dynamics> dynamics;
+  Eigen::MatrixXd noise;
+  SafeSet safe_set;
+  Gaussian belief;
+  Policy policy;
+  Prediction none{};
+
+  [[nodiscard]] PredictedMotion motion() const {
+    return {.dynamics = *dynamics,
+            .noise_covariance = noise,
+            .belief = belief,
+            .policy = policy,
+            .prediction = none};
+  }
+};
+
+Case make_case(const std::string& system, Generator& generator) {
+  Case one;
+  one.dynamics = models::make_dynamics(system, {}, 0.1);
+  const int dim = one.dynamics->state_dim();
+  const int inputs = one.dynamics->input_dim();
+  const models::SystemDescription& description = one.dynamics->description();
+  one.noise = 0.002 * Eigen::MatrixXd::Identity(dim, dim);
+  one.belief = {.mean = 0.1 * random_matrix(generator, dim, 1),
+                .covariance = 0.004 * Eigen::MatrixXd::Identity(dim, dim)};
+  if (system == "bicycle") one.belief.mean[3] = 4.0;
+  one.safe_set = unbounded_safe_set(dim);
+  one.safe_set.bounds.lower[0] = -0.5;
+  one.safe_set.bounds.upper[1] = 0.6;
+  Box block = unbounded_safe_set(dim).bounds;
+  block.lower.head(2) << 0.9, -1.0;
+  block.upper.head(2) << 1.4, -0.3;
+  one.safe_set.obstacles = {block};
+  if (description.heading >= 0) {
+    one.safe_set.body = {.discs = {{.radius = 0.1, .offset = {0.2, 0.05}}, {.radius = 0.15}},
+                         .x = 0,
+                         .y = 1,
+                         .heading = 2};
+  }
+  one.policy.inputs =
+      0.2 * random_matrix(generator, inputs, kHorizon).cwiseAbs() +
+      0.5 * (description.input_lower + description.input_upper).replicate(1, kHorizon);
+  one.policy.states = nominal_states(*one.dynamics, one.belief.mean, one.policy.inputs);
+  one.policy.bounds = {.lower = description.input_lower, .upper = description.input_upper};
+  one.policy.gains.assign(kHorizon, 0.3 * random_matrix(generator, inputs, dim));
+  return one;
+}
+
+TEST(RiskModel, has_the_derivatives_that_it_says) {
+  Generator generator(61);
+  for (const char* system : {"dubins", "dubins_rk4", "bicycle", "double_integrator"}) {
+    SCOPED_TRACE(system);
+    const Case one = make_case(system, generator);
+    const UnsafeSet unsafe(one.safe_set);
+    RiskModel model(*one.dynamics, unsafe);
+    const PredictedMotion motion = one.motion();
+    model.hold(motion, affine_surrogates(motion));
+    const int dim = one.dynamics->state_dim();
+    const Eigen::Index inputs = one.policy.inputs.rows();
+    const Eigen::VectorXd weights = random_matrix(generator, kHorizon, 1).cwiseAbs();
+    for (const bool with_gains : {false, true}) {
+      Eigen::VectorXd z = Eigen::VectorXd::Zero(inputs * (kHorizon + (with_gains ? dim : 0)));
+      z.head(inputs * kHorizon) = one.policy.inputs.reshaped();
+      if (with_gains) z.tail(inputs * dim) = 0.05 * random_matrix(generator, inputs * dim, 1);
+      Eigen::VectorXd gradient = Eigen::VectorXd::Zero(z.size());
+      EXPECT_GT(model.risks(z).minCoeff(), 0.0);
+      model.add_gradient(weights, gradient);
+      EXPECT_GT(gradient.norm(), 1e-9);
+      for (Eigen::Index i = 0; i < z.size(); ++i) {
+        constexpr double kStep = 1e-5;
+        Eigen::VectorXd moved = z;
+        moved[i] += kStep;
+        const double high = weights.dot(model.risks(moved));
+        moved[i] -= 2.0 * kStep;
+        const double slope = (high - weights.dot(model.risks(moved))) / (2.0 * kStep);
+        EXPECT_NEAR(gradient[i], slope, 1e-6 * gradient.norm() + 1e-11) << "entry " << i;
+      }
+    }
+  }
+}
+
+TEST(RiskModel, says_what_was_certified_of_the_plan_that_it_holds) {
+  Generator generator(62);
+  const Case one = make_case("dubins", generator);
+  const UnsafeSet unsafe(one.safe_set);
+  RiskModel model(*one.dynamics, unsafe);
+  const PredictedMotion motion = one.motion();
+  const SurrogateBounds bounds =
+      surrogate_bounds(motion, unsafe, CertificateEffort::kLeast, run_in_turn);
+  model.hold(motion, bounds.surrogates);
+  std::vector<double> certified;
+  for (const RegionProbability& stage : bounds.bounds) certified.push_back(stage.smooth);
+  model.calibrate(certified);
+  const Eigen::VectorXd z = one.policy.inputs.reshaped();
+  const Eigen::VectorXd at_plan = model.risks(z);
+  for (Eigen::Index k = 0; k < kHorizon; ++k) {
+    EXPECT_NEAR(at_plan[k], certified[k], 1e-9 + 1e-6 * certified[k]);
+  }
+  // The plan goes on: what was said of a stage is said of the one before.
+  model.shift_factors();
+  const Eigen::VectorXd shifted = model.risks(z);
+  EXPECT_NE(shifted[0], at_plan[0]);
+  model.forget_factors();
+  EXPECT_NE(model.risks(z)[1], shifted[1]);
+}
+
+TEST(RiskConstraint, is_the_logarithm_of_the_risk_over_its_limit) {
+  const auto car = dubins_car();
+  PlannerSettings settings = block_settings();
+  settings.risk = {.first = 0.01, .stage = 0.05, .plan = 0.1};
+  RiskConstraint constraint(*car, settings);
+  ASSERT_EQ(constraint.count(), 2 + settings.horizon);
+  Policy policy{.inputs = Eigen::MatrixXd::Constant(1, settings.horizon, 0.1),
+                .states = {},
+                .gains = {},
+                .bounds = settings.bounds};
+  policy.states = nominal_states(*car, dubins_belief().mean, policy.inputs);
+  policy.gains.assign(settings.horizon, Eigen::MatrixXd::Zero(1, 3));
+  PlanRisk risk;
+  constraint.certify(dubins_belief(), policy, risk);
+  ASSERT_EQ(risk.stages.size(), static_cast<std::size_t>(settings.horizon));
+  EXPECT_FALSE(risk.kept);  // it goes straight at the block
+  EXPECT_GT(risk.severity, 0.0);
+  Eigen::VectorXd z = policy.inputs.reshaped();
+  z.array() += 0.3;
+  const Eigen::VectorXd values = constraint.values(z);
+  EXPECT_NEAR(values[0] + std::log(0.01), values[1] + std::log(0.05), 1e-12);
+  double sum = 0.0;
+  for (int k = 0; k < settings.horizon; ++k) sum += 0.05 * std::exp(values[1 + k]);
+  EXPECT_NEAR(0.1 * std::exp(values[settings.horizon + 1]), sum, 1e-12);
+  constraint.set_margin(0.25);
+  EXPECT_LT((constraint.values(z) - values).cwiseAbs().maxCoeff() - 0.25, 1e-12);
+  const Eigen::VectorXd multipliers = Eigen::VectorXd::LinSpaced(constraint.count(), 0.5, 2.0);
+  Eigen::VectorXd gradient = Eigen::VectorXd::Zero(z.size());
+  constraint.add_gradient(multipliers, gradient);
+  for (Eigen::Index i = 0; i < z.size(); ++i) {
+    constexpr double kStep = 1e-6;
+    Eigen::VectorXd moved = z;
+    moved[i] += kStep;
+    const double high = multipliers.dot(constraint.values(moved));
+    moved[i] -= 2.0 * kStep;
+    const double slope = (high - multipliers.dot(constraint.values(moved))) / (2.0 * kStep);
+    EXPECT_NEAR(gradient[i], slope, 1e-5 * gradient.norm());
+  }
+  // A limit of 1 is none.
+  constraint.set_limits({.first = 1.0, .plan = 0.5}, 0);
+  EXPECT_EQ(constraint.count(), 1);
+}
+
+}  // namespace risk_model_test
+}  // namespace qsmpc::controller
