@@ -89,7 +89,7 @@ TEST(Predict, one_seed_gives_the_same_bytes_and_another_one_others) {
     const std::string out = folder.path() + "/" + name;
     EXPECT_EQ(predict("dubins_corridor", out,
                       {"--monte-carlo", "20000", "--seed", seed, "--quiet", "--set",
-                       "safe_set.bounds={x: [-0.2, 12], y: [-1, 12]}"})
+                       "safe_set.bounds={x: [-0.4, 12], y: [-1, 12]}"})
                   .exit_code,
               0);
     return read_text(out + "/predict.json");

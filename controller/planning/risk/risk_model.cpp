@@ -8,12 +8,15 @@
 namespace qsmpc::controller {
 namespace {
 
-// Between these a factor is believed: beyond, what was certified is not made of tails.
+// A factor is at least this: a box has less than the half-space that holds it, but not nothing.
 constexpr double kLeastFactor = 0.02;
+// A certificate from here on that is this many times its tails says nothing of the plan: no detour
+// would lower it. So many times the tails, and this beside them, stand for it.
+constexpr double kSaysNothing = 0.1;
 constexpr double kMostFactor = 100.0;
-// What is left of a certificate beside its tails counts at most this: it can't be optimised away,
-// and must not hide the slope of what can.
-constexpr double kMostFloor = 1e-3;
+constexpr double kFloorOfNothing = 1e-3;
+// Where it is less than that, a factor may be as large as this.
+constexpr double kAnyFactor = 1e6;
 
 /// B times the slopes of the clamps under the surrogate's law at a stage.
 Eigen::MatrixXd response_to_gains(const PredictedMotion& motion, Eigen::Index stage,
@@ -99,10 +102,18 @@ void RiskModel::calibrate(const std::vector<double>& certified) {
     const double tails = stages_[k].tails;
     const double value = certified[k];
     if (value >= 1.0 && tails >= 0.5) continue;
-    const double explained = std::max(0.0, value - leaving_[k]);
-    factors_[k] = tails > 0.0 ? std::clamp(explained / tails, kLeastFactor, kMostFactor) : 1.0;
-    floors_[k] = std::clamp(value - factors_[k] * tails, 0.0, kMostFloor);
-    if (factors_[k] * tails > value) factors_[k] = value / tails;
+    if (!(tails > 0.0)) {
+      floors_[k] = std::min(value, kSaysNothing);
+      continue;
+    }
+    const double factor = std::max(0.0, value - leaving_[k]) / tails;
+    if (value >= kSaysNothing && factor > kMostFactor) {
+      factors_[k] = kMostFactor;
+      floors_[k] = kFloorOfNothing;
+      continue;
+    }
+    factors_[k] = std::min(std::clamp(factor, kLeastFactor, kAnyFactor), value / tails);
+    floors_[k] = value - factors_[k] * tails;
   }
   decision_.resize(0);
 }

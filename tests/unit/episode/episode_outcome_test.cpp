@@ -18,9 +18,10 @@ Scenario blind_scenario(const std::string& safe_set, const std::string& more = "
   return load_scenario(
       "dubins_obstacles",
       {"controller.horizon=5", "controller.quantisation={state: 20, noise: 20, compressed: 20}",
-       "plant.kind=analytic", "target={state: [3, 0, 0], radius: 0.5}",
-       "controller.penalty={box: 0, obstacle: 0}", "limit.steps=40", "initial_state.mean=[0, 0, 1]",
-       "controller.input_bounds.yaw_rate=[-1.5, 1.5]", "safe_set=" + safe_set, more});
+       "plant.kind=analytic", "target={state: [3, 0, 0], radius: 0.5}", "vehicle.footprint=point",
+       "risk={}", "controller.penalty={box: 0, obstacle: 0}", "limit.steps=40",
+       "initial_state.mean=[0, 0, 1]", "controller.input_bounds.yaw_rate=[-1.5, 1.5]",
+       "safe_set=" + safe_set, more});
 }
 
 constexpr const char* kColumn =
