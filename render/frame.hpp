@@ -83,6 +83,7 @@ struct StripChart {
 struct HudRow {
   std::string name;
   std::string value;
+  bool warning = false;  ///< in the colour of warnings
 };
 
 /// One moment of an episode.
@@ -98,7 +99,8 @@ struct Frame {
   std::vector<PlanarPoint> raw_points;    ///< what was compressed to the particles
   std::vector<BeliefEllipses> ellipses;   ///< stage 0 first; coloured by stage
   std::vector<TubeSection> tube;          ///< stage 0 first; coloured by bound
-  std::optional<PlanarPose> ghost;        ///< where the vehicle was predicted to be now
+  std::vector<std::vector<PlanarPoint>> body;  ///< its outline on the ground, line by line
+  std::optional<PlanarPose> ghost;             ///< where the vehicle was predicted to be now
   std::string title;
   std::vector<HudRow> hud;
   std::vector<StripChart> charts;

@@ -20,6 +20,8 @@ inline constexpr Colour kTarget{0.02F, 0.56F, 0.42F};
 inline constexpr Colour kDrivenPath{0.13F, 0.24F, 0.42F};
 inline constexpr Colour kPlannedPath{0.08F, 0.08F, 0.10F};
 inline constexpr Colour kPlannedCasing{1.0F, 1.0F, 1.0F, 0.85F};
+inline constexpr Colour kBody{1.0F, 0.88F, 0.15F};
+inline constexpr Colour kBodyCasing{0.08F, 0.08F, 0.10F, 0.75F};
 inline constexpr Colour kRawPoint{0.36F, 0.45F, 0.58F};
 inline constexpr Colour kGhost{0.05F, 0.78F, 0.88F, 0.55F};
 inline constexpr float kTubeOpacity = 0.55F;

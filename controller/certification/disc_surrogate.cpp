@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "controller/certification/unicycle_residual.hpp"
 
@@ -53,6 +54,17 @@ DiscSurrogate disc_surrogate(const SurrogateStage& stage, const DiscPlacement& p
   return disc;
 }
 
+Eigen::MatrixXd given_heading(Eigen::MatrixXd covariance, Eigen::Index heading) {
+  const double variance = covariance(heading, heading);
+  if (variance > 0.0) {
+    const Eigen::VectorXd cross = covariance.col(heading);
+    covariance -= cross * cross.transpose() / variance;
+  }
+  covariance.row(heading).setZero();
+  covariance.col(heading).setZero();
+  return covariance;
+}
+
 Eigen::MatrixXd disc_smoothing(const PredictedMotion& motion, Eigen::Index stage,
                                const std::vector<Eigen::Index>& axes,
                                const DiscPlacement& placement) {
@@ -63,14 +75,7 @@ Eigen::MatrixXd disc_smoothing(const PredictedMotion& motion, Eigen::Index stage
   Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, with_heading);
   // The turn's residual depends on the surrogate's heading, of which the part must be independent:
   // what of it is not explained by its own heading is.
-  const double variance = smoothing(heading, heading);
-  if (variance > 0.0) {
-    const Eigen::VectorXd cross = smoothing.col(heading);
-    smoothing -= cross * cross.transpose() / variance;
-  }
-  smoothing.row(heading).setZero();
-  smoothing.col(heading).setZero();
-  return smoothing;
+  return given_heading(std::move(smoothing), heading);
 }
 
 }  // namespace qsmpc::controller

@@ -25,6 +25,10 @@ struct DiscSurrogate {
 [[nodiscard]] DiscSurrogate disc_surrogate(const SurrogateStage& stage,
                                            const DiscPlacement& placement);
 
+/// Covariance (state_dim x state_dim) of the part of a Gaussian with this `covariance` that is
+/// independent of its coordinate `heading`; zero there.
+[[nodiscard]] Eigen::MatrixXd given_heading(Eigen::MatrixXd covariance, Eigen::Index heading);
+
 /// As `smoothing_covariance`, for the Gaussian and the difference above. stage ≥ 1.
 [[nodiscard]] Eigen::MatrixXd disc_smoothing(const PredictedMotion& motion, Eigen::Index stage,
                                              const std::vector<Eigen::Index>& axes,

@@ -38,6 +38,28 @@ std::string contact_words(const Summary& summary) {
                      *summary.first_contact, summary.largest_contact);
 }
 
+/// "0.0153 at most, limit 0.02, exceeded in 3 of 99 periods"
+std::string limited_words(const CertifiedRisk& risk, int periods) {
+  const std::string exceeded =
+      risk.exceeded == 0 ? "never exceeded"
+                         : fmt::format("exceeded in {} of {} periods", risk.exceeded, periods);
+  return fmt::format("{:.3g} at most, limit {:.3g}, {}", risk.certified, risk.limit, exceeded);
+}
+
+/// A row for each limit that is set.
+std::string risk_rows(const Summary& summary) {
+  const RiskUse& risk = summary.risk;
+  std::string rows;
+  if (risk.stage.is_limited()) rows += row("stage risk", limited_words(risk.stage, summary.steps));
+  if (risk.plan.is_limited()) rows += row("plan risk", limited_words(risk.plan, summary.steps));
+  if (risk.mission.is_limited()) {
+    rows += row("mission risk spent",
+                fmt::format("{:.3g} of {:.3g}{}", risk.mission.certified, risk.mission.limit,
+                            risk.mission.exceeded > 0 ? ", exceeded" : ""));
+  }
+  return rows;
+}
+
 }  // namespace
 
 void discard_artefacts(const std::string& folder) {
@@ -159,6 +181,7 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
                   "in it)\n"
                 : "  (both hold for the planner's model from its belief; the plant's mismatch is "
                   "not in them)\n";
+    text += risk_rows(summary);
   }
   text += row("numbers", in_folder(folder, kSummaryFile));
   text += row("page", in_folder(folder, kPageFile));

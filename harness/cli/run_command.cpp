@@ -21,6 +21,7 @@
 #include "harness/episode/episode.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/scenario_warnings.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
@@ -76,6 +77,9 @@ int run(const RunArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
+  for (const std::string& warning : scenario_warnings(scenario)) {
+    std::cerr << "qsmpc: warning: " << warning << '\n';
+  }
   const std::string folder = arguments.out.empty()
                                  ? default_folder(scenario.name, fmt::format("{}", seed))
                                  : arguments.out;

@@ -14,6 +14,7 @@
 #include "harness/cli/output.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/scenario_warnings.hpp"
 #include "harness/text/json_text.hpp"
 
 namespace qsmpc::harness {
@@ -25,11 +26,23 @@ using Errors = std::vector<InputError::Where>;
 struct FileVerdict {
   std::string file;
   Errors errors{};
-  std::optional<Campaign> campaign{};  ///< if it is a valid one
+  std::vector<std::string> warnings{};  ///< about a valid scenario
+  std::optional<Campaign> campaign{};   ///< if it is a valid one
 };
 
+FileVerdict verdict_on_scenario(const std::string& file) {
+  FileVerdict verdict{.file = file, .errors = validate_scenario_file(file)};
+  if (!verdict.errors.empty()) return verdict;
+  try {
+    verdict.warnings = scenario_warnings(load_scenario(file));
+  } catch (const InputError& error) {
+    verdict.errors.push_back(error.where());  // of a file that was changed since
+  }
+  return verdict;
+}
+
 FileVerdict verdict_on(const std::string& file) {
-  if (!is_campaign_file(file)) return {.file = file, .errors = validate_scenario_file(file)};
+  if (!is_campaign_file(file)) return verdict_on_scenario(file);
   try {
     return {.file = file, .campaign = load_campaign(file)};
   } catch (const InputError& error) {
@@ -45,8 +58,11 @@ std::string as_text(const FileVerdict& verdict) {
     text += InputError(error).what() + std::string("\n");
   }
   if (!text.empty()) return text;
+  for (const std::string& warning : verdict.warnings) {
+    text += verdict.file + ": warning: " + warning + "\n";
+  }
   const std::string size = verdict.campaign ? campaign_size_text(*verdict.campaign) + ", " : "";
-  return verdict.file + ": " + size + "ok\n";
+  return text + verdict.file + ": " + size + "ok\n";
 }
 
 nlohmann::ordered_json as_json(const FileVerdict& verdict) {
@@ -67,6 +83,7 @@ nlohmann::ordered_json as_json(const FileVerdict& verdict) {
                               {"found", error.found},
                               {"expected", error.expected}});
   }
+  json["warnings"] = verdict.warnings;
   return json;
 }
 

@@ -158,6 +158,10 @@ std::string path_classes(const MapPath& path) {
          colour_class(path.colour);
 }
 
+std::string body_classes(const MapBody& body) {
+  return "outline thin " + colour_class(body.colour);
+}
+
 bool is_finite(const MapRectangle& box) {
   return is_drawable(box.x_lower) && is_drawable(box.x_upper) && is_drawable(box.y_lower) &&
          is_drawable(box.y_upper);

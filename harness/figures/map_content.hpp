@@ -13,6 +13,7 @@ namespace qsmpc::harness {
 /// "c0" … "c7", whatever number was given.
 [[nodiscard]] std::string colour_class(int colour);
 [[nodiscard]] std::string path_classes(const MapPath& path);
+[[nodiscard]] std::string body_classes(const MapBody& body);
 
 /// Whether all four sides are finite.
 [[nodiscard]] bool is_finite(const MapRectangle& box);

@@ -133,4 +133,23 @@ std::string mark_svg(const MapCanvas& canvas, const MapPoint& at, bool square,
          classes + "\" d=\"" + data + "\"/>\n";
 }
 
+std::string arcs_data(const MapCanvas& canvas, const std::vector<controller::Arc>& arcs) {
+  std::string data;
+  for (const controller::Arc& arc : arcs) {
+    const auto at = [&](double angle) {
+      const Eigen::Vector2d point =
+          arc.centre + arc.radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+      return MapPoint{.x = point.x(), .y = point.y()};
+    };
+    if (!is_drawable(at(arc.from)) || !is_drawable(at(arc.to))) continue;
+    data += "M" + canvas.coordinates(at(arc.from));
+    // In halves: an arc of a full turn would be none.
+    for (const double angle : {0.5 * (arc.from + arc.to), arc.to}) {
+      data += fmt::format("A{0:.1f} {0:.1f} 0 0 0 {1}", canvas.length(arc.radius),
+                          canvas.coordinates(at(angle)));
+    }
+  }
+  return data;
+}
+
 }  // namespace qsmpc::harness

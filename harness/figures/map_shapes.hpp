@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/regions/body_outline.hpp"
 #include "harness/figures/map_canvas.hpp"
 
 namespace qsmpc::harness {
@@ -31,6 +32,10 @@ namespace qsmpc::harness {
 [[nodiscard]] std::string ellipse_svg(const MapCanvas& canvas, const Eigen::Vector2d& mean,
                                       const Eigen::Matrix2d& covariance, double level,
                                       const std::string& classes);
+
+/// Data of a path along these arcs; those that cannot be drawn are left out.
+[[nodiscard]] std::string arcs_data(const MapCanvas& canvas,
+                                    const std::vector<controller::Arc>& arcs);
 
 /// A dot of the plane and its share of the weight of all dots.
 struct MapDot {

@@ -106,6 +106,16 @@ std::string paths_svg(const PlaneMap& map, const MapCanvas& canvas, bool faint) 
   return svg;
 }
 
+std::string bodies_svg(const PlaneMap& map, const MapCanvas& canvas) {
+  std::string svg;
+  for (const MapBody& body : map.bodies) {
+    const std::string data = arcs_data(canvas, body.arcs);
+    if (data.empty()) continue;
+    svg += "<path class=\"" + body_classes(body) + "\" d=\"" + data + "\"/>\n";
+  }
+  return svg;
+}
+
 /// The marks of a path at its first and its last point that can be drawn.
 std::string marks_svg(const PlaneMap& map, const MapCanvas& canvas) {
   const auto drawable = [](const MapPoint& point) { return is_drawable(point); };
@@ -189,10 +199,10 @@ std::string map_drawing(const PlaneMap& map, double x, double y) {
           ? ""
           : fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", x, y,
                         canvas.size().width, canvas.size().height);
-  const std::string content = ground_svg(map, canvas) + contours_svg(map, canvas) +
-                              clouds_svg(map, canvas) + paths_svg(map, canvas, true) +
-                              ellipses_svg(map, canvas) + paths_svg(map, canvas, false) +
-                              marks_svg(map, canvas) + labels_svg(map, canvas);
+  const std::string content =
+      ground_svg(map, canvas) + contours_svg(map, canvas) + clouds_svg(map, canvas) +
+      bodies_svg(map, canvas) + paths_svg(map, canvas, true) + ellipses_svg(map, canvas) +
+      paths_svg(map, canvas, false) + marks_svg(map, canvas) + labels_svg(map, canvas);
   return canvas.svg(content, {.title = map.title, .x_label = map.x_label, .y_label = map.y_label},
                     place);
 }

@@ -14,6 +14,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/regions/body_outline.hpp"
 #include "harness/figures/legend.hpp"
 #include "harness/figures/map_canvas.hpp"
 
@@ -74,6 +75,13 @@ struct MapCircle {
   double radius = 0.0;
 };
 
+/// The outline of a body, thin, below the paths.
+struct MapBody {
+  std::string name{};
+  int colour = 0;
+  std::vector<controller::Arc> arcs{};
+};
+
 /// A short text beside a point, such as "0.5 s".
 struct MapLabel {
   std::string text{};
@@ -92,6 +100,7 @@ struct PlaneMap {
   std::vector<MapCircle> targets{};
   std::vector<MapContours> contours{};
   std::vector<MapCloud> clouds{};
+  std::vector<MapBody> bodies{};
   std::vector<MapPath> paths{};  ///< faint ones are drawn below the others
   std::vector<MapEllipse> ellipses{};
   std::vector<MapLabel> labels{};

@@ -94,6 +94,12 @@ std::vector<LegendEntry> map_legend(const PlaneMap& map) {
   for (const MapPath& path : map.paths) {
     add_entry(entries, line_entry(path_classes(path), path.name));
   }
+  for (const MapBody& body : map.bodies) {
+    if (body.arcs.empty()) continue;
+    add_entry(entries, {.drawing = "<ellipse class=\"" + body_classes(body) +
+                                   "\" cx=\"14\" cy=\"6\" rx=\"9\" ry=\"4.5\"/>",
+                        .name = body.name});
+  }
   for (const MapCloud& cloud : map.clouds) {
     add_entry(entries, dot_entry("points " + colour_class(cloud.colour), cloud.name));
   }

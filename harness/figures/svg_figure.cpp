@@ -48,6 +48,7 @@ constexpr std::string_view kStyle =
     ".broken{stroke-width:1.3;stroke-dasharray:4 3;stroke-linecap:butt}"
     ".arrow{stroke-width:2.2;stroke-linejoin:miter}"
     ".outline{stroke-width:1.6;stroke-linejoin:round;stroke-linecap:round}"
+    ".thin{stroke-width:.9}"
     ".spot{stroke-width:4}.dots{stroke-linecap:round;stroke-opacity:.6}"
     ".mark{stroke-width:9;stroke-linecap:round}.square{stroke-linecap:square}"
     ".mark.edge{stroke:#ffffff;stroke-width:12}"

@@ -11,6 +11,7 @@
 #include "controller/regions/safe_set.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
+#include "harness/text/number_format.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -98,6 +99,15 @@ Chart certificate_chart(const EpisodeView& view) {
   chart.series.push_back(
       series_of(trace, "published method, worst stage: not a bound", kPurple, thesis));
   chart.series.back().dashed = true;
+  // On a logarithmic axis a limit of 0 has no place.
+  const Scenario::Risk& risk = trace.scenario.risk;
+  const auto add_limit = [&chart](const char* name, double limit) {
+    if (!(limit > 0.0) || !std::isfinite(limit)) return;
+    chart.rules.push_back({name, limit});
+    chart.note += fmt::format(" Dotted: the {}, {}.", name, format_short(limit));
+  };
+  add_limit("limit of a stage", risk.stage);
+  add_limit("limit of a plan", risk.plan);
   Series observed = unsafe_periods(view);
   chart.note = fmt::format("Observed: {} of {} periods ended unsafe. {}", observed.x.size(),
                            view.periods(), chart.note);

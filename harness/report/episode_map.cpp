@@ -29,6 +29,7 @@ class EpisodeMap {
     // The axes are about the drive: a prediction that runs away does not make it small.
     maps.drive.area = map_area(maps.drive);
     maps.ground.area = maps.drive.area;
+    add_bodies(maps.drive);
     add_snapshots(maps.drive);
     return maps;
   }
@@ -46,6 +47,22 @@ class EpisodeMap {
                  .arrow_period = snapshot_period()};
     for (const auto& state : states_.colwise()) path.points.push_back(point_of(state));
     return path;
+  }
+
+  /// At each snapshot, and where the drive ended.
+  void add_bodies(PlaneMap& map) const {
+    const controller::Body& body = trace_.scenario.safe_set.body;
+    if (body.is_point()) return;
+    const auto add = [&](const Eigen::Ref<const Eigen::VectorXd>& state) {
+      const MapPoint at = point_of(state);
+      if (!is_drawable(at)) return;
+      const double heading = body.heading < 0 ? 0.0 : state[body.heading];
+      map.bodies.push_back({.name = "body of the vehicle",
+                            .colour = kInk,
+                            .arcs = controller::body_outline(body, {at.x, at.y}, heading)});
+    };
+    for (const StepRecord* step : snapshot_steps()) add(step->state);
+    if (states_.cols() > 0) add(states_.col(states_.cols() - 1));
   }
 
   [[nodiscard]] PlaneMap ground() const {

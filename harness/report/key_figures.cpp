@@ -120,6 +120,35 @@ Tile bound_tile(const Summary& summary, const std::string& name, double bound,
   return tile;
 }
 
+/// What is certified, against a limit that the scenario sets.
+Tile limit_tile(const Summary& summary, const std::string& name, const CertifiedRisk& risk,
+                const std::string& hint) {
+  Tile tile{.name = name,
+            .value = kNone,
+            .hint = fmt::format("{}; limit {}", hint, format_short(risk.limit))};
+  if (summary.steps == 0) return tile;
+  tile.value = format_bound(risk.certified);
+  tile.hint += risk.exceeded == 0
+                   ? ", never exceeded"
+                   : fmt::format(", exceeded in {} of {} periods", risk.exceeded, summary.steps);
+  tile.verdict = risk.exceeded == 0 ? Verdict::kGood : Verdict::kBad;
+  return tile;
+}
+
+void add_limit_tiles(const Summary& summary, std::vector<Tile>& tiles) {
+  const RiskUse& risk = summary.risk;
+  if (risk.stage.is_limited()) {
+    tiles.push_back(limit_tile(summary, "Stage risk", risk.stage, "largest of a plan's stages"));
+  }
+  if (risk.plan.is_limited()) {
+    tiles.push_back(limit_tile(summary, "Plan risk", risk.plan, "largest sum over a plan"));
+  }
+  if (risk.mission.is_limited()) {
+    tiles.push_back(
+        limit_tile(summary, "Mission risk spent", risk.mission, "next steps along the drive"));
+  }
+}
+
 Tile thesis_tile(const Summary& summary) {
   return {.name = "Published method, largest",
           .value = summary.steps == 0 ? kNone : format_number(summary.thesis_max),
@@ -239,6 +268,7 @@ std::string tiles_html(const EpisodeView& view) {
     tiles.push_back(bound_tile(summary, "Largest plan certificate", summary.horizon_max,
                                "sum over a plan's stages"));
   }
+  add_limit_tiles(summary, tiles);
   if (summary.unsafe_between) tiles.push_back(between_tile(summary));
   if (summary.contacts) tiles.push_back(contact_tile(summary));
   tiles.push_back(thesis_tile(summary));

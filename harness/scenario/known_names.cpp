@@ -116,8 +116,8 @@ const std::vector<std::string>& camera_names() {
 }
 
 const std::vector<std::string>& overlay_names() {
-  static const std::vector<std::string> names{"particles", "ellipses", "tube",
-                                              "ghost",     "raw",      "path"};
+  static const std::vector<std::string> names{"particles", "ellipses", "tube", "ghost",
+                                              "raw",       "body",     "path"};
   return names;
 }
 

@@ -115,7 +115,7 @@ struct Scenario {
     int height = 720;              ///< pixels
     int fps = 30;                  ///< frames a second
     /// Names from `overlay_names`, each once.
-    std::vector<std::string> overlays{"particles", "ellipses", "tube", "ghost", "path"};
+    std::vector<std::string> overlays{"particles", "ellipses", "tube", "ghost", "body", "path"};
   };
 
   std::string name;

@@ -1,5 +1,6 @@
 #include "harness/scenario/value_checks.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -19,6 +20,51 @@ std::optional<int> parse_side(std::string_view text, int most) {
   const std::optional<int> side = parse_integer<int>(text);
   const bool is_allowed = side && *side >= kLeastFrameSide && *side <= most && *side % 2 == 0;
   return is_allowed ? side : std::nullopt;
+}
+
+/// "x" in the bounds of a coordinate, e.g. "-1 < x < 12".
+std::string bounds_text(const controller::Box& bounds, Eigen::Index axis, const std::string& name) {
+  return fmt::format("{} < {} < {}", bounds.lower[axis], name, bounds.upper[axis]);
+}
+
+/// Which bound the disc's centre is not clear of.
+std::optional<std::string> why_beyond(const Eigen::VectorXd& centre,
+                                      const controller::DiscView& disc,
+                                      const controller::Box& bounds,
+                                      const std::vector<models::Coordinate>& states) {
+  for (Eigen::Index i = 0; i < centre.size(); ++i) {
+    const double lower = disc.bounds.lower[i];
+    const double upper = disc.bounds.upper[i];
+    if (centre[i] > lower && centre[i] < upper) continue;
+    const std::string& name = states[static_cast<std::size_t>(i)].name;
+    if (lower >= upper) {
+      return fmt::format("a body that has no room within the bounds of {}: {}", name,
+                         bounds_text(bounds, i, name));
+    }
+    return fmt::format("a body that reaches {:.3g} beyond the bounds {}",
+                       std::max(lower - centre[i], centre[i] - upper),
+                       bounds_text(bounds, i, name));
+  }
+  return std::nullopt;
+}
+
+/// Which bound or obstacle the body is not clear of; its position is.
+std::optional<std::string> why_body_unsafe(const Eigen::VectorXd& state,
+                                           const controller::SafeSet& safe_set,
+                                           const std::vector<models::Coordinate>& states) {
+  const controller::UnsafeSet unsafe(safe_set);
+  for (const controller::DiscView& disc : unsafe.discs()) {
+    if (auto why = why_beyond(disc.placement.of(state), disc, safe_set.bounds, states)) return why;
+  }
+  controller::SafeSet one = controller::unbounded_safe_set(state.size());
+  one.body = safe_set.body;
+  for (std::size_t k = 0; k < safe_set.obstacles.size(); ++k) {
+    one.obstacles = {safe_set.obstacles[k]};
+    const double clearance = controller::clearance(state, one);
+    if (clearance > 0.0) continue;
+    return fmt::format("a body that reaches {:.3g} into safe_set.obstacles.{}", -clearance, k);
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -47,9 +93,9 @@ std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
   const controller::Box& bounds = safe_set.bounds;
   for (Eigen::Index i = 0; i < point.size(); ++i) {
     if (point[i] > bounds.lower[i] && point[i] < bounds.upper[i]) continue;
-    return fmt::format("{0} = {1}, outside of the bounds {2} < {0} < {3}",
-                       states[static_cast<std::size_t>(i)].name, point[i], bounds.lower[i],
-                       bounds.upper[i]);
+    const std::string& name = states[static_cast<std::size_t>(i)].name;
+    return fmt::format("{} = {}, outside of the bounds {}", name, point[i],
+                       bounds_text(bounds, i, name));
   }
   for (std::size_t k = 0; k < safe_set.obstacles.size(); ++k) {
     const controller::Box& obstacle = safe_set.obstacles[k];
@@ -58,9 +104,7 @@ std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
     if (inside) return fmt::format("a state inside safe_set.obstacles.{}", k);
   }
   if (safe_set.body.is_point()) return std::nullopt;
-  const double clearance = controller::clearance(point, controller::UnsafeSet(safe_set));
-  if (clearance > 0.0) return std::nullopt;
-  return fmt::format("a vehicle that reaches {} m into the unsafe set", -clearance);
+  return why_body_unsafe(point, safe_set, states);
 }
 
 std::optional<FrameSize> parse_frame_size(std::string_view text) {

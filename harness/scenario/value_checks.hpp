@@ -19,8 +19,9 @@ namespace qsmpc::harness {
 /// that differ by more than 1e-9 of the largest entry, or an eigenvalue below minus 1e-9 of it.
 [[nodiscard]] std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix);
 
-/// Which bound or obstacle makes `point` unsafe, naming states as `states` does, e.g.
-/// "x = 13, outside of the bounds -1 < x < 12".
+/// Which bound or obstacle makes the state `point` unsafe, its body included, naming states as
+/// `states` does, e.g. "x = 13, outside of the bounds -1 < x < 12" or
+/// "a body that reaches 0.1 into safe_set.obstacles.0".
 [[nodiscard]] std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
                                                     const controller::SafeSet& safe_set,
                                                     const std::vector<models::Coordinate>& states);

@@ -111,6 +111,7 @@ void add_certificates(const EpisodeView& view, Summary& summary) {
   }
   if (view.parts().stages == 0) summary.horizon_max = kNotANumber;
   if (summary.steps > 0) summary.next_step_mean = summary.next_step_sum / summary.steps;
+  summary.risk = risk_use(trace);
 }
 
 void add_mismatch(const EpisodeView& view, Summary& summary) {
@@ -138,6 +139,22 @@ nlohmann::ordered_json timing_json(const Summary& summary) {
             {"propagate", summary.breakdown.propagate},
             {"optimise", summary.breakdown.optimise},
             {"certify", summary.breakdown.certify}}}};
+}
+
+/// `exceeded` in the words of the kind of limit: a number of periods, or whether.
+nlohmann::ordered_json risk_json(const CertifiedRisk& risk, nlohmann::ordered_json exceeded) {
+  nlohmann::ordered_json json{{"limit", nullptr}, {"certified_max", risk.certified}};
+  if (risk.is_limited()) json["limit"] = risk.limit;
+  json["exceeded"] = risk.is_limited() ? std::move(exceeded) : nullptr;
+  return json;
+}
+
+void add_risk(const RiskUse& risk, nlohmann::ordered_json& json) {
+  json["risk"] = {{"stage", risk_json(risk.stage, risk.stage.exceeded)},
+                  {"plan", risk_json(risk.plan, risk.plan.exceeded)},
+                  {"mission", risk_json(risk.mission, risk.mission.exceeded > 0)}};
+  json["mission"] = {{"spent", risk.mission.certified},
+                     {"limit", json["risk"]["mission"]["limit"]}};
 }
 
 }  // namespace
@@ -195,6 +212,7 @@ std::string summary_json(const EpisodeView& view, const SummaryOptions& options)
                            {"sum", summary.next_step_sum}}},
                          {"horizon", {{"max", summary.horizon_max}}},
                          {"thesis", {{"max", summary.thesis_max}}}};
+  add_risk(summary.risk, json);
   json["mismatch"] = {{"one_step",
                        {{"rmse", vector_json(summary.mismatch_rmse)},
                         {"mean", vector_json(summary.mismatch_mean)},

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "harness/statistics/quantiles.hpp"
+#include "harness/trace/risk_use.hpp"
 #include "harness/trace/trace.hpp"
 
 namespace qsmpc::harness {
@@ -43,6 +44,7 @@ struct Summary {
   double next_step_sum = 0.0;  ///< along the drive
   double horizon_max = 0.0;    ///< of the plans' sums over their stages; not a number without plans
   double thesis_max = 0.0;     ///< of the published value; not a bound
+  RiskUse risk;                ///< the same certificates, against the scenario's limits
   /// One-step residual x_{k+1} − w_k − f(x_k, u_k) of the plant against the model, by state.
   Eigen::VectorXd mismatch_rmse;
   Eigen::VectorXd mismatch_mean;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "controller/control/controller.hpp"
+#include "controller/regions/body_outline.hpp"
 #include "harness/video/belief_shape.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/thinning.hpp"
@@ -162,9 +163,10 @@ render::Frame EpisodeFrames::at(double time) const {
     }
   }
   const std::size_t step = step_at(now);
-  frame.hud = hud_rows(steps_[step], now, speed(now));
+  frame.hud = hud_rows(view_.trace(), step, now, speed(now));
   add_plan(steps_[step], frame);
   add_belief(steps_[step], frame);
+  if (overlays_.body) frame.body = body_at(frame.pose);
   if (overlays_.ghost) frame.ghost = ghost(step, now);
   frame.charts = strip_charts(view_, ranges_, step);
   if (time >= duration() - kTimeTolerance) add_banner(view_, duration(), frame);
@@ -241,6 +243,23 @@ std::optional<render::PlanarPose> EpisodeFrames::ghost(std::size_t step, double 
       std::clamp((time - steps_[step].time) / view_.scenario().time_step, 0.0, 1.0);
   return between(planar_pose(system, states.col(stage)), planar_pose(system, states.col(stage + 1)),
                  share);
+}
+
+std::vector<std::vector<render::PlanarPoint>> EpisodeFrames::body_at(
+    const render::PlanarPose& pose) const {
+  constexpr double kLongestChord = 0.15;  // rad
+  std::vector<std::vector<render::PlanarPoint>> lines;
+  for (const controller::Arc& arc :
+       controller::body_outline(view_.scenario().safe_set.body, {pose.x, pose.y}, pose.heading)) {
+    const int chords = static_cast<int>(std::ceil((arc.to - arc.from) / kLongestChord));
+    std::vector<render::PlanarPoint>& line = lines.emplace_back();
+    for (int k = 0; k <= chords; ++k) {
+      const double angle = arc.from + k * (arc.to - arc.from) / chords;
+      line.push_back({arc.centre.x() + arc.radius * std::cos(angle),
+                      arc.centre.y() + arc.radius * std::sin(angle)});
+    }
+  }
+  return lines;
 }
 
 double EpisodeFrames::speed(double time) const {

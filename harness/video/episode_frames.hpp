@@ -54,6 +54,9 @@ class EpisodeFrames {
   void add_plan(const StepRecord& step, render::Frame& frame) const;
   void add_belief(const StepRecord& step, render::Frame& frame) const;
   void add_raw_points(const StepRecord& step, render::Frame& frame) const;
+  /// The body's outline where the vehicle stands at `pose`.
+  [[nodiscard]] std::vector<std::vector<render::PlanarPoint>> body_at(
+      const render::PlanarPose& pose) const;
   [[nodiscard]] std::optional<render::PlanarPose> ghost(std::size_t step, double time) const;
   [[nodiscard]] double speed(double time) const;
   [[nodiscard]] render::ParticleStage planar(const controller::DiscreteMeasure& measure) const;

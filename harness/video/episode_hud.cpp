@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "harness/trace/risk_use.hpp"
+
 namespace qsmpc::harness {
 namespace {
 
@@ -53,11 +55,16 @@ class History {
   std::size_t end_ = 0;
 };
 
-render::StripChart certificate_chart(const History& history, const ChartRanges& ranges) {
+render::StripChart certificate_chart(const History& history, const ChartRanges& ranges,
+                                     double limit) {
   render::StripChart chart = history.chart("next P(unsafe) ≤", next_certificate);
   chart.value = fmt::format("{:.1e}", chart.values.back());
   chart.lower = ranges.least_certificate;
   chart.logarithmic = true;
+  // A limit of 0 has no place on a logarithmic axis.
+  if (limit > 0.0 && std::isfinite(limit)) {
+    chart.limit = {.value = limit, .label = fmt::format("limit {:.2g}", limit)};
+  }
   return chart;
 }
 
@@ -99,6 +106,23 @@ render::StripChart solve_time_chart(const History& history, const Scenario& scen
   return chart;
 }
 
+/// Always there where there are limits: rows that come and go would move the charts.
+void add_risk_rows(const Trace& trace, std::size_t step, std::vector<render::HudRow>& rows) {
+  const Scenario::Risk& limits = trace.scenario.risk;
+  if (!limits.any()) return;
+  const bool exceeded = exceeds_limits(trace.steps[step], limits);
+  rows.push_back(
+      {.name = "risk limit", .value = exceeded ? "exceeded" : "kept", .warning = exceeded});
+  if (!std::isfinite(limits.mission)) return;
+  double spent = 0.0;
+  for (std::size_t k = 0; k <= step; ++k) {
+    if (!trace.steps[k].certificates.empty()) spent += next_certificate(trace.steps[k]);
+  }
+  rows.push_back({.name = "risk spent",
+                  .value = fmt::format("{:.2g} of {:.2g}", spent, limits.mission),
+                  .warning = spent > limits.mission});
+}
+
 }  // namespace
 
 ChartRanges chart_ranges(const EpisodeView& view) {
@@ -118,6 +142,9 @@ ChartRanges chart_ranges(const EpisodeView& view) {
     least = std::min(least, step.cost.total());
     largest = std::max(largest, step.cost.total());
   }
+  const double limit = trace.scenario.risk.stage;
+  if (limit > 0.0)
+    ranges.least_certificate = std::min(ranges.least_certificate, decade_below(limit));
   ranges.least_certificate = std::max(ranges.least_certificate, kLowestFloor);
   ranges.least_cost = least > 0.0 ? decade_below(least) : 0.0;
   ranges.largest_cost = largest > 0.0 ? decade_above(largest * kRoom) : 1.0;
@@ -140,7 +167,7 @@ std::vector<render::StripChart> strip_charts(const EpisodeView& view, const Char
   const History history(trace, ranges, step);
   std::vector<render::StripChart> charts;
   if (!trace.steps[step].certificates.empty()) {
-    charts.push_back(certificate_chart(history, ranges));
+    charts.push_back(certificate_chart(history, ranges, scenario.risk.stage));
   }
   if (!system.inputs.empty()) {
     charts.push_back(input_chart(history, scenario.controller, system, 0));
@@ -153,13 +180,16 @@ std::vector<render::StripChart> strip_charts(const EpisodeView& view, const Char
   return charts;
 }
 
-std::vector<render::HudRow> hud_rows(const StepRecord& step, double time, double speed) {
+std::vector<render::HudRow> hud_rows(const Trace& trace, std::size_t index, double time,
+                                     double speed) {
+  const StepRecord& step = trace.steps[index];
   std::vector<render::HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
                                    {"speed", fmt::format("{:.2f} m/s", speed)}};
   if (!step.certificates.empty() && step.plan_states.cols() > 1) {
     rows.push_back(
         {"P(unsafe) whole plan", bound_text(controller::horizon_bound(step.certificates))});
   }
+  add_risk_rows(trace, index, rows);
   if (step.fallback) rows.push_back({"applied", "the plan before, shifted"});
   return rows;
 }

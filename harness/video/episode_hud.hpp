@@ -31,9 +31,10 @@ struct ChartRanges {
                                                            const ChartRanges& ranges,
                                                            std::size_t step);
 
-/// Time (s), speed (m/s), the bound for the whole plan of `step`, and whether the plan before was
-/// applied instead.
-[[nodiscard]] std::vector<render::HudRow> hud_rows(const StepRecord& step, double time,
-                                                   double speed);
+/// Time (s), speed (m/s), the bound for the whole plan of step `step`, whether the limits of the
+/// risk are exceeded and how much of the mission's is spent, where there are any, and whether the
+/// plan before was applied instead.
+[[nodiscard]] std::vector<render::HudRow> hud_rows(const Trace& trace, std::size_t step,
+                                                   double time, double speed);
 
 }  // namespace qsmpc::harness

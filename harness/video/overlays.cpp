@@ -15,11 +15,12 @@ bool* switch_of(Overlays& overlays, std::string_view name) {
   if (name == "tube") return &overlays.tube;
   if (name == "ghost") return &overlays.ghost;
   if (name == "raw") return &overlays.raw;
+  if (name == "body") return &overlays.body;
   if (name == "path") return &overlays.path;
   return nullptr;
 }
 
-constexpr Overlays kNone{false, false, false, false, false, false};
+constexpr Overlays kNone{false, false, false, false, false, false, false};
 
 }  // namespace
 

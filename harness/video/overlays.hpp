@@ -13,6 +13,7 @@ struct Overlays {
   bool tube = true;       ///< along the plan, coloured by the stages' certificates
   bool ghost = true;      ///< the vehicle where the plan before predicted it to be now
   bool raw = false;       ///< the points that were compressed to the particles
+  bool body = true;       ///< the outline of the vehicle's discs on the ground
   bool path = true;       ///< the driven path's clearance as its colour
 };
 

@@ -115,8 +115,10 @@ void Hud::draw_row(const HudRow& row, const PixelRectangle& area, Canvas& canvas
   const std::string value = fitting(style_.text, row.value, 0.62 * area.width);
   const double value_left = area.x + area.width - style_.text.width(value);
   const std::string name = fitting(style_.text, row.name, value_left - area.x - style_.gap());
-  canvas.draw_text(style_.text, name, {area.x, baseline}, hud_colour::kFaintText);
-  canvas.draw_text(style_.text, value, {value_left, baseline}, hud_colour::kText);
+  canvas.draw_text(style_.text, name, {area.x, baseline},
+                   row.warning ? hud_colour::kWarning : hud_colour::kFaintText);
+  canvas.draw_text(style_.text, value, {value_left, baseline},
+                   row.warning ? hud_colour::kWarning : hud_colour::kText);
 }
 
 void Hud::draw_band(const Frame& frame, const PixelRectangle& area, Image& image) const {

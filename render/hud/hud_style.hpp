@@ -39,6 +39,7 @@ inline constexpr Colour kChartGround{0.0F, 0.0F, 0.0F, 0.32F};
 inline constexpr Colour kChartLine{1.0F, 1.0F, 1.0F, 0.14F};
 inline constexpr Colour kLimit{1.0F, 1.0F, 1.0F, 0.85F};
 inline constexpr Colour kAlarm{0.72F, 0.10F, 0.07F, 0.92F};  // white text on it is legible
+inline constexpr Colour kWarning{1.0F, 0.58F, 0.38F};
 inline constexpr Colour kText{0.96F, 0.97F, 0.98F};
 inline constexpr Colour kFaintText{0.66F, 0.71F, 0.78F};
 // Okabe and Ito's colours, which any colour vision tells apart.

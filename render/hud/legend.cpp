@@ -56,6 +56,9 @@ std::vector<Legend::Entry> Legend::entries_of(const Frame& frame) {
   if (!frame.planned_path.empty()) {
     entries.push_back({"planned mean", Mark::kLine, {kWhite}});
   }
+  if (!frame.body.empty()) {
+    entries.push_back({"body", Mark::kLine, {palette::kBody}});
+  }
   if (frame.ghost) {
     entries.push_back({"predicted", Mark::kPatch, {palette::kGhost.with_alpha(1.0F)}});
   }

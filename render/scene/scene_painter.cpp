@@ -30,6 +30,8 @@ constexpr double kGridReach = 40.0;       // cells beyond the region
 constexpr double kFogBegin = 2.2;         // of the camera's distance
 constexpr double kFogEnd = 9.0;           // of the camera's distance
 constexpr double kPathWidth = 4.0;        // pixels
+constexpr double kBodyWidth = 1.8;        // pixels
+constexpr double kBodyCasing = 4.0;       // pixels
 
 PlanarRectangle grown(const PlanarRectangle& area, double margin) {
   return {area.x_lower - margin, area.x_upper + margin, area.y_lower - margin,
@@ -250,6 +252,12 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   paint_shadows(vehicle_shadows);
   paint_driven_path(frame, scale);
   paint_belief(frame, view);
+  for (const std::vector<PlanarPoint>& line : frame.body) {
+    draw_path(line, kMarkHeight, kBodyCasing * scale, palette::kBodyCasing);
+  }
+  for (const std::vector<PlanarPoint>& line : frame.body) {
+    draw_path(line, kMarkHeight, kBodyWidth * scale, palette::kBody);
+  }
   paint_stripes(scale);
   paint_edges(scale);
   paint_target_post();

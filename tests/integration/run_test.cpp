@@ -326,6 +326,29 @@ TEST(Commands, list_and_validate_and_help) {
   EXPECT_EQ(json["errors"][0]["line"], 5);
 }
 
+TEST(Commands, warn_of_limits_that_the_start_exceeds) {
+  const TemporaryFolder folder;
+  const std::string file = folder.file(
+      "risky.yaml", std::string(kValid) +
+                        "plant: {kind: analytic, mjcf: \"\"}\nsafe_set: {bounds: {x: [-0.1, 20]}}\n"
+                        "risk: {plan: 0}\n");
+  const ProcessResult text = run_qsmpc({"validate", file});
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.output, HasSubstr("warning: risk.plan is 0"));
+  EXPECT_THAT(text.output, HasSubstr(": ok\n"));
+  const auto json = nlohmann::json::parse(run_qsmpc({"validate", file, "--json"}).output);
+  EXPECT_EQ(json["ok"], true);
+  EXPECT_EQ(json["warnings"].size(), 1U);
+  // A standard deviation from the wall.
+  const ProcessResult run =
+      run_qsmpc({"run", file, "--set", "limit.steps=1", "--set", "risk.plan=0.1", "--set",
+                 "initial_state.covariance=[0.01, 0.01, 0.01]", "--no-video", "--quiet",
+                 "--fail-on", "none", "--out", folder / "out"});
+  EXPECT_EQ(run.exit_code, 0) << run.errors;
+  EXPECT_THAT(run.errors, HasSubstr("qsmpc: warning: the start is unsafe with a certified "
+                                    "probability up to 0.159, above the limit of 0.1\n"));
+}
+
 TEST(Commands, a_folder_without_a_trace_is_a_bad_input) {
   const TemporaryFolder folder;
   for (const char* command : {"render", "report"}) {

@@ -147,6 +147,32 @@ TEST(EpisodePage, shows_the_numbers_of_the_summary) {
   EXPECT_TRUE(testing::contains(page, "<td>rad</td>"));
 }
 
+TEST(EpisodePage, holds_certificates_against_limits_that_are_set) {
+  Trace trace = testing::example_trace({.steps = 40});
+  EXPECT_FALSE(testing::contains(episode_page(EpisodeView(trace), with_video()), "Plan risk"));
+  trace.scenario.risk = {.stage = 1.0, .plan = 0.0};
+  const std::string page = episode_page(EpisodeView(trace), with_video());
+  EXPECT_TRUE(testing::contains(page, "<dt>Stage risk</dt>"));
+  EXPECT_TRUE(testing::contains(page, "limit 1, never exceeded"));
+  EXPECT_TRUE(testing::contains(page, "limit 0, exceeded in 40 of 40 periods"));
+  EXPECT_FALSE(testing::contains(page, "Mission risk"));
+  EXPECT_TRUE(testing::contains(page, "limit of a stage"));
+  EXPECT_FALSE(testing::contains(page, "limit of a plan"));  // 0 has no place in the chart
+}
+
+TEST(EpisodePage, draws_the_body_along_the_way) {
+  Trace trace = testing::example_trace({.steps = 40});
+  EXPECT_FALSE(
+      testing::contains(episode_page(EpisodeView(trace), with_video()), "body of the vehicle"));
+  controller::Body& body = trace.scenario.safe_set.body;
+  body.discs = {{.radius = 0.2, .offset = {0.1, 0.0}}};
+  ASSERT_EQ(body.heading, 2);
+  const std::string page = markup_of(episode_page(EpisodeView(trace), with_video()));
+  EXPECT_TRUE(testing::contains(page, "body of the vehicle"));
+  // At every tenth step of 40 and at the end, and once in the legend.
+  EXPECT_EQ(testing::occurrences(page, "class=\"outline thin c6\""), 6);
+}
+
 TEST(EpisodePage, entering_the_unsafe_set_is_never_shown_as_success) {
   Trace trace = testing::example_trace();
   trace.steps[2].state = Eigen::Vector3d(3.0, 4.0, 0.0);  // inside of the first obstacle

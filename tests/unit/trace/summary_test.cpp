@@ -156,6 +156,43 @@ TEST(Summary, certificates_are_summed_over_a_plan_and_along_the_drive) {
   EXPECT_DOUBLE_EQ(summary.thesis_max, 0.25);
 }
 
+TEST(Summary, risk_is_held_against_its_limits) {
+  Trace trace = straight_trace(3);  // certificates 0.01, 0.02, 0.03 of the next step, then 0.5
+  trace.scenario.risk = {.stage = 0.5, .plan = 0.515, .mission = 0.05};
+  const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
+  EXPECT_EQ(json["risk"]["stage"], nlohmann::json::parse(R"({"limit": 0.5, "certified_max": 0.5,
+                                                             "exceeded": 0})"));
+  EXPECT_EQ(json["risk"]["plan"]["limit"], 0.515);
+  EXPECT_DOUBLE_EQ(json["risk"]["plan"]["certified_max"], 0.53);
+  EXPECT_EQ(json["risk"]["plan"]["exceeded"], 2);
+  EXPECT_DOUBLE_EQ(json["risk"]["mission"]["certified_max"], 0.06);
+  EXPECT_EQ(json["risk"]["mission"]["exceeded"], true);
+  EXPECT_EQ(json["mission"]["spent"], json["risk"]["mission"]["certified_max"]);
+  EXPECT_EQ(json["mission"]["limit"], 0.05);
+}
+
+TEST(Summary, risk_without_limits_is_certified_and_not_exceeded) {
+  Trace trace = straight_trace(2);
+  trace.steps[1].certificates[1].value = 0.999;  // the plan's sum is above 1
+  const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
+  for (const char* kind : {"stage", "plan", "mission"}) {
+    EXPECT_TRUE(json["risk"][kind]["limit"].is_null()) << kind;
+    EXPECT_TRUE(json["risk"][kind]["exceeded"].is_null()) << kind;
+  }
+  EXPECT_EQ(json["risk"]["stage"]["certified_max"], 0.999);
+  EXPECT_EQ(json["risk"]["plan"]["certified_max"], 1.0);
+  EXPECT_DOUBLE_EQ(json["mission"]["spent"], 0.03);
+  EXPECT_TRUE(json["mission"]["limit"].is_null());
+}
+
+TEST(Summary, mission_is_within_its_limit_where_the_sum_is) {
+  Trace trace = straight_trace(3);
+  trace.scenario.risk.mission = 0.07;
+  EXPECT_EQ(EpisodeView(trace).summary().risk.mission.exceeded, 0);
+  trace.scenario.risk.mission = 0.0;  // from the first period on
+  EXPECT_EQ(EpisodeView(trace).summary().risk.mission.exceeded, 3);
+}
+
 TEST(Summary, mismatch_is_what_the_model_and_the_disturbance_leave) {
   Trace trace = straight_trace(2);
   EXPECT_TRUE(EpisodeView(trace).summary().mismatch_rmse.isZero(1e-15));  // rounding
@@ -206,6 +243,11 @@ TEST(Summary, json_has_every_documented_key) {
                               "/certificate/next_step/mean",
                               "/certificate/horizon/max",
                               "/certificate/thesis/max",
+                              "/risk/stage/certified_max",
+                              "/risk/plan/certified_max",
+                              "/risk/mission/certified_max",
+                              "/mission/spent",
+                              "/mission/limit",
                               "/mismatch/one_step/rmse",
                               "/mismatch/one_step/mean",
                               "/mismatch/one_step/covariance",

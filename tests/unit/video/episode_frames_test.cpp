@@ -1,5 +1,6 @@
 #include "harness/video/episode_frames.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -227,6 +228,7 @@ TEST(episode_frames, overlays_can_be_switched_off) {
       EpisodeFrames(EpisodeView(trace), parse_overlays("none", "--overlays")).at(0.2);
   EXPECT_TRUE(frame.particles.empty() && frame.ellipses.empty() && frame.tube.empty());
   EXPECT_TRUE(frame.raw_points.empty() && frame.clearances.empty() && !frame.ghost);
+  EXPECT_TRUE(frame.body.empty());
   EXPECT_FALSE(frame.planned_path.empty());
 }
 
@@ -254,10 +256,46 @@ TEST(episode_frames, a_long_history_scrolls) {
   EXPECT_EQ(frame.charts[0].values.size(), 200U);
 }
 
+TEST(episode_frames, limits_of_the_risk_are_said_to_be_kept_or_exceeded) {
+  Trace trace = straight_trace();  // next-step certificates 1e-3, 2e-3, …
+  EXPECT_EQ(row_of(EpisodeFrames(EpisodeView(trace)).at(0.25), "risk limit"), "no row risk limit");
+  trace.scenario.risk = {.stage = 0.5, .mission = 0.005};
+  trace.steps[2].solver_status = "risk_exceeded";
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
+  EXPECT_EQ(row_of(frames.at(0.15), "risk limit"), "kept");
+  EXPECT_EQ(row_of(frames.at(0.15), "risk spent"), "0.003 of 0.005");
+  const render::Frame exceeded = frames.at(0.25);
+  EXPECT_EQ(row_of(exceeded, "risk limit"), "exceeded");
+  EXPECT_EQ(row_of(exceeded, "risk spent"), "0.006 of 0.005");
+  EXPECT_EQ(std::count_if(exceeded.hud.begin(), exceeded.hud.end(),
+                          [](const render::HudRow& row) { return row.warning; }),
+            2);
+}
+
+TEST(episode_frames, body_is_outlined_where_the_vehicle_stands) {
+  Trace trace = straight_trace();
+  EXPECT_TRUE(EpisodeFrames(EpisodeView(trace)).at(0.05).body.empty());  // a point
+  trace.scenario.safe_set.body = {
+      .discs = {{.radius = 0.2, .offset = {0.1, 0.0}}, {.radius = 0.2, .offset = {0.3, 0.0}}},
+      .x = 0,
+      .y = 1,
+      .heading = 2};
+  const render::Frame frame = EpisodeFrames(EpisodeView(trace)).at(0.05);
+  ASSERT_EQ(frame.body.size(), 2U);
+  for (std::size_t disc = 0; disc < 2; ++disc) {
+    for (const render::PlanarPoint& point : frame.body[disc]) {
+      EXPECT_NEAR(std::hypot(point.x - frame.pose.x - 0.1 - 0.2 * static_cast<double>(disc),
+                             point.y - frame.pose.y),
+                  0.2, 1e-12);
+    }
+  }
+}
+
 TEST(overlays, lists_name_what_is_shown) {
   const Overlays some = parse_overlays("tube,raw", "--overlays");
   EXPECT_TRUE(some.tube && some.raw);
-  EXPECT_FALSE(some.particles || some.ellipses || some.ghost || some.path);
+  EXPECT_FALSE(some.particles || some.ellipses || some.ghost || some.body || some.path);
   EXPECT_TRUE(parse_overlays("all", "--overlays").raw);
   for (const char* wrong : {"", "tube,", "tubes", "all,tube"}) {
     EXPECT_THROW((void)parse_overlays(wrong, "--overlays"), InputError) << wrong;
@@ -268,7 +306,7 @@ TEST(overlays, lists_name_what_is_shown) {
   const Overlays plain;
   EXPECT_EQ(shipped.raw, plain.raw);
   EXPECT_TRUE(shipped.particles && shipped.ellipses && shipped.tube && shipped.ghost &&
-              shipped.path);
+              shipped.body && shipped.path);
 }
 
 }  // namespace episode_frames_test
