@@ -61,14 +61,14 @@ TEST(Episode, the_same_seed_gives_the_same_trace_on_every_plant) {
 }
 
 TEST(Episode, a_model_error_is_in_every_certificate_and_in_every_belief_that_was_predicted) {
-  const Trace of_model = run_episode(small_scenario(), {.seed = 7});
-  const Trace of_plant =
-      run_episode(small_scenario({"model_error={rms: [0.03, 0.04, 0.01]}"}), {.seed = 7});
+  const Trace of_model = run_episode(small_scenario({"risk={}"}), {.seed = 7});
+  const Trace of_plant = run_episode(
+      small_scenario({"risk={}", "model_error={rms: [0.03, 0.04, 0.01]}"}), {.seed = 7});
   ASSERT_EQ(of_plant.steps.size(), of_model.steps.size());
   const double radius = Eigen::Vector3d(0.03, 0.04, 0.01).norm();
   for (std::size_t k = 0; k < of_plant.steps.size(); ++k) {
     const StepRecord& step = of_plant.steps[k];
-    // Plans do not depend on it.
+    // Without limits of the risk plans do not depend on it.
     EXPECT_EQ(step.plan_inputs, of_model.steps[k].plan_inputs);
     EXPECT_EQ(step.budgets[0].model, k == 0 ? 0.0 : radius);
     EXPECT_GE(step.budgets[1].model, radius);
