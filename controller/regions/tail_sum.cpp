@@ -1,7 +1,6 @@
 #include "controller/regions/tail_sum.hpp"
 
 #include <cmath>
-#include <numbers>
 
 #include "controller/measure/normal/normal_distribution.hpp"
 
@@ -9,7 +8,7 @@ namespace qsmpc::controller {
 namespace {
 
 // −d log Φ(−z)/dz at 0: √(2/π).
-const double kSlopeAtEdge = std::sqrt(2.0 * std::numbers::inv_pi);
+constexpr double kSlopeAtEdge = 0.79788456080286536;
 
 double tail_slope(double z) {
   return z >= 0.0 ? -normal_density(z) : -kSlopeAtEdge * extended_tail(z);

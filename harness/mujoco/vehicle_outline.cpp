@@ -84,7 +84,8 @@ struct TurningAxis {
 
 /// The cylinder about `turning` in which the set stays, however far it turns.
 Support turned_all_round(const Support& support, const TurningAxis& turning) {
-  const auto& [anchor, axis] = turning;
+  const Eigen::Vector3d anchor = turning.anchor;
+  const Eigen::Vector3d axis = turning.axis;
   const double highest = support(axis) - axis.dot(anchor);
   const double lowest = -support(-axis) - axis.dot(anchor);
   const Eigen::Vector3d start = axis.unitOrthogonal();
