@@ -18,7 +18,8 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kAngleStep = std::numbers::pi / 180.0;
+constexpr int kDirections = 360;
+constexpr double kAngleStep = 2.0 * std::numbers::pi / kDirections;
 // Of the rectangle's sides: more than what steps of a degree miss of an arc, 4e-5 of its radius.
 constexpr double kSweepMargin = 1e-4;
 constexpr double kMillimetres = 1e3;  // in a metre
@@ -90,8 +91,8 @@ Support turned_all_round(const Support& support, const TurningAxis& turning) {
   const double lowest = -support(-axis) - axis.dot(anchor);
   const Eigen::Vector3d start = axis.unitOrthogonal();
   double radius = 0.0;
-  for (double angle = 0.0; angle < 2.0 * std::numbers::pi; angle += kAngleStep) {
-    const Eigen::Vector3d direction = Eigen::AngleAxisd(angle, axis) * start;
+  for (int k = 0; k < kDirections; ++k) {
+    const Eigen::Vector3d direction = Eigen::AngleAxisd(k * kAngleStep, axis) * start;
     radius = std::max(radius, support(direction) - direction.dot(anchor));
   }
   radius /= std::cos(0.5 * kAngleStep);  // the farthest point is between two directions

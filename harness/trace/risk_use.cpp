@@ -25,9 +25,9 @@ double worst_stage(const StepRecord& step) {
 }  // namespace
 
 bool exceeds_limits(const StepRecord& step, const Scenario::Risk& limits) {
-  static const std::string kExceeded =
+  const std::string exceeded =
       controller::solver_status_name(controller::SolverStatus::kRiskExceeded);
-  return step.solver_status == kExceeded || worst_stage(step) > limits.stage ||
+  return step.solver_status == exceeded || worst_stage(step) > limits.stage ||
          controller::horizon_bound(step.certificates) > limits.plan;
 }
 
