@@ -66,9 +66,8 @@ class ObstacleTerm final : public StageTerm {
 }  // namespace
 
 std::unique_ptr<StageTerm> make_obstacle_term(const HorizonCostTerms& terms) {
-  if (terms.penalty.shape != PenaltyShape::kSmooth || terms.safe_set.obstacles.empty()) {
-    return nullptr;
-  }
+  const bool costs = terms.penalty.obstacle != 0.0 && !terms.safe_set.obstacles.empty();
+  if (terms.penalty.shape != PenaltyShape::kSmooth || !costs) return nullptr;
   return std::make_unique<ObstacleTerm>(terms.safe_set, terms.penalty);
 }
 
