@@ -88,6 +88,11 @@ void PlanEvaluator::hold_risk(const Policy& policy) {
   if (risk_) risk_->hold(gaussian_, policy);
 }
 
+double PlanEvaluator::excess_of(const Plan& plan, Policy& policy) {
+  policies_.make(gaussian_.mean, plan.policy.inputs, plan.gain_change, policy);
+  return risk_->excess(gaussian_, policy);
+}
+
 void PlanEvaluator::take_belief(const Gaussian& belief) {
   quantiser_.quantise(belief, belief_);
   gaussian_ = belief;

@@ -59,6 +59,10 @@ class PlanEvaluator {
   [[nodiscard]] RiskConstraint* risk() { return risk_ ? &*risk_ : nullptr; }
   /// Limits of the plan that is made in period `period` of a drive.
   void set_limits(const RiskLimits& limits, Eigen::Index period);
+  /// How far the plan's inputs, with the gains that belong to them now, exceed the limits, which
+  /// there must be: log(certificate / limit) of the limit that is exceeded most. `policy` is room
+  /// for theirs.
+  [[nodiscard]] double excess_of(const Plan& plan, Policy& policy);
   /// Holds the surrogate of this policy for the belief at hand; without limits, nothing.
   void hold_risk(const Policy& policy);
 

@@ -29,7 +29,8 @@ Planner::Planner(const models::Dynamics& dynamics, PlannerSettings settings)
       settings_(checked(std::move(settings), dynamics)),
       evaluator_(dynamics_, settings_),
       start_(dynamics_, settings_, evaluator_),
-      rounds_(dynamics_, settings_, evaluator_) {
+      rounds_(dynamics_, settings_, evaluator_),
+      effort_(settings_, evaluator_) {
   require(settings_.otherwise != RiskOtherwise::kBrake || !speeds_of(dynamics_).empty(),
           "a system without a speed among its states cannot brake");
 }
@@ -60,6 +61,11 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
   evaluator_.take_belief(belief);
   stopwatch.add_to(plan.timing.quantise);
   start_.choose(belief, failed_ ? nullptr : last_, plan);
+  if (!plan.warm && !plan.late() && effort_.search(*plan.current)) {
+    evaluator_.set_policy(plan.current->policy.inputs, plan.current->gain_change, *plan.current);
+    evaluator_.predict_and_evaluate(*plan.current);
+    plan.evaluated = true;
+  }
   stopwatch.add_to(plan.timing.propagate);
   rounds_.optimise(plan);
   if (evaluator_.risk() != nullptr) settle(plan);
@@ -86,6 +92,7 @@ void Planner::settle(PlanInProgress& plan) {
   const bool usable = !plan.failed && std::isfinite(plan.current->cost.total());
   if (usable && !plan.current->risk.kept && !plan.late()) {
     if (kept_inputs_.size() > 0) try_tail(plan, false);
+    if (!plan.current->risk.kept) choose_effort(plan);
     if (!plan.current->risk.kept && plan.current->risk.severity > 0.0) rounds_.reduce_risk(plan);
     const bool exceeded = !plan.current->risk.kept;
     if (exceeded && settings_.otherwise == RiskOtherwise::kPrevious && kept_inputs_.size() > 0) {
@@ -97,7 +104,21 @@ void Planner::settle(PlanInProgress& plan) {
     if (!plan.stopped()) plan.status = SolverStatus::kRiskExceeded;
   } else {
     kept_inputs_ = plan.current->policy.inputs;
+    // For the next period: this plan stays as it was certified.
+    if (usable && !plan.late()) (void)effort_.follow(*plan.current);
   }
+}
+
+/// Gives the current plan the gains for which its inputs are certified to less.
+void Planner::choose_effort(PlanInProgress& plan) {
+  PlanStopwatch stopwatch;
+  if (effort_.follow(*plan.current)) {
+    const Plan& current = *plan.current;
+    evaluator_.set_policy(current.policy.inputs, current.gain_change, *plan.candidate);
+    evaluator_.predict_and_evaluate(*plan.candidate);
+    if (better(*plan.candidate, *plan.current)) plan.accept_candidate();
+  }
+  stopwatch.add_to(plan.timing.propagate);
 }
 
 /// Makes what the last plan within its limits has come to the current one, where it is better or in

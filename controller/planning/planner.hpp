@@ -19,6 +19,7 @@
 #include "controller/planning/plan.hpp"
 #include "controller/planning/plan_evaluator.hpp"
 #include "controller/planning/planner_settings.hpp"
+#include "controller/planning/risk/effort_choice.hpp"
 #include "controller/planning/start/start_choice.hpp"
 #include "controller/prediction/prediction.hpp"
 #include "controller/prediction/propagator.hpp"
@@ -68,6 +69,7 @@ class Planner {
     last_ = nullptr;
     failed_ = false;
     kept_inputs_.resize(0, 0);
+    effort_.reset();
   }
 
   [[nodiscard]] const PlannerSettings& settings() const { return settings_; }
@@ -78,6 +80,7 @@ class Planner {
   void set_limits(const PlanRequest& request);
   void fall_back(Plan& plan);
   void settle(PlanInProgress& plan);
+  void choose_effort(PlanInProgress& plan);
   void try_tail(PlanInProgress& plan, bool in_any_case);
 
   const models::Dynamics& dynamics_;
@@ -85,6 +88,7 @@ class Planner {
   PlanEvaluator evaluator_;
   StartChoice start_;
   AssignmentRounds rounds_;
+  EffortChoice effort_;
   std::array<Plan, 3> plans_;    // the last one, and room for the next and what may replace it
   Plan* last_ = nullptr;         // the plan last made, null for a cold start
   bool failed_ = false;          // the last plan fell back, or its solver met numerical trouble

@@ -58,8 +58,8 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
   }
   require(settings.risk.first >= 0.0 && settings.risk.stage >= 0.0 && settings.risk.plan >= 0.0,
           "limits of the risk must not be negative");
-  require(settings.feedback_effort > 0.0 && std::isfinite(settings.feedback_effort),
-          "the effort of the feedback must be positive");
+  const double effort = settings.feedback_effort.value_or(1.0);
+  require(effort > 0.0 && std::isfinite(effort), "the effort of the feedback must be positive");
   require(settings.deadline > 0.0, "the deadline must be positive");
   require(settings.run != nullptr, "there must be an executor");
   check_safe_set(settings.safe_set);

@@ -26,7 +26,8 @@ struct PlannerSettings {
   std::optional<Eigen::MatrixXd> feedback_gain;  ///< input_dim x state_dim; else from LQR
   /// Closed loop with gains from LQR: how much more the input weighs there than in the cost, > 0.
   /// Gentler gains meet the bounds of the input less often, of which certificates make the worst.
-  double feedback_effort = 1.0;
+  /// Unless given, 1, and with limits of the risk what the certificates are least for.
+  std::optional<double> feedback_effort;
   /// Closed loop: whether a matrix that is added to the gains of all stages is optimised along with
   /// the inputs.
   bool optimise_gain = false;

@@ -7,8 +7,14 @@ PolicyMaker::PolicyMaker(const models::Dynamics& dynamics, const PlannerSettings
     : dynamics_(dynamics),
       settings_(settings),
       weights_{.state = settings.cost.state,
-               .input = 2.0 * settings.feedback_effort * settings.cost.input,
-               .terminal = 2.0 * settings.cost.terminal} {}
+               .input = 2.0 * settings.cost.input,
+               .terminal = 2.0 * settings.cost.terminal} {
+  set_effort(settings.feedback_effort.value_or(1.0));
+}
+
+void PolicyMaker::set_effort(double effort) {
+  weights_.input = 2.0 * effort * settings_.cost.input;
+}
 
 void PolicyMaker::make(const Eigen::Ref<const Eigen::VectorXd>& start,
                        const Eigen::Ref<const Eigen::MatrixXd>& inputs,

@@ -21,6 +21,9 @@ class PolicyMaker {
             const Eigen::Ref<const Eigen::MatrixXd>& inputs, const Eigen::MatrixXd& gain_change,
             Policy& out);
 
+  /// How much more the input weighs in the LQR of the gains than in the cost, from now on; > 0.
+  void set_effort(double effort);
+
  private:
   const models::Dynamics& dynamics_;
   const PlannerSettings& settings_;

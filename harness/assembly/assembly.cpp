@@ -29,7 +29,7 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
   settings.horizon = controller.horizon;
   settings.closed_loop = controller.policy == "closed_loop";
   settings.feedback_gain = controller.feedback_gain;
-  settings.feedback_effort = controller.feedback_effort;
+  if (controller.feedback_effort > 0.0) settings.feedback_effort = controller.feedback_effort;
   settings.optimise_gain = controller.optimise_gain;
   settings.solver = controller.solver;
   settings.input_bounding = controller.input_bounding;

@@ -91,7 +91,9 @@ struct Scenario {
     int horizon = 8;
     std::string policy = "closed_loop";            ///< or "open_loop"
     std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
-    double feedback_effort = 1.0;  ///< weight of the input in that LQR, relative to the cost's
+    /// Weight of the input in that LQR, relative to the cost's; 0 where it is not given: 1, and
+    /// with limits of the risk what the planner finds best.
+    double feedback_effort = 0.0;
     /// Whether a matrix that is added to the gains of all stages is optimised along with the
     /// inputs.
     bool optimise_gain = false;

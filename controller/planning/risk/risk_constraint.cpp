@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "controller/certification/surrogate_bounds.hpp"
@@ -18,6 +19,13 @@ double log_ratio(double risk, double limit) {
   if (!(risk > 0.0)) return kLeastLog;
   // Of a limit of 0 nothing but 0 is within.
   return std::max(kLeastLog, std::log(risk) - std::log(std::max(limit, 1e-300)));
+}
+
+void take_stages(const SurrogateBounds& bounds, std::vector<double>& out) {
+  out.clear();
+  for (const RegionProbability& stage : bounds.bounds) {
+    out.push_back(std::min(stage.markov, stage.smooth));
+  }
 }
 
 }  // namespace
@@ -69,13 +77,8 @@ void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanR
   const SurrogateBounds bounds =
       surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, settings_.run);
   model_.hold(motion, bounds.surrogates);
-  out.stages.clear();
-  double sum = 0.0;
-  for (const RegionProbability& stage : bounds.bounds) {
-    out.stages.push_back(std::min(stage.markov, stage.smooth));
-    sum += out.stages.back();
-  }
-  out.plan = std::min(1.0, sum);
+  take_stages(bounds, out.stages);
+  out.plan = std::min(1.0, std::accumulate(out.stages.begin(), out.stages.end(), 0.0));
   model_.calibrate(out.stages);
   const Eigen::VectorXd z = policy.inputs.reshaped();
   const double margin = margin_;
@@ -87,21 +90,35 @@ void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanR
   judge(out);
 }
 
-/// What is certified decides whether the limits are kept.
-void RiskConstraint::judge(PlanRisk& out) {
+double RiskConstraint::excess(const Gaussian& belief, const Policy& policy) const {
+  std::vector<double> stages;
+  take_stages(surrogate_bounds(motion_of(belief, policy), unsafe_, CertificateEffort::kLeast,
+                               settings_.run),
+              stages);
+  return excess(stages);
+}
+
+double RiskConstraint::excess(const std::vector<double>& stages) const {
   double excess = kLeastLog;
   if (std::isfinite(limits_.first)) {
-    excess = std::max(excess, log_ratio(out.stages.front(), limits_.first));
+    excess = std::max(excess, log_ratio(stages.front(), limits_.first));
   }
   if (std::isfinite(limits_.stage)) {
-    const double most = *std::max_element(out.stages.begin(), out.stages.end());
+    const double most = *std::max_element(stages.begin(), stages.end());
     excess = std::max(excess, log_ratio(most, limits_.stage));
   }
-  double sum = 0.0;
-  for (const double stage : out.stages) sum += stage;
-  if (std::isfinite(limits_.plan)) excess = std::max(excess, log_ratio(sum, limits_.plan));
-  out.kept = excess <= 0.0;
-  if (out.kept) out.severity = std::min(excess, out.severity);
+  if (std::isfinite(limits_.plan)) {
+    const double sum = std::accumulate(stages.begin(), stages.end(), 0.0);
+    excess = std::max(excess, log_ratio(sum, limits_.plan));
+  }
+  return excess;
+}
+
+/// What is certified decides whether the limits are kept.
+void RiskConstraint::judge(PlanRisk& out) const {
+  const double certified = excess(out.stages);
+  out.kept = certified <= 0.0;
+  if (out.kept) out.severity = std::min(certified, out.severity);
 }
 
 void RiskConstraint::start(bool warm) {

@@ -33,6 +33,10 @@ class RiskConstraint {
 
   /// Certifies `policy` from `belief`, and holds its surrogate, calibrated, from now on.
   void certify(const Gaussian& belief, const Policy& policy, PlanRisk& out);
+  /// log(certificate / limit) of the limit that `policy` exceeds most; holds nothing.
+  [[nodiscard]] double excess(const Gaussian& belief, const Policy& policy) const;
+  /// The same of a policy that has been certified (stages 1 … horizon).
+  [[nodiscard]] double excess(const std::vector<double>& stages) const;
   /// Holds the surrogate of `policy` with the factors of the last calibration.
   void hold(const Gaussian& belief, const Policy& policy);
   /// For a new plan that goes on from the last, or does not: factors of the calibration move on, or
@@ -55,7 +59,7 @@ class RiskConstraint {
 
  private:
   [[nodiscard]] PredictedMotion motion_of(const Gaussian& belief, const Policy& policy) const;
-  void judge(PlanRisk& out);
+  void judge(PlanRisk& out) const;
 
   const models::Dynamics& dynamics_;
   const PlannerSettings& settings_;

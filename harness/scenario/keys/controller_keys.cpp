@@ -122,8 +122,11 @@ std::vector<ScenarioKey> plan_keys() {
                  .values = {NumberValue{kPositive}},
                  .words = "how much more the input weighs in that LQR than in the cost: gains are "
                           "gentler for more",
-                 .see = "[below](#gains)"},
-       .member = [](Scenario& scenario) -> double& { return scenario.controller.feedback_effort; }},
+                 .see = "[below](#gains)",
+                 .fallback_words = "1; with limits of the risk, chosen as the drive goes"},
+       .member = [](Scenario& scenario) -> double& { return scenario.controller.feedback_effort; },
+       .is_written =
+           [](const Scenario& scenario) { return scenario.controller.feedback_effort > 0.0; }},
       {.about = {.name = "optimise_gain",
                  .values = {FlagValue{}},
                  .words = "whether a matrix that is added to the gains is optimised along with the "

@@ -1,0 +1,70 @@
+#include "controller/planning/risk/effort_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace qsmpc::controller {
+namespace {
+
+// The ladder: efforts from 10^-2 to 10^3.5, two a decade.
+constexpr int kStepsPerDecade = 2;
+constexpr int kLowestStep = -4;
+constexpr int kHighestStep = 7;
+// What another effort must lower the logarithm of the risk by, so that gains do not change to and
+// fro.
+constexpr double kWorthIt = 0.05;
+// A plan whose risk is below this share of its limits is not held back by them.
+constexpr double kNearLimit = 0.05;
+
+double effort_of(int step) { return std::pow(10.0, static_cast<double>(step) / kStepsPerDecade); }
+
+}  // namespace
+
+EffortChoice::EffortChoice(const PlannerSettings& settings, PlanEvaluator& evaluator)
+    : settings_(settings), evaluator_(evaluator) {}
+
+bool EffortChoice::applies() const {
+  return settings_.closed_loop && !settings_.feedback_gain && !settings_.feedback_effort &&
+         evaluator_.risk() != nullptr;
+}
+
+void EffortChoice::reset() {
+  step_ = 0;
+  if (!settings_.feedback_effort) evaluator_.policies().set_effort(1.0);
+}
+
+bool EffortChoice::search(const Plan& plan) {
+  return applies() && try_steps(plan, kLowestStep, kHighestStep);
+}
+
+bool EffortChoice::follow(const Plan& plan) {
+  if (!applies()) return false;
+  if (plan.risk.kept && plan.risk.severity < std::log(kNearLimit)) return false;
+  upwards_ = !upwards_;
+  return upwards_ ? try_steps(plan, step_, step_ + 1) : try_steps(plan, step_ - 1, step_);
+}
+
+/// How far the plan's inputs exceed their limits with gains of this effort, as a logarithm.
+double EffortChoice::excess_with(const Plan& plan, int step) {
+  evaluator_.policies().set_effort(effort_of(step));
+  return evaluator_.excess_of(plan, policy_);
+}
+
+bool EffortChoice::try_steps(const Plan& plan, int lowest, int highest) {
+  int best = step_;
+  double least = evaluator_.risk()->excess(plan.risk.stages) - kWorthIt;
+  for (int step = std::max(lowest, kLowestStep); step <= std::min(highest, kHighestStep); ++step) {
+    if (step == step_) continue;
+    const double excess = excess_with(plan, step);
+    if (excess < least) {
+      best = step;
+      least = excess;
+    }
+  }
+  evaluator_.policies().set_effort(effort_of(best));
+  const bool changed = best != step_;
+  step_ = best;
+  return changed;
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,86 @@
+// The effort of feedback where the risk is limited: chosen by what is certified, unless it is
+// given.
+#include <cmath>
+#include <optional>
+
+#include <gtest/gtest.h>
+
+#include "controller/planning/planner.hpp"
+#include "models/constants.hpp"
+#include "tests/unit/controller/planning/planner_fixture.hpp"
+
+namespace qsmpc::controller {
+namespace effort_choice_test {
+
+using namespace testing;
+
+/// A block in the way of a car whose cost hardly minds steering: gains of that cost are stiff.
+PlannerSettings stiff(double plan, std::optional<double> effort) {
+  PlannerSettings settings = block_settings();
+  settings.penalty.box = 0.0;
+  settings.penalty.obstacle = 0.0;
+  settings.cost.input *= 0.01;
+  settings.noise_covariance = Eigen::Vector3d(2e-3, 2e-3, 1e-3).asDiagonal();
+  settings.feedback_effort = effort;
+  settings.max_evaluations = 300;
+  settings.risk.plan = plan;
+  settings.safe_set.obstacles = {
+      {.lower = Eigen::Vector3d(1.2, -0.3, -1e9), .upper = Eigen::Vector3d(1.5, 0.35, 1e9)}};
+  return settings;
+}
+
+Gaussian near_start() {
+  return {.mean = Eigen::Vector3d::Zero(),
+          .covariance = Eigen::Vector3d(1e-3, 1e-3, 1e-3).asDiagonal()};
+}
+
+double norm_of_gains(const Plan& plan) { return plan.policy.gains.front().norm(); }
+
+TEST(EffortChoice, is_gentler_where_stiff_gains_cannot_be_certified) {
+  const auto car = dubins_car();
+  Planner chosen(*car, stiff(0.02, std::nullopt));
+  Planner fixed(*car, stiff(0.02, 1.0));
+  const Plan& free = chosen.plan(near_start());
+  const Plan& bound = fixed.plan(near_start());
+  EXPECT_TRUE(free.risk.kept) << free.risk.plan;
+  EXPECT_FALSE(bound.risk.kept) << bound.risk.plan;
+  EXPECT_LT(norm_of_gains(free), 0.5 * norm_of_gains(bound));
+}
+
+TEST(EffortChoice, follows_the_drive_and_begins_anew_after_a_reset) {
+  const auto car = dubins_car();
+  Planner planner(*car, stiff(0.02, std::nullopt));
+  Gaussian belief = near_start();
+  const double first = norm_of_gains(planner.plan(belief));
+  for (int n = 0; n < 6; ++n) {
+    const Plan& plan = planner.plan(belief);
+    EXPECT_TRUE(plan.risk.kept) << n;
+    belief.mean = plan.policy.states.col(1);
+  }
+  planner.reset();
+  const Plan& again = planner.plan(near_start());
+  EXPECT_DOUBLE_EQ(norm_of_gains(again), first);
+}
+
+TEST(EffortChoice, is_that_of_the_cost_without_limits_and_what_is_given_with_them) {
+  const auto car = dubins_car();
+  const Eigen::MatrixXd inputs = Eigen::MatrixXd::Constant(1, stiff(1.0, {}).horizon, 0.1);
+  const auto gains = [&](double plan, std::optional<double> effort) {
+    Planner planner(*car, stiff(plan, effort));
+    (void)planner.plan(near_start());
+    return norm_of_gains(planner.prescribe(near_start(), inputs));
+  };
+  EXPECT_DOUBLE_EQ(gains(kInfinity, std::nullopt), gains(kInfinity, 1.0));
+  EXPECT_DOUBLE_EQ(gains(0.02, 50.0), gains(kInfinity, 50.0));
+  EXPECT_LT(gains(0.02, 50.0), gains(0.02, 1.0));
+}
+
+TEST(EffortChoice, must_be_positive) {
+  const auto car = dubins_car();
+  for (const double effort : {0.0, -1.0, kInfinity, std::nan("")}) {
+    EXPECT_THROW(Planner(*car, stiff(0.02, effort)), std::invalid_argument);
+  }
+}
+
+}  // namespace effort_choice_test
+}  // namespace qsmpc::controller
