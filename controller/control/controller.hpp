@@ -116,6 +116,7 @@ struct ControllerEntry {
   /// sense.
   std::unique_ptr<Controller> (*make)(const models::Dynamics& dynamics,
                                       const ControllerSettings& settings) = nullptr;
+  bool keeps_limits = false;  ///< whether it plans within limits of the risk
 };
 
 /// The table of controllers; the first is the default.

@@ -10,7 +10,8 @@ ControllerEntry quantised_controller() {
           .make = [](const models::Dynamics& dynamics,
                      const ControllerSettings& settings) -> std::unique_ptr<Controller> {
             return std::make_unique<PlanningController>(dynamics, settings);
-          }};
+          },
+          .keeps_limits = true};
 }
 
 }  // namespace qsmpc::controller

@@ -1,8 +1,11 @@
 // The keys of the controller.
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
+#include <vector>
 
+#include "controller/control/controller.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
@@ -54,6 +57,17 @@ void check_propagator(const ScenarioReading& reading, Section& section) {
   if (!controller.propagate_noise && controller.propagator != defaults().propagator) {
     section.note("propagator", defaults().propagator + ", or controller.propagate_noise: true");
   }
+}
+
+/// A weight of the penalties. Unless given, it is 0 where limits of the risk are kept instead.
+void read_weight(ScenarioReading& reading, Section& section, const KeyDescription& about,
+                 double& weight) {
+  const std::vector<controller::ControllerEntry>& known = controller::controllers();
+  const auto kind = std::find_if(known.begin(), known.end(), [&](const auto& entry) {
+    return entry.name == reading.scenario.controller.kind;
+  });
+  if (reading.scenario.risk.any() && kind != known.end() && kind->keeps_limits) weight = 0.0;
+  weight = section.number(about.name, weight, kNotNegative);
 }
 
 void read_gain(ScenarioReading& reading, Section& section, const KeyDescription& about) {
@@ -234,16 +248,27 @@ ScenarioKey penalty_key() {
                {.about = {.name = "box",
                           .values = {NumberValue{kNotNegative}},
                           .words = "weight of leaving the bounds, {range}; not used by `slsqp`",
-                          .see = "[below](#solvers)"},
+                          .see = "[below](#solvers)",
+                          .fallback_words = "450; 0 where limits of the risk are kept"},
                 .member = [](Scenario& scenario) -> double& {
                   return scenario.controller.penalty.box;
-                }},
+                },
+                .read =
+                    [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
+                      read_weight(reading, section, about, reading.scenario.controller.penalty.box);
+                    }},
                {.about = {.name = "obstacle",
                           .values = {NumberValue{kNotNegative}},
-                          .words = "weight of entering an obstacle"},
+                          .words = "weight of entering an obstacle",
+                          .fallback_words = "400; 0 where limits of the risk are kept"},
                 .member = [](Scenario& scenario) -> double& {
                   return scenario.controller.penalty.obstacle;
-                }},
+                },
+                .read =
+                    [](ScenarioReading& reading, Section& section, const KeyDescription& about) {
+                      read_weight(reading, section, about,
+                                  reading.scenario.controller.penalty.obstacle);
+                    }},
                {.about = {.name = "length",
                           .values = {NumberValue{kPositive}},
                           .words = "how far outside of the unsafe set the smooth shape begins",
