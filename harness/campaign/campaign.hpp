@@ -62,6 +62,14 @@ struct CampaignVariant {
   Scenario resolved;                     ///< with all of it applied; its seed is 0
 };
 
+/// Settings whose variants are joined by a line in the figure of risk against cost.
+struct VariantFamily {
+  std::string name;
+  std::vector<std::string> settings{};  ///< CampaignVariant::settings, along the line; each once
+
+  friend bool operator==(const VariantFamily&, const VariantFamily&) = default;
+};
+
 /// Every variant is driven with every seed. The same seed gives every variant the same random
 /// numbers: what differs between variants is paired by seed.
 struct Campaign {
@@ -71,6 +79,8 @@ struct Campaign {
   TraceKeeping traces = TraceKeeping::kNone;
   /// With kFailures: of each variant, the first this many seeds keep their trace, too.
   std::int64_t trace_sample = 0;
+  /// The lines of the figure of risk against cost, by name; without any there is no such figure.
+  std::vector<VariantFamily> risk_against_cost{};
 
   [[nodiscard]] std::int64_t episodes() const {
     return static_cast<std::int64_t>(variants.size()) * seeds.size();

@@ -129,9 +129,9 @@ void add_campaign_options(CLI::App& command, CampaignArguments& arguments) {
                    "both ask for, remove the others");
   command.add_flag("--retry-faults", options.retry_faults,
                    "drive the episodes again whose plant broke");
-  add_fail_on_option(
-      command, arguments.fail_on,
-      {"collision", "left_bounds", kFailOnUnsafe, "timeout", "fault", kFailOnExceeded, "none"});
+  add_fail_on_option(command, arguments.fail_on,
+                     {"collision", "left_bounds", kFailOnUnsafe, "timeout", "fault",
+                      kFailOnRiskExceeded, kFailOnExceeded, "none"});
   command.add_flag("--quiet", arguments.quiet, "no progress");
   command.add_flag("--json", arguments.json, "print campaign.json instead of the table");
 }

@@ -75,6 +75,10 @@ bool asked_to_tell(const std::vector<std::string>& fail_on, const CampaignStatis
       return std::ranges::any_of(statistics.variants,
                                  [](const auto& variant) { return variant.unsafe.events > 0; });
     }
+    if (name == kFailOnRiskExceeded) {
+      return std::ranges::any_of(statistics.variants,
+                                 [](const auto& variant) { return variant.risk_exceeded > 0; });
+    }
     if (name == kFailOnExceeded) {
       return is_exceeded(statistics.calibration) ||
              std::ranges::any_of(statistics.variants, [](const auto& variant) {

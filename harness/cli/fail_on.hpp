@@ -10,6 +10,8 @@ namespace qsmpc::harness {
 
 /// A drive whose true state entered the unsafe set, whatever became of it after that.
 inline constexpr const char* kFailOnUnsafe = "unsafe";
+/// A drive with a period whose plan, or the drive so far, exceeds a limit of the risk.
+inline constexpr const char* kFailOnRiskExceeded = "risk_exceeded";
 /// A certificate that a campaign refutes.
 inline constexpr const char* kFailOnExceeded = "exceeded";
 

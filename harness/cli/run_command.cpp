@@ -67,7 +67,8 @@ Trace drive(const Scenario& scenario, std::uint64_t seed, const std::string& fol
 
 bool asked_to_tell(const std::vector<std::string>& fail_on, const Summary& summary) {
   return std::any_of(fail_on.begin(), fail_on.end(), [&](const std::string& name) {
-    return name == summary.outcome || (name == kFailOnUnsafe && summary.collision);
+    return name == summary.outcome || (name == kFailOnUnsafe && summary.collision) ||
+           (name == kFailOnRiskExceeded && summary.risk.exceeded_periods > 0);
   });
 }
 
@@ -124,9 +125,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
   // An interrupt has an exit code of its own.
-  add_fail_on_option(
-      *command, arguments->fail_on,
-      {"reached", "collision", "left_bounds", kFailOnUnsafe, "timeout", "fault", "none"});
+  add_fail_on_option(*command, arguments->fail_on,
+                     {"reached", "collision", "left_bounds", kFailOnUnsafe, "timeout", "fault",
+                      kFailOnRiskExceeded, "none"});
   command
       ->add_option("--gl", arguments->gl,
                    "what draws the video: osmesa, egl, or auto, the first that is installed")

@@ -34,6 +34,7 @@ std::vector<Tick> log_ticks(const Axis& axis, int tick_count) {
   for (int exponent = last; exponent >= first; exponent -= stride) {
     ticks.push_back({std::pow(10.0, exponent), format_power_of_ten(exponent)});
   }
+  if (axis.zero_share > 0.0) ticks.push_back({0.0, "0"});
   std::reverse(ticks.begin(), ticks.end());
   return ticks;
 }
@@ -110,10 +111,27 @@ std::vector<Tick> ticks_of(const Axis& axis, int tick_count) {
   return ticks_every(axis, tick_step(axis.upper - axis.lower, tick_count));
 }
 
+std::vector<Tick> minor_ticks_of(const Axis& axis) {
+  constexpr int kMostDecades = 5;  // of more, the ticks would run together
+  if (axis.scale != Scale::kLog) return {};
+  const int first = static_cast<int>(std::lround(std::log10(axis.lower)));
+  const int last = static_cast<int>(std::lround(std::log10(axis.upper)));
+  if (last - first > kMostDecades) return {};
+  std::vector<Tick> ticks;
+  for (int exponent = first; exponent < last; ++exponent) {
+    for (int digit = 2; digit <= 9; ++digit) {
+      ticks.push_back({.value = digit * std::pow(10.0, exponent), .label = ""});
+    }
+  }
+  return ticks;
+}
+
 double position_on(const Axis& axis, double value) {
   if (axis.scale == Scale::kLinear) return (value - axis.lower) / (axis.upper - axis.lower);
+  if (value <= 0.0 && axis.zero_share > 0.0) return 0.5 * axis.zero_share;
   const double clamped = std::max(value, axis.lower);
-  return std::log(clamped / axis.lower) / std::log(axis.upper / axis.lower);
+  const double along = std::log(clamped / axis.lower) / std::log(axis.upper / axis.lower);
+  return axis.zero_share + (1.0 - axis.zero_share) * along;
 }
 
 }  // namespace qsmpc::harness

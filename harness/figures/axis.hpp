@@ -12,11 +12,13 @@ struct Axis {
   double lower = 0.0;
   double upper = 1.0;
   Scale scale = Scale::kLinear;
+  /// Of a logarithmic axis: the share of its length, at its lower end, that is kept for 0.
+  double zero_share = 0.0;
 };
 
 struct Tick {
   double value = 0.0;
-  std::string label;
+  std::string label;  ///< empty: of a tick between those that are counted in
 };
 
 /// Whether `value` can be placed on a linear axis: finite, and no overflow in sight.
@@ -42,8 +44,12 @@ struct Tick {
 /// About `tick_count` ticks; on a logarithmic axis, at powers of ten.
 [[nodiscard]] std::vector<Tick> ticks_of(const Axis& axis, int tick_count);
 
+/// 2 … 9 times the powers of ten of a logarithmic axis of at most five decades, without labels;
+/// none of another axis.
+[[nodiscard]] std::vector<Tick> minor_ticks_of(const Axis& axis);
+
 /// Where `value` is on the axis: 0 at its lower end, 1 at its upper one. On a logarithmic axis,
-/// what is below the lower end is put there.
+/// what is below the lower end is put there; 0 is put in the middle of its share, if it has one.
 [[nodiscard]] double position_on(const Axis& axis, double value);
 
 }  // namespace qsmpc::harness

@@ -8,46 +8,22 @@
 #include <fmt/format.h>
 
 #include "harness/figures/chart_marks.hpp"
+#include "harness/figures/error_bars.hpp"
 #include "harness/figures/palette.hpp"
+#include "harness/figures/plot_frame.hpp"
+#include "harness/figures/point_labels.hpp"
 #include "harness/text/html.hpp"
+#include "harness/text/text_width.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
-// Units of the view box; the page scales it to the width that there is.
 constexpr double kWidth = kChartWidth;
 constexpr double kHeight = kChartHeight;
-constexpr double kChartLeft = 78.0;
-constexpr double kChartRight = 14.0;
-constexpr double kChartTop = 10.0;
-constexpr double kChartBottom = 46.0;
 constexpr const char* kAreaClass = "area";
-constexpr int kTicksAcross = 6;
-constexpr int kTicksUp = 5;
 constexpr std::size_t kMostPoints = 1000;  // of a line; more would not be seen
 constexpr std::size_t kMarksOnLine = 8;    // where it has many points
 constexpr std::size_t kAllMarked = 12;     // a line of so many points has a mark at each
-
-struct PlotFrame {
-  Axis x;
-  Axis y;
-
-  [[nodiscard]] double across(double value) const {
-    return kChartLeft + position_on(x, value) * (kWidth - kChartLeft - kChartRight);
-  }
-  [[nodiscard]] double up(double value) const {
-    return kHeight - kChartBottom - position_on(y, value) * (kHeight - kChartTop - kChartBottom);
-  }
-};
-
-bool is_shown(const Series& series, std::size_t i) {
-  return is_drawable(series.x[i]) && is_drawable(series.y[i]);
-}
-
-bool has_bar(const Series& series, std::size_t i) {
-  return i < series.lower.size() && i < series.upper.size() && is_drawable(series.lower[i]) &&
-         is_drawable(series.upper[i]);
-}
 
 /// Of each stretch of a long line, its least and its greatest value in the order of their times;
 /// of one with a gap, the gap too.
@@ -74,8 +50,6 @@ std::vector<std::size_t> drawn_indices(const Series& series) {
   return indices;
 }
 
-int palette_index(const Series& series) { return std::clamp(series.colour, 0, kPaletteSize - 1); }
-
 struct PathData {
   std::string line;
   std::string dots;  ///< points that no line leads to
@@ -84,20 +58,6 @@ struct PathData {
 /// A bar at an upper limit, and an arrow down from it.
 std::string limit_arrow(double x, double y) {
   return fmt::format("M{:.1f} {:.1f}h8M{:.1f} {:.1f}v11m-3 -4l3 4l3 -4", x - 4.0, y, x, y);
-}
-
-/// Error bars with a short stroke at either end.
-std::string bars_data(const Series& series, const PlotFrame& frame) {
-  const std::size_t count = std::min({series.x.size(), series.lower.size(), series.upper.size()});
-  std::string data;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (!is_drawable(series.x[i]) || !has_bar(series, i)) continue;
-    const double x = frame.across(series.x[i]);
-    const double low = frame.up(series.lower[i]);
-    const double high = frame.up(series.upper[i]);
-    data += fmt::format("M{0:.1f} {1:.1f}h6m-3 0V{2:.1f}m-3 0h6", x - 3.0, low, high);
-  }
-  return data;
 }
 
 PathData path_data(const Series& series, const PlotFrame& frame) {
@@ -111,8 +71,11 @@ PathData path_data(const Series& series, const PlotFrame& frame) {
     const double x = frame.across(series.x[indices[n]]);
     const double y = frame.up(series.y[indices[n]]);
     const bool begins = n == 0 || !shown(n - 1);
+    if (series.mark == Mark::kJoined) data.dots += mark_data(palette_index(series), x, y);
     if (series.mark == Mark::kLimits) {
       data.line += limit_arrow(x, y);
+    } else if (series.mark == Mark::kJoined) {
+      data.line += fmt::format("{}{:.1f} {:.1f}", begins ? "M" : "L", x, y);
     } else if (series.mark == Mark::kPoints || (begins && !shown(n + 1))) {
       data.dots += mark_data(palette_index(series), x, y);
     } else if (begins) {
@@ -155,27 +118,8 @@ std::string marks_svg(const Series& series, const std::string& data) {
 }
 
 std::string line_classes(const Series& series) {
-  return fmt::format("line c{}{}", palette_index(series), series.dashed ? " dash" : "");
-}
-
-PlotFrame frame_of(const Chart& chart) {
-  std::vector<double> across = chart.x_includes;
-  std::vector<double> up = chart.y_includes;
-  for (const Series& series : chart.series) {
-    for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
-      if (!is_shown(series, i)) continue;
-      across.push_back(series.x[i]);
-      up.push_back(series.y[i]);
-      if (!has_bar(series, i)) continue;
-      up.push_back(series.upper[i]);
-      // The lower end of a rate may be almost 0: a logarithmic axis cuts it off.
-      if (chart.y_scale == Scale::kLinear) up.push_back(series.lower[i]);
-    }
-  }
-  for (const Rule& rule : chart.rules) up.push_back(rule.value);
-  return {.x = chart.x_scale == Scale::kLog ? log_axis(across, chart.least_x) : tight_axis(across),
-          .y = chart.y_scale == Scale::kLog ? log_axis(up, chart.least_shown)
-                                            : rounded_axis(up, kTicksUp)};
+  return fmt::format("{} c{}{}", series.mark == Mark::kJoined ? "way faint" : "line",
+                     palette_index(series), series.dashed ? " dash" : "");
 }
 
 std::vector<Tick> ticks_across(const Chart& chart, const PlotFrame& frame) {
@@ -185,6 +129,28 @@ std::vector<Tick> ticks_across(const Chart& chart, const PlotFrame& frame) {
     ticks.push_back({static_cast<double>(ticks.size() + 1), name});
   }
   return ticks;
+}
+
+/// A gap between the place of 0 and the rest of a logarithmic x axis, with a stroke at either side,
+/// within the axis's path; empty without such a place.
+std::string axis_break(const PlotFrame& frame, double foot) {
+  if (frame.x.zero_share <= 0.0) return {};
+  const double x = 0.5 * (frame.across(0.0) + frame.across(frame.x.lower));
+  return fmt::format("H{0:.1f}m-2 4l4 -8m4 0l-4 8M{1:.1f} {2:.1f}", x - 2.0, x + 2.0, foot);
+}
+
+/// Upwards about `middle`, in two lines where one would be longer than the drawing is high.
+std::string y_label_svg(const std::string& label, double middle) {
+  constexpr double kLabelSize = 12.5;
+  const auto line = [&](int x, const std::string& text) {
+    return fmt::format(
+        "<text class=\"middle label\" transform=\"translate({} {:.1f}) rotate(-90)\">{}</text>", x,
+        middle, escape_html(text));
+  };
+  if (estimated_width(label, kLabelSize) <= kHeight) return line(14, label);
+  const std::size_t half = label.find(' ', label.size() / 2);
+  if (half == std::string::npos) return line(14, label);
+  return line(11, label.substr(0, half)) + line(25, label.substr(half + 1));
 }
 
 std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
@@ -204,14 +170,16 @@ std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
     svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, foot + 18.0,
                        escape_html(tick.label));
   }
-  svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}H{:.1f}\"/>", kChartLeft,
-                     kChartTop, foot, right);
+  std::string minor;
+  for (const Tick& tick : minor_ticks_of(frame.x)) {
+    minor += fmt::format("M{:.1f} {:.1f}v3", frame.across(tick.value), foot);
+  }
+  if (!minor.empty()) svg += fmt::format("<path class=\"axis\" d=\"{}\"/>", minor);
+  svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}{}H{:.1f}\"/>", kChartLeft,
+                     kChartTop, foot, axis_break(frame, foot), right);
   svg += fmt::format("<text class=\"middle label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
                      (kChartLeft + right) / 2.0, kHeight - 8.0, escape_html(chart.x_label));
-  svg += fmt::format(
-      "<text class=\"middle label\" transform=\"translate(14 {:.1f}) rotate(-90)\">{}</text>",
-      (kChartTop + foot) / 2.0, escape_html(chart.y_label));
-  return svg;
+  return svg + y_label_svg(chart.y_label, (kChartTop + foot) / 2.0);
 }
 
 std::string areas_svg(const Chart& chart, const PlotFrame& frame) {
@@ -255,7 +223,7 @@ std::vector<LegendEntry> chart_legend(const Chart& chart) {
     }
     LegendEntry entry = line_entry(line_classes(series), series.name);
     if (series.mark == Mark::kPoints) entry.drawing.clear();
-    if (series.mark == Mark::kPoints || has_marks(chart, series)) {
+    if (series.mark == Mark::kPoints || series.mark == Mark::kJoined || has_marks(chart, series)) {
       entry.drawing += marks_svg(
           series, mark_data(palette_index(series), kSwatchWidth / 2.0, kSwatchHeight / 2.0));
     }
@@ -286,9 +254,9 @@ std::string chart_drawing(const Chart& chart, double x, double y) {
       x == 0.0 && y == 0.0 ? ""
                            : fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\"", x,
                                          y, kWidth, kHeight);
-  std::string svg =
-      fmt::format("<svg{} viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", place, kWidth,
-                  kHeight, escape_html(chart.title + ": " + chart.y_label));
+  std::string svg = fmt::format(
+      "<svg{} viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">", place, kWidth, kHeight,
+      escape_html(chart.in_words.empty() ? chart.title + ": " + chart.y_label : chart.in_words));
   svg += areas_svg(chart, frame) + axes_svg(chart, frame);
   for (const Rule& rule : chart.rules) {
     if (!is_drawable(rule.value)) continue;
@@ -297,9 +265,10 @@ std::string chart_drawing(const Chart& chart, double x, double y) {
   }
   for (const Series& series : chart.series) {
     const PathData data = path_data(series, frame);
-    const std::string bars = bars_data(series, frame);
+    const std::string bars = error_bars(series, frame);
     if (!bars.empty()) {
-      svg += fmt::format("<path class=\"line c{}\" d=\"{}\"/>", palette_index(series), bars);
+      svg += fmt::format("<path class=\"line{} c{}\" d=\"{}\"/>",
+                         series.mark == Mark::kJoined ? " thin" : "", palette_index(series), bars);
     }
     if (!data.line.empty()) {
       svg += fmt::format("<path class=\"{}\" d=\"{}\"/>", line_classes(series), data.line);
@@ -308,7 +277,7 @@ std::string chart_drawing(const Chart& chart, double x, double y) {
         data.dots + (has_marks(chart, series) ? line_marks(series, frame) : std::string());
     if (!marks.empty()) svg += marks_svg(series, marks);
   }
-  return svg + "</svg>\n";
+  return svg + point_labels(chart, frame) + "</svg>\n";
 }
 
 std::string chart_figure(const Chart& chart) {

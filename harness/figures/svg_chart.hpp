@@ -13,8 +13,9 @@
 
 namespace qsmpc::harness {
 
-/// kLimits: an arrow down from each point, which only the truth is known to be below of.
-enum class Mark { kLine, kSteps, kPoints, kLimits };
+/// kJoined: points with a thin line from each to the next. kLimits: an arrow down from each point,
+/// which only the truth is known to be below of.
+enum class Mark { kLine, kSteps, kPoints, kJoined, kLimits };
 
 /// One line of a chart. Where x or y is not finite, the line is interrupted.
 struct Series {
@@ -28,6 +29,10 @@ struct Series {
   /// drawn.
   std::vector<double> lower{};
   std::vector<double> upper{};
+  std::vector<double> x_lower{};  ///< the same of a horizontal bar
+  std::vector<double> x_upper{};
+  /// What stands beside each point, where it hides nothing; empty: nothing.
+  std::vector<std::string> labels{};
 };
 
 /// A part of the ground that is shaded.
@@ -45,12 +50,14 @@ struct Rule {
 
 struct Chart {
   std::string title;
-  std::string note{};  ///< below the title, in small print
+  std::string note{};      ///< below the title, in small print
+  std::string in_words{};  ///< for those who do not see it; empty: title and label of y
   std::string x_label;
   std::string y_label;
   Scale x_scale = Scale::kLinear;
   Scale y_scale = Scale::kLinear;
   double least_x = 1e-12;      ///< on a logarithmic axis: what is below is drawn at its foot
+  bool x_has_zero = false;     ///< on a logarithmic axis: 0 has a place of its own, left of a break
   double least_shown = 1e-12;  ///< the same of y
   std::vector<std::string> x_names{};  ///< what stands at x = 1, 2, … in place of numbers
   std::vector<double> x_includes{};    ///< values that the axes must show

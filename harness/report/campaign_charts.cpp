@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "harness/figures/palette.hpp"
+#include "harness/report/tradeoff_charts.hpp"
 #include "harness/text/printable.hpp"
 
 namespace qsmpc::harness {
@@ -312,6 +313,8 @@ std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistic
   std::vector<CampaignFigure> figures = {outcome_figure(statistics),
                                          reliability_figure(statistics)};
   if (!statistics.differences.empty()) figures.push_back(difference_figure(statistics));
+  std::vector<Chart> tradeoff = tradeoff_charts(statistics);
+  if (!tradeoff.empty()) figures.push_back({.file = kTradeoffFile, .charts = std::move(tradeoff)});
   return figures;
 }
 

@@ -12,6 +12,7 @@
 #include "harness/report/campaign_outcomes.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/report/table_page.hpp"
+#include "harness/report/tradeoff_charts.hpp"
 #include "harness/text/html.hpp"
 
 namespace qsmpc::harness {
@@ -186,6 +187,7 @@ std::string worst_table(const CampaignStatistics& statistics,
 std::string figures(const CampaignStatistics& statistics) {
   std::string html = "<h2>Figures</h2>\n<div class=\"grid\">\n";
   for (const CampaignFigure& figure : campaign_figures(statistics)) {
+    if (figure.file == kTradeoffFile) continue;
     for (const Chart& chart : figure.charts) html += panel_figure(chart);
   }
   return html + "</div>\n";
@@ -196,13 +198,13 @@ std::string figures(const CampaignStatistics& statistics) {
 std::string campaign_page(const CampaignStatistics& statistics,
                           const std::vector<ListedEpisode>& worst) {
   const std::string name = escape_html(statistics.campaign.name);
-  return framed_page({.title = statistics.campaign.name,
-                      .version = statistics.campaign.version,
-                      .kind = PageKind::kTables},
-                     "<h1>" + name + "</h1>\n" + kicker(statistics) +
-                         campaign_outcomes(statistics) + spread_table(statistics) +
-                         certificates_table(statistics) + differences_table(statistics) +
-                         worst_table(statistics, worst) + figures(statistics));
+  return framed_page(
+      {.title = statistics.campaign.name,
+       .version = statistics.campaign.version,
+       .kind = PageKind::kTables},
+      "<h1>" + name + "</h1>\n" + kicker(statistics) + campaign_outcomes(statistics) +
+          tradeoff_section(statistics) + spread_table(statistics) + certificates_table(statistics) +
+          differences_table(statistics) + worst_table(statistics, worst) + figures(statistics));
 }
 
 }  // namespace qsmpc::harness

@@ -16,6 +16,7 @@ const char* mark_name(Mark mark) {
     case Mark::kSteps:
       return "steps";
     case Mark::kPoints:
+    case Mark::kJoined:
     case Mark::kLimits:
       break;
   }

@@ -43,6 +43,7 @@ RiskUse risk_use(const Trace& trace) {
     count_period(worst_stage(step), use.stage);
     count_period(controller::horizon_bound(step.certificates), use.plan);
     count_period(spent, use.mission);
+    if (exceeds_limits(step, limits) || spent > limits.mission) ++use.exceeded_periods;
   }
   return use;
 }

@@ -22,6 +22,9 @@ struct RiskUse {
   /// Of the sum of the next steps' certificates up to a period, not capped; of all when the drive
   /// has ended.
   CertifiedRisk mission;
+  /// Periods in which any limit is exceeded: by the period's plan (exceeds_limits), or by the drive
+  /// up to its end.
+  int exceeded_periods = 0;
 
   [[nodiscard]] bool any_limit() const {
     return stage.is_limited() || plan.is_limited() || mission.is_limited();

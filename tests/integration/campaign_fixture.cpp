@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string row_text(const harness::EpisodeRow& row) {
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", row.variant, row.seed,
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", row.variant, row.seed,
                      row.outcome, row.fault, row.steps, row.time_to_target.value_or(-1.0),
                      row.unsafe, row.min_clearance, row.cost, row.next_step_max, row.next_step_sum,
                      row.horizon_max, row.thesis_max, row.iterations_median, row.fallbacks,
-                     row.trace);
+                     row.risk_exceeded.value_or(-1), row.trace);
 }
 
 /// All wall-clock values are under this key.

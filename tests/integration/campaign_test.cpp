@@ -343,6 +343,13 @@ TEST(Campaign, fails_on_what_the_user_asked_to_be_told) {
   EXPECT_EQ(campaign(file, folder / "out").exit_code, 0);
   EXPECT_EQ(campaign(file, folder / "out", {"--fail-on", "timeout"}).exit_code, 1);
   EXPECT_EQ(campaign(file, folder / "out", {"--fail-on", "unsafe,fault"}).exit_code, 0);
+  EXPECT_EQ(campaign(file, folder / "out", {"--fail-on", "risk_exceeded"}).exit_code, 0);
+  const std::string limited =
+      folder.file("limited.yaml",
+                  "scenario: dubins_corridor\nseeds: [3]\n"
+                  "variants: {limited: {risk: {plan: 0}, limit.steps: 2}}\n");
+  EXPECT_EQ(campaign(limited, folder / "limited").exit_code, 0);
+  EXPECT_EQ(campaign(limited, folder / "limited", {"--fail-on", "risk_exceeded"}).exit_code, 1);
 }
 
 TEST(Campaign, wrong_usage_is_told_in_one_line) {

@@ -131,6 +131,21 @@ TEST(Run, tells_an_outcome_that_it_was_asked_to_tell) {
       0);
 }
 
+TEST(Run, tells_that_a_limit_of_the_risk_was_exceeded_where_it_was_asked_to) {
+  const TemporaryFolder folder;
+  const auto exit_code = [&](const char* risk, const char* fail_on) {
+    return run_qsmpc(small_run(folder.path(), {"--no-video", "--set", std::string("risk=") + risk,
+                                               "--fail-on", fail_on}))
+        .exit_code;
+  };
+  constexpr const char* kNever = "{plan: 0}";  // no certificate is 0
+  EXPECT_EQ(exit_code(kNever, "risk_exceeded"), 1);
+  EXPECT_EQ(exit_code(kNever, "collision,left_bounds,fault"), 0);
+  EXPECT_EQ(exit_code("{mission: 0}", "risk_exceeded"), 1);
+  EXPECT_EQ(exit_code("{plan: 1}", "risk_exceeded"), 0);
+  EXPECT_EQ(exit_code("{}", "risk_exceeded"), 0);
+}
+
 TEST(Run, a_drive_that_is_unsafe_fails_unless_told_otherwise) {
   const TemporaryFolder folder;
   const auto exit_code = [&](const char* safe_set, std::vector<std::string> more) {

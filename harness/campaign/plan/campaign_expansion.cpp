@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "harness/campaign/plan/campaign_refusals.hpp"
+#include "harness/campaign/plan/variant_families.hpp"
 #include "harness/campaign/plan/variant_names.hpp"
 #include "harness/campaign/plan/variant_scenario.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -70,7 +71,8 @@ class Expansion {
                       .variants = {},
                       .seeds = draft_.seeds,
                       .traces = draft_.traces,
-                      .trace_sample = draft_.trace_sample};
+                      .trace_sample = draft_.trace_sample,
+                      .risk_against_cost = {}};
     if (draft_.scenarios.empty() || !is_small_enough()) return campaign;
     refuse_undone();
     for (const CampaignChoice& scenario : draft_.scenarios) {
@@ -81,6 +83,9 @@ class Expansion {
     }
     if (refusals_.empty()) name_variants(draft_, paths_, variants_, refusals_);
     campaign.variants = std::move(variants_);
+    if (!draft_.families.empty()) {
+      campaign.risk_against_cost = known_families(draft_.families, all_settings(), refusals_);
+    }
     return campaign;
   }
 
@@ -91,6 +96,7 @@ class Expansion {
   void add_settings(const CampaignChoice& scenario, const std::string& path,
                     const SettingGroup& settings);
   [[nodiscard]] SettingGroup with_grid_point(const SettingGroup& variant, std::int64_t point) const;
+  [[nodiscard]] std::vector<std::string> all_settings() const;
 
   const CampaignDraft& draft_;
   CampaignRefusals refusals_;
@@ -160,6 +166,18 @@ SettingGroup Expansion::with_grid_point(const SettingGroup& variant, std::int64_
     settings.name += (settings.name.empty() ? "" : ", ") + axis.values[index].text;
   }
   return settings;
+}
+
+/// What the settings of each variant and point of the grid are called.
+std::vector<std::string> Expansion::all_settings() const {
+  const std::int64_t points = grid_points(draft_);
+  std::vector<std::string> names;
+  for (const SettingGroup& variant : draft_.variants) {
+    for (std::int64_t point = 0; point < points; ++point) {
+      names.push_back(with_grid_point(variant, point).name);
+    }
+  }
+  return names;
 }
 
 void Expansion::add_scenario(const CampaignChoice& scenario, const std::string& path) {

@@ -88,6 +88,24 @@ std::vector<KeyDescription> trace_keys() {
            .fallback = "0"}};
 }
 
+std::vector<KeyDescription> figure_keys() {
+  const KeyDescription family{
+      .name = "FAMILY",
+      .family = NameFamily::kFree,
+      .values = {list_of_values(TextValue{.what = "settings"}, {.least = 1, .once = true})}};
+  const MappingValue figures{
+      {{.name = "risk_against_cost",
+        .values = {MappingValue{{family}}},
+        .words = fmt::format("mapping of a FAMILY to a list of its variants, up to {} "
+                             "families, see [below](#risk-against-cost)",
+                             kMostFamilies),
+        .fallback_words = "no such figure"}}};
+  return {{.name = "figure",
+           .values = {figures},
+           .words = "figures that are drawn on request: a mapping of the key below",
+           .fallback_words = "none"}};
+}
+
 }  // namespace
 
 const std::vector<std::string>& trace_keeping_names() {
@@ -100,7 +118,8 @@ const std::vector<std::string>& trace_keeping_names() {
 const std::vector<KeyDescription>& campaign_keys() {
   static const std::vector<KeyDescription> keys = [] {
     std::vector<KeyDescription> all;
-    for (std::vector<KeyDescription> (*make)() : {head_keys, setting_keys, seed_keys, trace_keys}) {
+    for (std::vector<KeyDescription> (*make)() :
+         {head_keys, setting_keys, seed_keys, trace_keys, figure_keys}) {
       for (KeyDescription& key : make()) all.push_back(std::move(key));
     }
     return all;

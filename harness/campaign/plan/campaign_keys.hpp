@@ -16,6 +16,7 @@ namespace qsmpc::harness {
 inline constexpr std::size_t kLongestCampaignDescription = 500;  ///< bytes; one line
 inline constexpr int kMostCampaignSeeds = 1'000'000'000;
 inline constexpr std::size_t kMostListedSeeds = 100'000;
+inline constexpr std::size_t kMostFamilies = 6;  ///< of a figure: as many colours as there are
 /// Over the last seed: a store's whole numbers are signed.
 inline constexpr std::uint64_t kSeedEnd = std::uint64_t{1} << 63U;
 

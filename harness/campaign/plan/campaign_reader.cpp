@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/campaign/plan/campaign_keys.hpp"
+#include "harness/campaign/plan/variant_families.hpp"
 #include "harness/scenario/yaml_text.hpp"
 #include "harness/text/number_parse.hpp"
 #include "harness/text/text_encoding.hpp"
@@ -52,6 +53,7 @@ class CampaignReader {
     if (const YamlNode* node = take("plants")) read_plants(*node);
     read_seeds();
     read_traces();
+    draft_.families = read_families(root_.section("figure"), tree_.find("figure"), problems_);
     root_.refuse_unread();
     return std::move(draft_);
   }

@@ -55,6 +55,12 @@ struct GridAxis {
   std::vector<CampaignSetting> values;
 };
 
+/// A family of the figure of risk against cost, before its members are known to be there.
+struct FamilyDraft {
+  std::string name;
+  std::vector<CampaignChoice> settings{};
+};
+
 struct CampaignDraft {
   std::string file;  ///< what errors call it
   std::string name;
@@ -65,6 +71,7 @@ struct CampaignDraft {
   SeedSet seeds;
   TraceKeeping traces = TraceKeeping::kNone;
   std::int64_t trace_sample = 0;
+  std::vector<FamilyDraft> families{};
 };
 
 /// Reads `tree`. Everything wrong with it is noted in `problems`, and left out of what is returned.

@@ -17,7 +17,10 @@ std::string field(const char* text) { return csv_field(text); }
 std::string field(bool value) { return value ? "1" : "0"; }
 std::string field(std::integral auto value) { return fmt::format("{}", value); }
 std::string field(double value) { return std::isfinite(value) ? fmt::format("{}", value) : ""; }
-std::string field(const std::optional<double>& value) { return value ? field(*value) : ""; }
+template <class Value>
+std::string field(const std::optional<Value>& value) {
+  return value ? field(*value) : "";
+}
 
 /// Its values, separated by commas, as a line.
 template <class First, class... Rest>
@@ -59,8 +62,9 @@ std::string variant_line(const VariantStatistics& variant) {
   std::string line = without_end(line_of(variant.name, variant.scenario, variant.settings,
                                          variant.plant, variant.episodes, variant.done));
   for (const ListedOutcome& outcome : listed_outcomes()) line += rate_fields(variant.*outcome.rate);
-  return line + rate_fields(variant.unsafe) + spread_fields(variant.cost) +
-         spread_fields(variant.min_clearance) + spread_fields(variant.time_to_target) + "," +
+  return line + rate_fields(variant.unsafe) + "," + field(variant.risk_exceeded) +
+         spread_fields(variant.cost) + spread_fields(variant.min_clearance) +
+         spread_fields(variant.time_to_target) + "," +
          line_of(variant.periods, variant.unsafe_periods, variant.unsafe_step_rate(),
                  variant.certified_step_rate(), variant.p_value, times.median, times.p95, times.p99,
                  times.max, times.mean, variant.deadline_misses);
@@ -91,7 +95,7 @@ std::string calibration_lines(const std::string& variant,
 std::string variants_csv(const CampaignStatistics& statistics) {
   std::string csv = "variant,scenario,settings,plant,episodes,done";
   for (const ListedOutcome& outcome : listed_outcomes()) csv += rate_head(outcome.name);
-  csv += rate_head("unsafe");
+  csv += rate_head("unsafe") + ",risk_exceeded";
   csv += spread_head("cost") + spread_head("min_clearance") + spread_head("time_to_target");
   csv +=
       ",periods,unsafe_periods,unsafe_step_rate,certified_step_rate,exceedance_p_value,"
@@ -129,16 +133,17 @@ std::string calibration_csv(const CampaignStatistics& statistics) {
 
 std::string episodes_csv_head() {
   return "variant,seed,outcome,fault,steps,time_to_target,unsafe,min_clearance,cost,next_step_max,"
-         "next_step_sum,horizon_max,thesis_max,iterations_median,fallbacks,trace,version,"
+         "next_step_sum,horizon_max,thesis_max,iterations_median,fallbacks,risk_exceeded,trace,"
+         "version,"
          "finished_at,wall_ms,deadline_misses\n";
 }
 
 std::string episodes_csv_line(const StoredVariant& variant, const EpisodeRow& row) {
   return line_of(variant.name, row.seed, row.outcome, row.fault, row.steps, row.time_to_target,
                  row.unsafe, row.min_clearance, row.cost, row.next_step_max, row.next_step_sum,
-                 row.horizon_max, row.thesis_max, row.iterations_median, row.fallbacks, row.trace,
-                 row.version, row.timing.finished_at, row.timing.wall_ms,
-                 row.timing.deadline_misses);
+                 row.horizon_max, row.thesis_max, row.iterations_median, row.fallbacks,
+                 row.risk_exceeded, row.trace, row.version, row.timing.finished_at,
+                 row.timing.wall_ms, row.timing.deadline_misses);
 }
 
 }  // namespace qsmpc::harness

@@ -98,6 +98,7 @@ Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
   json.update({{"empirical",
                 {{"unsafe_rate", variant.unsafe.rate},
                  {"unsafe_interval", interval_json(variant.unsafe.interval)}}},
+               {"risk_exceeded", variant.risk_exceeded},
                {"cost", spread_json(variant.cost)},
                {"min_clearance", spread_json(variant.min_clearance)},
                {"time_to_target", spread_json(variant.time_to_target)},
@@ -109,6 +110,38 @@ Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
                {"calibration", calibration_json(variant.calibration, variant.published)},
                {"differences", differences_json(statistics, number)},
                {"ocp_ms", times_json(variant)}});
+  return json;
+}
+
+Json point_json(const VariantStatistics& variant, const TradeoffPoint& point) {
+  return {{"variant", variant.name},
+          {"settings", variant.settings},
+          {"done", variant.done},
+          {"reached", variant.reached.events},
+          {"timeout", variant.timeout.events},
+          {"unsafe", variant.unsafe.events},
+          {"unsafe_rate", variant.unsafe.rate},
+          {"unsafe_interval", interval_json(variant.unsafe.interval)},
+          {"reached_cost",
+           {{"drives", point.cost.drives},
+            {"mean", point.cost.mean},
+            {"interval", interval_json(point.cost.interval)}}}};
+}
+
+Json tradeoff_json(const CampaignStatistics& statistics) {
+  Json json = Json::array();
+  for (const TradeoffPanel& panel : statistics.tradeoff) {
+    Json families = Json::object();
+    for (const TradeoffFamily& family : panel.families) {
+      Json points = Json::array();
+      for (const TradeoffPoint& point : family.points) {
+        points.push_back(point_json(statistics.variants[point.variant], point));
+      }
+      families[family.name] = std::move(points);
+    }
+    json.push_back(
+        {{"scenario", panel.scenario}, {"plant", panel.plant}, {"families", std::move(families)}});
+  }
   return json;
 }
 
@@ -129,6 +162,7 @@ std::string campaign_json(const CampaignStatistics& statistics) {
   }
   json["exceedance_p_value"] = statistics.p_value;
   json["calibration"] = calibration_json(statistics.calibration, statistics.published);
+  if (!statistics.tradeoff.empty()) json["tradeoff"] = tradeoff_json(statistics);
   return json_text(json);
 }
 

@@ -72,6 +72,7 @@ CampaignStatistics campaign_statistics(const StoreReader& store) {
   statistics.calibration = certified.result();
   statistics.published = published.result();
   statistics.p_value = certified.p_value();
+  statistics.tradeoff = tradeoff_panels(store);
   return statistics;
 }
 

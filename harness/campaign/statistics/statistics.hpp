@@ -11,6 +11,7 @@
 
 #include "harness/campaign/statistics/calibration.hpp"
 #include "harness/campaign/statistics/paired_difference.hpp"
+#include "harness/campaign/statistics/tradeoff.hpp"
 #include "harness/campaign/statistics/variant_pairs.hpp"
 #include "harness/campaign/statistics/variant_statistics.hpp"
 #include "harness/campaign/store/store_reader.hpp"
@@ -31,7 +32,8 @@ struct CampaignStatistics {
   std::vector<VariantDifference> differences{};
   std::vector<CalibrationBin> calibration{};  ///< over all variants
   std::vector<CalibrationBin> published{};
-  double p_value = 1.0;  ///< of all variants' periods
+  double p_value = 1.0;                   ///< of all variants' periods
+  std::vector<TradeoffPanel> tradeoff{};  ///< where the campaign asks for risk against cost
 };
 
 /// Reads every row some times, in a fixed order; memory grows with the number of variants only.

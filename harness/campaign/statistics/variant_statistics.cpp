@@ -69,6 +69,7 @@ void VariantTally::add(const EpisodeRow& row) {
   ++done_;
   ++outcomes_[row.outcome];
   unsafe_ += row.unsafe ? 1 : 0;
+  risk_exceeded_ += row.risk_exceeded.value_or(0) > 0 ? 1 : 0;
   deadline_misses_ += row.timing.deadline_misses;
   const bool compares = row.outcome != outcome_name(Outcome::kFault);
   const auto add_to = [&](SpreadTally& spread, double value) {
@@ -102,6 +103,7 @@ VariantStatistics VariantTally::result() const {
           .fault = rate_of(outcome_name(Outcome::kFault)),
           .left_safe_set = rate_of(kLeftSafeSet),
           .unsafe = episode_rate(unsafe_, done_),
+          .risk_exceeded = risk_exceeded_,
           .deadline_misses = deadline_misses_,
           .periods = calibration_.periods(),
           .unsafe_periods = calibration_.unsafe(),

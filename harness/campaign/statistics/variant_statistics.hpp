@@ -74,12 +74,13 @@ struct VariantStatistics {
   EpisodeRate left_bounds{};
   EpisodeRate timeout{};
   EpisodeRate fault{};
-  EpisodeRate left_safe_set{};  ///< collision or left_bounds, of earlier versions
-  EpisodeRate unsafe{};         ///< the true state entered the unsafe set
-  Spread cost{};                ///< a faulted episode ranks as infinite
-  Spread min_clearance{};       ///< m; a faulted episode ranks as −∞
-  Spread time_to_target{};      ///< s; of the episodes that reached it only
-  Distribution ocp_ms{};        ///< of all periods; not numbers without one
+  EpisodeRate left_safe_set{};     ///< collision or left_bounds, of earlier versions
+  EpisodeRate unsafe{};            ///< the true state entered the unsafe set
+  std::int64_t risk_exceeded = 0;  ///< drives in which a limit of the risk is exceeded
+  Spread cost{};                   ///< a faulted episode ranks as infinite
+  Spread min_clearance{};          ///< m; a faulted episode ranks as −∞
+  Spread time_to_target{};         ///< s; of the episodes that reached it only
+  Distribution ocp_ms{};           ///< of all periods; not numbers without one
   std::int64_t deadline_misses = 0;
   std::int64_t periods = 0;
   std::int64_t unsafe_periods = 0;  ///< that ended in the unsafe set
@@ -127,6 +128,7 @@ class VariantTally {
  private:
   std::int64_t done_ = 0;
   std::int64_t unsafe_ = 0;
+  std::int64_t risk_exceeded_ = 0;
   std::int64_t deadline_misses_ = 0;
   std::map<std::string, std::int64_t> outcomes_{};
   SpreadTally cost_{WorstIs::kHighest};

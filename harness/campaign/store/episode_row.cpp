@@ -41,6 +41,7 @@ EpisodeRow episode_row(const EpisodeView& view, std::int64_t variant) {
           .thesis_max = summary.thesis_max,
           .iterations_median = summary.iterations_median,
           .fallbacks = summary.fallbacks,
+          .risk_exceeded = summary.risk.exceeded_periods,
           .version = summary.version,
           .timing = {.deadline_misses = summary.deadline_misses},
           .periods = period_rows(view)};

@@ -47,6 +47,9 @@ struct EpisodeRow {
   double thesis_max = 0.0;   ///< of the published value; not a bound
   double iterations_median = 0.0;  ///< cost-and-gradient evaluations of a plan
   int fallbacks = 0;
+  /// Periods in which a limit of the risk is exceeded (RiskUse); nothing in rows of versions that
+  /// did not count them.
+  std::optional<int> risk_exceeded{};
   std::string trace{};    ///< folder of its trace, relative to the campaign's; empty: not kept
   std::string version{};  ///< of the program that drove it
   EpisodeTiming timing{};

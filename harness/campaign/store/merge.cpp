@@ -9,6 +9,7 @@
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "harness/campaign/campaign.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
@@ -28,6 +29,16 @@ std::string shard_text(const Shard& shard) {
   return fmt::format("shard {}/{}", shard.index, shard.count);
 }
 
+/// "penalties: w2, w20; limits: r001", "none" without a family.
+std::string families_text(const std::vector<VariantFamily>& families) {
+  std::string text;
+  for (const VariantFamily& family : families) {
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", family.name,
+                        fmt::join(family.settings, ", "));
+  }
+  return text.empty() ? "none" : text;
+}
+
 /// Refuses `other` unless it is a shard of the campaign that `first` is of.
 void require_same(const StoreReader& first, const StoreReader& other, const std::string& folder) {
   const auto require = [&](const std::string& key, const std::string& found,
@@ -42,6 +53,8 @@ void require_same(const StoreReader& first, const StoreReader& other, const std:
   require("version", found.version, expected.version);
   require("seeds", found.seeds, expected.seeds);
   require("traces", found.traces, expected.traces);
+  require("figure.risk_against_cost", families_text(found.risk_against_cost),
+          families_text(expected.risk_against_cost));
   require("shards", fmt::format("{}", found.shard.count), fmt::format("{}", expected.shard.count));
   require("variants", fmt::format("{}", other.variants().size()),
           fmt::format("{}", first.variants().size()));

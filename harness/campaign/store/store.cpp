@@ -117,7 +117,8 @@ StoredCampaign stored_campaign(const Campaign& campaign, const Shard& shard) {
           .traces = traces_text(campaign),
           .shard = shard,
           .episodes = static_cast<std::int64_t>(campaign.variants.size()) *
-                      shard.share(campaign.seeds.size())};
+                      shard.share(campaign.seeds.size()),
+          .risk_against_cost = campaign.risk_against_cost};
 }
 
 std::vector<StoredVariant> stored_variants(const Campaign& campaign,
@@ -229,7 +230,8 @@ Store::Store(const std::string& folder, const StoredCampaign& campaign,
     if (!implementation_->holds_campaign()) {
       implementation_->fill(campaign, variants);
     } else {
-      std::optional<Difference> difference = difference_of(read_campaign(database), campaign);
+      const StoredCampaign stored = read_campaign(database);
+      std::optional<Difference> difference = difference_of(stored, campaign);
       if (!difference) difference = difference_of(read_variants(database), variants);
       if (difference && !update) {
         throw InputError({.file = path,
@@ -239,7 +241,13 @@ Store::Store(const std::string& folder, const StoredCampaign& campaign,
                                       "; --update goes on with the changed campaign and keeps the "
                                       "episodes that it still asks for"});
       }
-      if (difference) implementation_->change(campaign, variants, seeds);
+      if (difference) {
+        implementation_->change(campaign, variants, seeds);
+      } else if (stored.risk_against_cost != campaign.risk_against_cost) {
+        SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+        insert_campaign(database, campaign);
+        transaction.commit();
+      }
     }
     for (const StoredVariant& variant : read_variants(database)) {
       implementation_->ids.push_back(variant.id);

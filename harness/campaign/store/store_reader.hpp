@@ -42,6 +42,8 @@ struct StoredCampaign {
   std::string traces;   ///< traces_text of the campaign
   Shard shard{};
   std::int64_t episodes = 0;  ///< of this shard, when all are done
+  /// Campaign::risk_against_cost. No episode depends on it: the store takes what it is now.
+  std::vector<VariantFamily> risk_against_cost{};
 
   friend bool operator==(const StoredCampaign&, const StoredCampaign&) = default;
 };

@@ -45,13 +45,41 @@ void insert_periods(SQLite::Database& database, const EpisodeRow& row) {
   }
 }
 
+void insert_families(SQLite::Database& database, const std::vector<VariantFamily>& families) {
+  database.exec("DELETE FROM risk_against_cost");
+  SQLite::Statement statement(database, "INSERT INTO risk_against_cost VALUES (?, ?, ?, ?)");
+  for (std::size_t n = 0; n < families.size(); ++n) {
+    for (std::size_t i = 0; i < families[n].settings.size(); ++i) {
+      statement.bind(1, static_cast<std::int64_t>(n));
+      statement.bind(2, static_cast<std::int64_t>(i));
+      statement.bind(3, families[n].name);
+      statement.bind(4, families[n].settings[i]);
+      run(statement);
+    }
+  }
+}
+
+std::vector<VariantFamily> read_stored_families(SQLite::Database& database) {
+  SQLite::Statement statement(
+      database, "SELECT family, name, settings FROM risk_against_cost ORDER BY family, place");
+  std::vector<VariantFamily> families;
+  std::int64_t last = -1;
+  while (statement.executeStep()) {
+    const std::int64_t family = statement.getColumn(0).getInt64();
+    if (family != last) families.push_back({.name = statement.getColumn(1).getString()});
+    families.back().settings.push_back(statement.getColumn(2).getString());
+    last = family;
+  }
+  return families;
+}
+
 }  // namespace
 
 std::string episode_columns(const std::string& e, const std::string& t) {
   std::string columns = fmt::format("{0}.variant, {0}.seed, {1}, ", e, outcome_column(e + "."));
   for (const char* name : {"fault", "steps", "time_to_target", "unsafe", "min_clearance", "cost",
                            "next_step_max", "next_step_sum", "horizon_max", "thesis_max",
-                           "iterations_median", "fallbacks", "trace", "version"}) {
+                           "iterations_median", "fallbacks", "risk_exceeded", "trace", "version"}) {
     columns += fmt::format("{}.{}, ", e, name);
   }
   return columns + fmt::format("{0}.finished_at, {0}.wall_ms, {0}.deadline_misses", t);
@@ -82,6 +110,9 @@ EpisodeRow episode_of(SQLite::Statement& statement, int first) {
   row.thesis_max = number_of(column());
   row.iterations_median = number_of(column());
   row.fallbacks = column().getInt();
+  if (const SQLite::Column periods = column(); !periods.isNull()) {
+    row.risk_exceeded = periods.getInt();
+  }
   row.trace = column().getString();
   row.version = column().getString();
   row.timing.finished_at = column().getDouble();
@@ -108,7 +139,8 @@ std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database) {
 
 void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   SQLite::Statement episode(
-      database, "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      database,
+      "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   episode.bind(1, row.variant);
   episode.bind(2, stored_seed(row.seed));
   episode.bind(3, row.outcome);
@@ -126,6 +158,11 @@ void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   episode.bind(15, row.fallbacks);
   episode.bind(16, row.trace);
   episode.bind(17, row.version);
+  if (row.risk_exceeded) {
+    episode.bind(18, *row.risk_exceeded);
+  } else {
+    episode.bind(18);
+  }
   run(episode);
   SQLite::Statement timing(database, "INSERT INTO episode_timing VALUES (?, ?, ?, ?, ?)");
   timing.bind(1, row.variant);
@@ -158,7 +195,8 @@ StoredCampaign read_campaign(SQLite::Database& database) {
           .traces = statement.getColumn(3).getString(),
           .shard = {.index = statement.getColumn(4).getInt64(),
                     .count = statement.getColumn(5).getInt64()},
-          .episodes = statement.getColumn(6).getInt64()};
+          .episodes = statement.getColumn(6).getInt64(),
+          .risk_against_cost = read_stored_families(database)};
 }
 
 void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign) {
@@ -172,6 +210,7 @@ void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign)
   statement.bind(6, campaign.shard.count);
   statement.bind(7, campaign.episodes);
   run(statement);
+  insert_families(database, campaign.risk_against_cost);
 }
 
 std::vector<StoredVariant> read_variants(SQLite::Database& database) {

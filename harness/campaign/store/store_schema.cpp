@@ -90,10 +90,22 @@ ALTER TABLE episode ADD COLUMN version TEXT NOT NULL DEFAULT '';
 UPDATE episode SET version = (SELECT version FROM campaign);
 )sql";
 
+// Rows of earlier versions do not say in how many periods a limit of the risk was exceeded.
+constexpr const char* kThirdSchema = R"sql(
+ALTER TABLE episode ADD COLUMN risk_exceeded INTEGER;
+CREATE TABLE risk_against_cost (
+  family INTEGER NOT NULL,
+  place INTEGER NOT NULL,
+  name TEXT NOT NULL,
+  settings TEXT NOT NULL,
+  PRIMARY KEY (family, place)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& store_migrations() {
-  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema};
+  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema, kThirdSchema};
   return migrations;
 }
 

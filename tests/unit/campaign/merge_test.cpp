@@ -187,6 +187,10 @@ TEST_F(Merge, refuses_shards_of_other_campaigns) {
   other.variants[0] = testing::quick_variant("three", 4);
   EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
               HasSubstr("variant three: found another scenario"));
+  other = testing::quick_campaign();
+  other.risk_against_cost = {{.name = "horizons", .settings = {"two", "three"}}};
+  EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
+              HasSubstr("figure.risk_against_cost: found horizons: two, three, expected none"));
 }
 
 TEST_F(Merge, never_writes_over_a_campaign) {

@@ -12,6 +12,7 @@
 #include "harness/campaign/store/store_rows.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
+#include "harness/version.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
 
@@ -220,6 +221,20 @@ TEST_F(StoreTest, refuses_a_changed_campaign_and_says_what_changed) {
   EXPECT_THAT(refusal(other), HasSubstr("--update"));
 }
 
+// What a figure shows changes no episode.
+TEST_F(StoreTest, takes_the_families_of_a_figure_as_they_are_now) {
+  Campaign campaign = testing::quick_campaign();
+  open(campaign).add(testing::example_row(0, 5), false);
+  campaign.risk_against_cost = {{.name = "horizons", .settings = {"two", "three"}},
+                                {.name = "one of them", .settings = {"two"}}};
+  EXPECT_FALSE(open(campaign).update().changed);
+  EXPECT_EQ(StoreReader(folder.path()).campaign().risk_against_cost, campaign.risk_against_cost);
+  EXPECT_EQ(rows_of(0).size(), 1U);
+  campaign.risk_against_cost.clear();
+  (void)open(campaign);
+  EXPECT_TRUE(StoreReader(folder.path()).campaign().risk_against_cost.empty());
+}
+
 TEST_F(StoreTest, refuses_a_vehicle_that_changed) {
   const Campaign campaign = testing::quick_campaign();
   const auto open_with = [&](const std::string& digest) {
@@ -331,8 +346,8 @@ void make_first_store(const std::string& path) {
   SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
   migrate(database, 0, {store_migrations().front()});
   const Campaign campaign = testing::quick_campaign();
-  StoredCampaign stored = stored_campaign(campaign, {});
-  insert_campaign(database, stored);
+  database.exec(fmt::format(
+      "INSERT INTO campaign VALUES (1, 'quick', '{}', '5 to 8', 'none', 1, 1, 8)", kVersion));
   for (const StoredVariant& variant : stored_variants(campaign, {"", ""})) {
     insert_variant(database, variant, variant.id);
   }
@@ -351,6 +366,7 @@ TEST_F(StoreTest, of_an_older_schema_is_brought_up_to_date_with_its_episodes) {
   const std::vector<EpisodeRow> rows = rows_of(1);
   ASSERT_EQ(rows.size(), 1U);
   EXPECT_EQ(rows[0].cost, 9.0);
+  EXPECT_EQ(rows[0].risk_exceeded, std::nullopt);
   EXPECT_EQ(rows[0].version, StoreReader(folder.path()).campaign().version);
 }
 
@@ -365,34 +381,6 @@ TEST(StoreMigration, applies_what_is_missing_one_whole_step_at_a_time) {
   EXPECT_EQ(database.execAndGet("PRAGMA user_version").getInt(), 2);
   EXPECT_EQ(database.execAndGet("SELECT count(*) FROM t").getInt(), 1);
   EXPECT_EQ(database.execAndGet("SELECT a FROM t WHERE b IS NULL").getInt(), 7);
-}
-
-TEST(SeedTexts, read_back_as_the_same_seeds) {
-  for (const SeedSet& seeds : {SeedSet{.first = 3, .count = 1}, SeedSet{.first = 0, .count = 1000},
-                               SeedSet{.listed = {4}}, SeedSet{.listed = {9, 2, 5}}}) {
-    const SeedSet again = seeds_from_text(seeds_text(seeds));
-    ASSERT_EQ(again.size(), seeds.size());
-    for (std::int64_t i = 0; i < seeds.size(); ++i) EXPECT_EQ(again.at(i), seeds.at(i));
-  }
-  for (const char* text : {"", "5 to 3", "a", "1, ", "1,2", "1 to "}) {
-    EXPECT_THROW((void)seeds_from_text(text), std::invalid_argument) << text;
-  }
-}
-
-TEST(Shards, divide_the_seeds_without_rest) {
-  for (const std::int64_t count : {1, 2, 3, 7}) {
-    for (const std::int64_t seeds : {1, 2, 6, 20}) {
-      std::int64_t shares = 0;
-      for (std::int64_t index = 1; index <= count; ++index) {
-        const Shard shard{.index = index, .count = count};
-        std::int64_t mine = 0;
-        for (std::int64_t i = 0; i < seeds; ++i) mine += shard.has(i) ? 1 : 0;
-        EXPECT_EQ(shard.share(seeds), mine);
-        shares += mine;
-      }
-      EXPECT_EQ(shares, seeds);
-    }
-  }
 }
 
 }  // namespace store_test

@@ -58,6 +58,24 @@ TEST(Axis, a_logarithmic_axis_without_positive_values_exists) {
   EXPECT_LT(axis.lower, axis.upper);
 }
 
+TEST(Axis, zero_has_a_place_left_of_a_logarithmic_axis_where_it_is_kept_one) {
+  Axis axis = log_axis({1e-3, 1.0}, 1e-12);
+  EXPECT_DOUBLE_EQ(position_on(axis, 0.0), position_on(axis, axis.lower));
+  axis.zero_share = 0.2;
+  EXPECT_DOUBLE_EQ(position_on(axis, 0.0), 0.1);
+  EXPECT_DOUBLE_EQ(position_on(axis, axis.lower), 0.2);
+  EXPECT_DOUBLE_EQ(position_on(axis, 1e-9), 0.2) << "not 0, but off the axis";
+  EXPECT_DOUBLE_EQ(position_on(axis, axis.upper), 1.0);
+  EXPECT_EQ(ticks_of(axis, 6).front().label, "0");
+  EXPECT_EQ(ticks_of(axis, 6).size(), 5U);
+}
+
+TEST(Axis, minor_ticks_stand_between_few_decades) {
+  EXPECT_EQ(minor_ticks_of(log_axis({1e-3, 1.0}, 1e-12)).size(), 3U * 8U);
+  EXPECT_TRUE(minor_ticks_of(log_axis({1e-8, 1.0}, 1e-12)).empty());
+  EXPECT_TRUE(minor_ticks_of({.lower = 0.0, .upper = 1.0}).empty());
+}
+
 Chart example_chart() {
   return {.title = "Clearance",
           .x_label = "time (s)",
@@ -117,6 +135,100 @@ TEST(ChartFigure, a_long_line_is_thinned_but_keeps_its_extremes) {
   const std::string html = chart_figure(chart);
   EXPECT_LT(html.size(), 100000U);
   EXPECT_TRUE(testing::contains(html, " 10.0"));  // the peak reaches the top of the frame
+}
+
+/// Two points with bars both ways; one of them at 0.
+Chart joined_chart() {
+  return {.title = "Risk",
+          .x_label = "rate",
+          .y_label = "cost",
+          .x_scale = Scale::kLog,
+          .least_x = 1e-3,
+          .x_has_zero = true,
+          .x_includes = {1e-3},
+          .series = {{.name = "family",
+                      .mark = Mark::kJoined,
+                      .x = {0.0, 0.1},
+                      .y = {10.0, 5.0},
+                      .lower = {9.0, 4.0},
+                      .upper = {11.0, 6.0},
+                      .x_lower = {0.0, 1e-5},
+                      .x_upper = {0.05, 0.3},
+                      .labels = {"strict", "<b>lenient"}}}};
+}
+
+/// The data of the first path of the class.
+std::string path_of_class(const std::string& svg, const std::string& classes) {
+  const std::string head = "<path class=\"" + classes + "\" d=\"";
+  const std::size_t begin = svg.find(head);
+  if (begin == std::string::npos) return "";
+  return svg.substr(begin + head.size(), svg.find('"', begin + head.size()) - begin - head.size());
+}
+
+TEST(JoinedPoints, have_a_line_marks_and_labels) {
+  const std::string svg = chart_drawing(joined_chart());
+  const std::string line = path_of_class(svg, "way faint c0");
+  EXPECT_EQ(testing::occurrences(line, "M"), 1);
+  EXPECT_EQ(testing::occurrences(line, "L"), 1);
+  EXPECT_EQ(testing::occurrences(path_of_class(svg, "points c0"), "M"), 2);
+  EXPECT_TRUE(testing::contains(svg, ">strict</text>"));
+  EXPECT_TRUE(testing::contains(svg, "&lt;b&gt;lenient</text>"));
+  EXPECT_FALSE(testing::contains(svg, "<b>"));
+}
+
+TEST(JoinedPoints, one_that_is_not_finite_interrupts_the_line_and_has_no_label) {
+  Chart chart = joined_chart();
+  chart.series[0].y[0] = kNan;
+  const std::string svg = chart_drawing(chart);
+  EXPECT_FALSE(testing::contains(path_of_class(svg, "way faint c0"), "L"));
+  EXPECT_FALSE(testing::contains(svg, "strict"));
+  EXPECT_FALSE(testing::contains(svg, "nan"));
+}
+
+TEST(ErrorBars, end_in_strokes_and_in_an_arrow_where_the_axis_cuts_them_off) {
+  Chart chart = joined_chart();
+  const std::string both = path_of_class(chart_drawing(chart), "line thin c0");
+  EXPECT_EQ(testing::occurrences(both, "l-4 3l4 3"), 1) << "10⁻⁵ is off the axis";
+  EXPECT_EQ(testing::occurrences(both, "h6m-3"), 2) << "of the vertical bars";
+  EXPECT_EQ(testing::occurrences(both, "m0 -3v6"), 2) << "right ends";
+  EXPECT_EQ(testing::occurrences(both, "v6M"), 1) << "no left end at 0 but that of the next bar";
+  chart.series[0].x_lower[1] = 0.02;
+  const std::string within = path_of_class(chart_drawing(chart), "line thin c0");
+  EXPECT_EQ(testing::occurrences(within, "l-4 3l4 3"), 0);
+}
+
+TEST(ErrorBars, are_not_cut_off_at_their_upper_end) {
+  Chart chart = joined_chart();
+  chart.series[0].x_upper[1] = 1.0;
+  const std::string svg = chart_drawing(chart);
+  EXPECT_TRUE(testing::contains(svg, "H466.0m0 -3v6")) << "the right end of the axis";
+}
+
+TEST(PointLabels, never_cover_each_other) {
+  Chart chart = joined_chart();
+  Series& series = chart.series[0];
+  for (int n = 0; n < 60; ++n) {  // far more than there is room for
+    series.x.push_back(0.1);
+    series.y.push_back(5.0);
+    series.labels.emplace_back("crowded");
+  }
+  const int drawn = testing::occurrences(chart_drawing(chart), "crowded");
+  EXPECT_GE(drawn, 3);
+  EXPECT_LT(drawn, 30);
+}
+
+TEST(ChartFigure, a_long_label_of_y_takes_two_lines) {
+  Chart chart = joined_chart();
+  EXPECT_EQ(testing::occurrences(chart_drawing(chart), "rotate(-90)"), 1);
+  chart.y_label = "mean cost of the drives that reached the target (–)";
+  EXPECT_EQ(testing::occurrences(chart_drawing(chart), "rotate(-90)"), 2);
+}
+
+TEST(ChartFigure, is_told_in_words) {
+  Chart chart = joined_chart();
+  EXPECT_TRUE(testing::contains(chart_drawing(chart), "aria-label=\"Risk: cost\""));
+  chart.in_words = "strict: \"10\"";
+  EXPECT_TRUE(testing::contains(chart_drawing(chart), "aria-label=\"strict: &quot;10&quot;\""));
 }
 
 }  // namespace svg_chart_test

@@ -193,6 +193,15 @@ TEST(Summary, mission_is_within_its_limit_where_the_sum_is) {
   EXPECT_EQ(EpisodeView(trace).summary().risk.mission.exceeded, 3);
 }
 
+TEST(Summary, a_period_that_exceeds_several_limits_counts_once) {
+  Trace trace = straight_trace(3);  // plans of 0.51, 0.52, 0.53; spent 0.01, 0.03, 0.06
+  EXPECT_EQ(EpisodeView(trace).summary().risk.exceeded_periods, 0) << "without limits";
+  trace.scenario.risk = {.plan = 0.525, .mission = 0.02};
+  EXPECT_EQ(EpisodeView(trace).summary().risk.exceeded_periods, 2);
+  trace.steps[0].solver_status = "risk_exceeded";
+  EXPECT_EQ(EpisodeView(trace).summary().risk.exceeded_periods, 3);
+}
+
 TEST(Summary, mismatch_is_what_the_model_and_the_disturbance_leave) {
   Trace trace = straight_trace(2);
   EXPECT_TRUE(EpisodeView(trace).summary().mismatch_rmse.isZero(1e-15));  // rounding
