@@ -258,6 +258,24 @@ TEST(ScenarioFile, every_bounding_of_the_inputs_can_be_named) {
   }
 }
 
+TEST(ScenarioFile, penalties_weigh_nothing_by_default_where_limits_of_the_risk_are_kept) {
+  const auto weights = [](const std::vector<std::string>& overrides) {
+    const Scenario::Penalty& penalty = minimal_with(overrides).controller.penalty;
+    return std::pair(penalty.box, penalty.obstacle);
+  };
+  const std::pair usual(450.0, 400.0);
+  EXPECT_EQ(weights({}), usual);
+  EXPECT_EQ(weights({"risk.plan=0.02"}), std::pair(0.0, 0.0));
+  EXPECT_EQ(weights({"risk.mission=0.02"}), std::pair(0.0, 0.0));
+  // These know no limits, and would drive into everything.
+  EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=nominal"}), usual);
+  EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=lqr"}), usual);
+  EXPECT_EQ(weights({"risk.plan=0.02", "controller.penalty.box=7"}), std::pair(7.0, 0.0));
+  const Scenario limited = minimal_with({"risk.plan=0.02"});
+  const Scenario again = parse_scenario(to_yaml(limited), {.file = "again.yaml"});
+  EXPECT_EQ(again.controller.penalty.box, 0.0);
+}
+
 TEST(ScenarioFile, a_deadline_is_written_unless_there_is_none) {
   const Scenario some = minimal_with({"controller.deadline=0.30000000000000004"});
   EXPECT_THAT(to_yaml(some), HasSubstr("\n  deadline: 0.30000000000000004\n"));
