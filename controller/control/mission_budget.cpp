@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
+#include <vector>
 
 #include "models/constants.hpp"
 
@@ -11,6 +13,11 @@ namespace {
 
 // The way to the target is longer than the straight line to it by about this factor.
 constexpr double kDetour = 1.2;
+// All that is planned counts as spent until it comes to this share of the limit.
+constexpr double kUntold = 0.01;
+// More of what is left is not promised to a plan for that: where bad luck calls it in, the next
+// stage alone may need several times the plan's risk.
+constexpr double kMostPromised = 0.25;
 
 Eigen::Vector2d position_of(const models::SystemDescription& system,
                             const Eigen::Ref<const Eigen::VectorXd>& state) {
@@ -29,7 +36,14 @@ MissionBudget::MissionBudget(const models::Dynamics& dynamics, double limit,
 
 void MissionBudget::reset() {
   spent_ = 0.0;
+  planned_ = 0.0;
   progress_ = 0.0;
+}
+
+double MissionBudget::spent_of_planned() const {
+  const double untold = kUntold * limit_;
+  if (!(untold > 0.0)) return 1.0;
+  return std::min(1.0, (spent_ + untold) / (planned_ + untold));
 }
 
 double MissionBudget::expected_periods(const Eigen::VectorXd& mean) const {
@@ -48,12 +62,19 @@ RiskLimits MissionBudget::limits(const Eigen::VectorXd& mean, Eigen::Index horiz
   const double periods = std::min(expected_periods(mean),
                                   static_cast<double>(std::max<Eigen::Index>(1, periods_left)));
   limits.first = left;
-  limits.plan = left * std::min(1.0, ahead / periods);
+  const double share = std::min(1.0, ahead / periods);
+  limits.plan = left * std::max(share, std::min(kMostPromised, share / spent_of_planned()));
   return limits;
 }
 
 void MissionBudget::spend(const Plan& plan) {
-  if (!plan.risk.stages.empty()) spent_ += plan.risk.stages.front();
+  const std::vector<double>& stages = plan.risk.stages;
+  if (!stages.empty()) {
+    spent_ += stages.front();
+    const double planned = std::accumulate(stages.begin(), stages.end(), 0.0);
+    // A plan that no limit could be kept with says nothing of those that keep theirs.
+    planned_ += std::min(planned, limit_) / static_cast<double>(stages.size());
+  }
   const models::SystemDescription& system = dynamics_.description();
   if (!has_position(system)) return;
   double length = 0.0;

@@ -25,8 +25,9 @@ class MissionBudget {
   void reset();
 
   /// Limits of the plan for a belief with this mean: the next stage may use all that is left, and
-  /// the plan its share of it, by how much of the way to the target it is expected to come.
-  /// periods_left: of the drive, at most.
+  /// the plan its share of it, by how much of the way to the target it is expected to come, and by
+  /// how much of what plans are certified is spent in the end: late stages are planned anew before
+  /// they are driven. periods_left: of the drive, at most.
   [[nodiscard]] RiskLimits limits(const Eigen::VectorXd& mean, Eigen::Index horizon,
                                   Eigen::Index periods_left) const;
 
@@ -37,12 +38,14 @@ class MissionBudget {
   [[nodiscard]] double spent() const { return spent_; }
 
  private:
+  [[nodiscard]] double spent_of_planned() const;
   [[nodiscard]] double expected_periods(const Eigen::VectorXd& mean) const;
 
   const models::Dynamics& dynamics_;
   double limit_;
   Eigen::VectorXd target_;
   double spent_ = 0.0;
+  double planned_ = 0.0;   // what would be spent if plans were driven to their ends
   double progress_ = 0.0;  // m a period, along the last plan
 };
 

@@ -58,6 +58,32 @@ TEST(MissionBudget, gives_the_next_stage_what_is_left_and_a_plan_its_share) {
   EXPECT_DOUBLE_EQ(budget.limits(Eigen::Vector3d::Zero(), 10, 200).first, 0.02);
 }
 
+// Of plans whose late stages bear their risk little is spent, as they are planned anew before.
+TEST(MissionBudget, gives_plans_more_where_little_of_what_they_are_certified_is_spent) {
+  const auto car = dubins_car();
+  MissionBudget budget(*car, 0.02, Eigen::Vector3d(100.0, 0.0, 0.0));
+  Plan plan = straight_plan(1e-6);
+  plan.risk.stages.back() = 1e-3;
+  budget.spend(plan);
+  const double first = budget.limits(Eigen::Vector3d::Zero(), 10, 600).plan;
+  for (int n = 0; n < 100; ++n) budget.spend(plan);
+  EXPECT_NEAR(budget.spent(), 101e-6, 1e-12);
+  const double later = budget.limits(Eigen::Vector3d::Zero(), 10, 600).plan;
+  EXPECT_GT(later, 5.0 * first);
+  // Never more than what is left.
+  for (int n = 0; n < 10000; ++n) budget.spend(plan);
+  EXPECT_LE(budget.limits(Eigen::Vector3d::Zero(), 10, 600).plan, 0.02 - budget.spent());
+  // Plans that were certified 1 throughout do not count as promises that were not called in.
+  budget.reset();
+  for (int n = 0; n < 3; ++n) {
+    plan.risk.stages.assign(10, 1.0);
+    plan.risk.stages.front() = 1e-3;
+    budget.spend(plan);
+  }
+  EXPECT_LE(budget.limits(Eigen::Vector3d::Zero(), 10, 600).plan, 0.02 - budget.spent());
+  EXPECT_GT(budget.limits(Eigen::Vector3d::Zero(), 10, 600).plan, 0.0);
+}
+
 // Past a block, on the model with its noise: the certificates of the plans in force add up to no
 // more than the budget, and a smaller one keeps farther off.
 TEST(MissionBudget, drives_never_spend_more) {
