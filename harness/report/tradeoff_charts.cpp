@@ -21,26 +21,36 @@ constexpr std::size_t kLabelLimit = 18;       // of settings beside a point
 constexpr std::size_t kPanelTitleLimit = 40;  // of a scenario, and of a plant
 constexpr double kBelowOneDrive = 0.5;        // of the rate of one drive: where the axis begins
 constexpr const char* kTradeoffNote =
-    "Left and down is better. Whiskers are 99 % intervals: Clopper and Pearson's of the rate, a "
-    "bootstrap's of the mean. A variant without an unsafe drive stands at 0, left of the break, "
+    "Left and down is better. On the left what was observed; beside it what was certified, which "
+    "tells variants apart whose drives were never unsafe: the mean over drives of the sum of "
+    "next-step certificates, each drive's at most 1. Whiskers are 99 % intervals: Clopper and "
+    "Pearson's of the rate, a bootstrap's of means. A variant without an unsafe drive stands at 0, "
+    "left of the break, "
     "and its whisker ends at the highest rate that is compatible with that. Costs are means over "
     "the drives that reached the target, since those of other drives do not compare: a variant "
     "that reaches it less often may look cheaper.";
 
-std::string panel_title(const TradeoffPanel& panel) {
-  std::string title = "Risk against cost: " + printable(panel.scenario, kPanelTitleLimit);
+/// What stands for the risk of a variant.
+enum class RiskOf { kObserved, kCertified };
+
+std::string panel_title(const TradeoffPanel& panel, RiskOf risk) {
+  std::string title =
+      risk == RiskOf::kObserved ? "Risk against cost: " : "Certified risk against cost: ";
+  title += printable(panel.scenario, kPanelTitleLimit);
   if (!panel.plant.empty()) title += ", " + printable(panel.plant, kPanelTitleLimit);
   return title;
 }
 
 Series series_of_family(const CampaignStatistics& statistics, const TradeoffFamily& family,
-                        int colour) {
+                        RiskOf risk, int colour) {
   Series series{.name = family.name, .colour = colour, .mark = Mark::kJoined};
   for (const TradeoffPoint& point : family.points) {
     const VariantStatistics& variant = statistics.variants[point.variant];
-    series.x.push_back(variant.unsafe.rate);
-    series.x_lower.push_back(variant.unsafe.interval.lower);
-    series.x_upper.push_back(variant.unsafe.interval.upper);
+    const bool observed = risk == RiskOf::kObserved;
+    const RateInterval& across = observed ? variant.unsafe.interval : point.certified.interval;
+    series.x.push_back(observed ? variant.unsafe.rate : point.certified.mean);
+    series.x_lower.push_back(across.lower);
+    series.x_upper.push_back(across.upper);
     series.y.push_back(point.cost.mean);
     series.lower.push_back(point.cost.interval.lower);
     series.upper.push_back(point.cost.interval.upper);
@@ -49,16 +59,18 @@ Series series_of_family(const CampaignStatistics& statistics, const TradeoffFami
   return series;
 }
 
-std::string panel_in_words(const CampaignStatistics& statistics, const TradeoffPanel& panel) {
-  std::string words = panel_title(panel) + ".";
+std::string panel_in_words(const CampaignStatistics& statistics, const TradeoffPanel& panel,
+                           RiskOf risk) {
+  std::string words = panel_title(panel, risk) + ".";
   for (const TradeoffFamily& family : panel.families) {
     words += " " + family.name + ":";
     for (const TradeoffPoint& point : family.points) {
       const VariantStatistics& variant = statistics.variants[point.variant];
-      words +=
-          fmt::format("{} {} {} % unsafe, mean cost {}", &point == family.points.data() ? "" : ";",
-                      variant.settings, format_percent(variant.unsafe.rate),
-                      std::isfinite(point.cost.mean) ? format_short(point.cost.mean) : "none");
+      words += fmt::format(
+          "{} {} {}, mean cost {}", &point == family.points.data() ? "" : ";", variant.settings,
+          risk == RiskOf::kObserved ? format_percent(variant.unsafe.rate) + " % unsafe"
+                                    : "certified " + format_short(point.certified.mean),
+          std::isfinite(point.cost.mean) ? format_short(point.cost.mean) : "none");
     }
     words += ".";
   }
@@ -103,20 +115,22 @@ std::string panel_note(const CampaignStatistics& statistics, const TradeoffPanel
                      : "All drives reached the target, except: " + few + ".";
 }
 
-Chart panel_chart(const CampaignStatistics& statistics, const TradeoffPanel& panel) {
-  const double least = least_rate(statistics, panel);
-  Chart chart{.title = panel_title(panel),
+Chart panel_chart(const CampaignStatistics& statistics, const TradeoffPanel& panel, RiskOf risk) {
+  Chart chart{.title = panel_title(panel, risk),
               .note = panel_note(statistics, panel),
-              .in_words = panel_in_words(statistics, panel),
-              .x_label = "share of unsafe drives (–)",
-              .y_label = "mean cost of the drives that reached the target (–)",
-              .x_scale = Scale::kLog,
-              .least_x = least,
-              .x_has_zero = true,
-              .x_includes = {least}};
+              .in_words = panel_in_words(statistics, panel, risk),
+              .x_label = "mean certified risk of a drive (–)",
+              .y_label = "mean cost of drives that reached (–)",
+              .x_scale = Scale::kLog};
+  if (risk == RiskOf::kObserved) {
+    chart.x_label = "share of unsafe drives (–)";
+    chart.least_x = least_rate(statistics, panel);
+    chart.x_has_zero = true;
+    chart.x_includes = {chart.least_x};
+  }
   int colour = 0;
   for (const TradeoffFamily& family : panel.families) {
-    chart.series.push_back(series_of_family(statistics, family, colour++ % kPaletteSize));
+    chart.series.push_back(series_of_family(statistics, family, risk, colour++ % kPaletteSize));
   }
   return chart;
 }
@@ -130,6 +144,7 @@ std::vector<std::string> row_of(const VariantStatistics& variant, const Tradeoff
           fmt::format("{}", variant.timeout.events),
           fmt::format("{}", variant.unsafe.events),
           number_html(variant.unsafe.rate) + " " + interval_html(variant.unsafe.interval),
+          number_html(point.certified.mean) + " " + interval_html(point.certified.interval),
           number_html(point.cost.mean) + " " + interval_html(point.cost.interval)};
 }
 
@@ -137,9 +152,10 @@ std::vector<std::string> row_of(const VariantStatistics& variant, const Tradeoff
 
 std::vector<Chart> tradeoff_charts(const CampaignStatistics& statistics) {
   std::vector<Chart> charts;
-  charts.reserve(statistics.tradeoff.size());
+  charts.reserve(2 * statistics.tradeoff.size());
   for (const TradeoffPanel& panel : statistics.tradeoff) {
-    charts.push_back(panel_chart(statistics, panel));
+    charts.push_back(panel_chart(statistics, panel, RiskOf::kObserved));
+    charts.push_back(panel_chart(statistics, panel, RiskOf::kCertified));
   }
   return charts;
 }
@@ -148,12 +164,13 @@ std::string tradeoff_section(const CampaignStatistics& statistics) {
   if (statistics.tradeoff.empty()) return {};
   PageTable table{.label = "Risk against cost, by variant",
                   .heads = {"variant", "family", "drives", "reached", "timeout", "unsafe",
-                            "unsafe, share of drives", "cost of those that reached, mean"},
+                            "unsafe, share of drives", "certified of a drive, mean",
+                            "cost of those that reached, mean"},
                   .rows = {},
                   .text_columns = {1}};
   std::string charts;
+  for (const Chart& chart : tradeoff_charts(statistics)) charts += chart_figure(chart);
   for (const TradeoffPanel& panel : statistics.tradeoff) {
-    charts += chart_figure(panel_chart(statistics, panel));
     for (const TradeoffFamily& family : panel.families) {
       for (const TradeoffPoint& point : family.points) {
         table.rows.push_back(row_of(statistics.variants[point.variant], family, point));

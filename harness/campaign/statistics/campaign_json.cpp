@@ -113,6 +113,10 @@ Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
   return json;
 }
 
+Json mean_json(const DriveMean& mean) {
+  return {{"drives", mean.drives}, {"mean", mean.mean}, {"interval", interval_json(mean.interval)}};
+}
+
 Json point_json(const VariantStatistics& variant, const TradeoffPoint& point) {
   return {{"variant", variant.name},
           {"settings", variant.settings},
@@ -122,10 +126,8 @@ Json point_json(const VariantStatistics& variant, const TradeoffPoint& point) {
           {"unsafe", variant.unsafe.events},
           {"unsafe_rate", variant.unsafe.rate},
           {"unsafe_interval", interval_json(variant.unsafe.interval)},
-          {"reached_cost",
-           {{"drives", point.cost.drives},
-            {"mean", point.cost.mean},
-            {"interval", interval_json(point.cost.interval)}}}};
+          {"certified", mean_json(point.certified)},
+          {"reached_cost", mean_json(point.cost)}};
 }
 
 Json tradeoff_json(const CampaignStatistics& statistics) {

@@ -12,15 +12,22 @@
 namespace qsmpc::harness {
 namespace {
 
-ReachedCost reached_cost(const StoreReader& store, std::int64_t variant) {
+DriveMean mean_of(const BootstrapMean& mean) {
+  return {.drives = mean.count(), .mean = mean.mean(), .interval = mean.interval()};
+}
+
+/// Of the variant that is number `place`, `id` in the store.
+TradeoffPoint point_of(const StoreReader& store, std::size_t place, std::int64_t id) {
   BootstrapMean cost;
+  BootstrapMean certified;
   Eigen::ArrayXd weights;
-  store.for_each_episode(variant, [&](const EpisodeRow& row) {
-    if (row.outcome != outcome_name(Outcome::kReached) || !std::isfinite(row.cost)) return;
+  store.for_each_episode(id, [&](const EpisodeRow& row) {
     poisson_weights(row.seed, weights);
+    if (std::isfinite(row.next_step_sum)) certified.add(std::min(1.0, row.next_step_sum), weights);
+    if (row.outcome != outcome_name(Outcome::kReached) || !std::isfinite(row.cost)) return;
     cost.add(row.cost, weights);
   });
-  return {.drives = cost.count(), .mean = cost.mean(), .interval = cost.interval()};
+  return {.variant = place, .cost = mean_of(cost), .certified = mean_of(certified)};
 }
 
 /// The panel of the scenario and plant of `variant`, which is added where it is new.
@@ -46,19 +53,19 @@ std::vector<TradeoffPanel> tradeoff_panels(const StoreReader& store) {
   for (std::size_t n = 0; n < store.variants().size(); ++n) {
     const StoredVariant& variant = store.variants()[n];
     TradeoffPanel& panel = panel_of(variant, families, panels);
-    std::optional<ReachedCost> cost;  // of a variant that several families have, read once
+    std::optional<TradeoffPoint> point;  // of a variant that several families have, read once
     for (std::size_t f = 0; f < families.size(); ++f) {
       if (std::ranges::find(families[f].settings, variant.settings) == families[f].settings.end()) {
         continue;
       }
-      if (!cost) cost = reached_cost(store, variant.id);
-      panel.families[f].points.push_back({.variant = n, .cost = *cost});
+      if (!point) point = point_of(store, n, variant.id);
+      panel.families[f].points.push_back(*point);
     }
   }
   for (TradeoffPanel& panel : panels) {
     for (std::size_t f = 0; f < families.size(); ++f) {
-      std::ranges::sort(panel.families[f].points, {}, [&](const TradeoffPoint& point) {
-        return std::ranges::find(families[f].settings, store.variants()[point.variant].settings) -
+      std::ranges::sort(panel.families[f].points, {}, [&](const TradeoffPoint& one) {
+        return std::ranges::find(families[f].settings, store.variants()[one.variant].settings) -
                families[f].settings.begin();
       });
     }

@@ -12,9 +12,8 @@
 
 namespace qsmpc::harness {
 
-/// The cost of the drives that reached the target. A drive that ended before it was there, or ran
-/// out of time, was not charged for the same way: its cost does not compare.
-struct ReachedCost {
+/// The mean of a quantity of drives.
+struct DriveMean {
   std::int64_t drives = 0;
   double mean = std::numeric_limits<double>::quiet_NaN();
   RateInterval interval{};  ///< 99 %, by a bootstrap over the seeds; not numbers below two drives
@@ -22,7 +21,12 @@ struct ReachedCost {
 
 struct TradeoffPoint {
   std::size_t variant = 0;  ///< its place among the variants
-  ReachedCost cost{};
+  /// The cost of the drives that reached the target. A drive that ended before it was there, or ran
+  /// out of time, was not charged for the same way: its cost does not compare.
+  DriveMean cost{};
+  /// What is certified of a drive: the sum of its next-step certificates, at most 1. Its
+  /// expectation bounds the probability that a drive is unsafe.
+  DriveMean certified{};
 };
 
 /// Points that a line joins, in its order.

@@ -49,6 +49,7 @@ void fill(const std::string& folder, const Campaign& campaign, const Shard& part
                                                            : "reached";
       EpisodeRow row = testing::example_row(variant, campaign.seeds.at(n), outcome);
       row.unsafe = n == 1;
+      row.next_step_sum = n == 1 ? 3.0 : 0.01;
       row.cost = n >= 1 && n <= 3 ? 1e9 : 100.0 + static_cast<double>(n);
       store.add(row, false);
     }
@@ -73,7 +74,7 @@ TEST(Tradeoff, costs_are_of_the_drives_that_reached_the_target) {
   const testing::TemporaryFolder folder;
   fill(folder.path(), family_campaign());
   const std::vector<TradeoffPanel> panels = tradeoff_panels(StoreReader(folder.path()));
-  const ReachedCost& cost = panels[0].families[0].points[0].cost;
+  const DriveMean& cost = panels[0].families[0].points[0].cost;
   EXPECT_EQ(cost.drives, kDrives - 3);
   EXPECT_NEAR(cost.mean, 100.0 + (190.0 - 6.0) / 17.0, 1e-12);  // rounding
   EXPECT_LT(cost.interval.lower, cost.mean);
@@ -82,11 +83,20 @@ TEST(Tradeoff, costs_are_of_the_drives_that_reached_the_target) {
   EXPECT_LT(cost.interval.upper, 119.0);
 }
 
+TEST(Tradeoff, certifies_a_drive_to_be_unsafe_with_at_most_one) {
+  const testing::TemporaryFolder folder;
+  fill(folder.path(), family_campaign());
+  const std::vector<TradeoffPanel> panels = tradeoff_panels(StoreReader(folder.path()));
+  const DriveMean& certified = panels[0].families[0].points[0].certified;
+  EXPECT_EQ(certified.drives, kDrives);
+  EXPECT_NEAR(certified.mean, (1.0 + 19.0 * 0.01) / 20.0, 1e-12);  // rounding
+}
+
 TEST(Tradeoff, of_drives_that_never_reach_the_target_has_no_cost) {
   const testing::TemporaryFolder folder;
   fill(folder.path(), family_campaign());
   const std::vector<TradeoffPanel> panels = tradeoff_panels(StoreReader(folder.path()));
-  const ReachedCost& cost = panels[1].families[0].points[0].cost;
+  const DriveMean& cost = panels[1].families[0].points[0].cost;
   EXPECT_EQ(cost.drives, 0);
   EXPECT_TRUE(std::isnan(cost.mean));
   EXPECT_TRUE(std::isnan(cost.interval.lower));
@@ -126,6 +136,8 @@ TEST(Tradeoff, is_in_the_json_where_the_campaign_asks_for_it) {
   EXPECT_DOUBLE_EQ(point["unsafe_rate"], 0.05);
   EXPECT_EQ(point["unsafe_interval"].size(), 2U);
   EXPECT_EQ(point["reached_cost"]["drives"], kDrives - 3);
+  EXPECT_EQ(point["certified"]["drives"], kDrives);
+  EXPECT_EQ(point["certified"]["interval"].size(), 2U);
   EXPECT_EQ(point["reached_cost"]["interval"].size(), 2U);
   EXPECT_TRUE(json["tradeoff"][1]["families"]["backwards"][0]["reached_cost"]["mean"].is_null());
   campaign.risk_against_cost.clear();

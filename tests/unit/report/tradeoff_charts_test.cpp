@@ -33,7 +33,7 @@ VariantStatistics variant(const std::string& settings, int unsafe, int timeouts)
 
 CampaignStatistics tradeoff_example() {
   const auto cost = [](double mean) {
-    return ReachedCost{
+    return DriveMean{
         .drives = 90, .mean = mean, .interval = {.lower = mean - 5.0, .upper = mean + 5.0}};
   };
   CampaignStatistics statistics;
@@ -52,7 +52,7 @@ CampaignStatistics tradeoff_example() {
 
 TEST(TradeoffCharts, have_a_point_a_variant_and_a_series_a_family) {
   const std::vector<Chart> charts = tradeoff_charts(tradeoff_example());
-  ASSERT_EQ(charts.size(), 1U);
+  ASSERT_EQ(charts.size(), 2U);
   const Chart& chart = charts[0];
   ASSERT_EQ(chart.series.size(), 2U);
   EXPECT_EQ(chart.series[0].name, "penalties");
@@ -71,6 +71,19 @@ TEST(TradeoffCharts, have_a_point_a_variant_and_a_series_a_family) {
   EXPECT_DOUBLE_EQ(chart.series[0].y[1], 150.0);
   EXPECT_DOUBLE_EQ(chart.series[0].upper[1], 155.0);
   EXPECT_EQ(chart.series[0].labels[1], "w20");
+}
+
+TEST(TradeoffCharts, show_what_was_certified_beside_what_was_observed) {
+  CampaignStatistics statistics = tradeoff_example();
+  statistics.tradeoff[0].families[0].points[1].certified = {
+      .drives = 100, .mean = 3e-4, .interval = {.lower = 1e-4, .upper = 9e-4}};
+  const Chart chart = tradeoff_charts(statistics)[1];
+  EXPECT_EQ(chart.title, "Certified risk against cost: a.yaml");
+  EXPECT_FALSE(chart.x_has_zero);
+  EXPECT_DOUBLE_EQ(chart.series[0].x[1], 3e-4);
+  EXPECT_DOUBLE_EQ(chart.series[0].x_upper[1], 9e-4);
+  EXPECT_DOUBLE_EQ(chart.series[0].y[1], 150.0);
+  EXPECT_TRUE(testing::contains(chart.in_words, "w20 certified 3"));
 }
 
 TEST(TradeoffCharts, have_a_place_for_zero_and_begin_below_one_drive) {
