@@ -30,6 +30,7 @@ bool EffortChoice::applies() const {
 
 void EffortChoice::reset() {
   step_ = 0;
+  upwards_ = true;
   if (!settings_.feedback_effort) evaluator_.policies().set_effort(1.0);
 }
 

@@ -2,6 +2,7 @@
 // given.
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -47,19 +48,31 @@ TEST(EffortChoice, is_gentler_where_stiff_gains_cannot_be_certified) {
   EXPECT_LT(norm_of_gains(free), 0.5 * norm_of_gains(bound));
 }
 
-TEST(EffortChoice, follows_the_drive_and_begins_anew_after_a_reset) {
-  const auto car = dubins_car();
-  Planner planner(*car, stiff(0.02, std::nullopt));
+/// Inputs and gains of the first stages of a drive without noise of `periods` periods.
+std::vector<Eigen::MatrixXd> drive(Planner& planner, int periods) {
+  std::vector<Eigen::MatrixXd> driven;
   Gaussian belief = near_start();
-  const double first = norm_of_gains(planner.plan(belief));
-  for (int n = 0; n < 6; ++n) {
+  for (int n = 0; n < periods; ++n) {
     const Plan& plan = planner.plan(belief);
-    EXPECT_TRUE(plan.risk.kept) << n;
+    driven.emplace_back(plan.policy.inputs);
+    driven.push_back(plan.policy.gains.front());
     belief.mean = plan.policy.states.col(1);
   }
-  planner.reset();
-  const Plan& again = planner.plan(near_start());
-  EXPECT_DOUBLE_EQ(norm_of_gains(again), first);
+  return driven;
+}
+
+// Campaigns drive one episode after the other with the same planner.
+TEST(EffortChoice, begins_anew_after_a_reset_whatever_was_driven_before) {
+  const auto car = dubins_car();
+  Planner fresh(*car, stiff(0.02, std::nullopt));
+  const std::vector<Eigen::MatrixXd> expected = drive(fresh, 10);
+  EXPECT_NE(expected[1], expected[15]) << "the gains follow the drive";
+  for (const int before : {1, 2, 3, 8}) {
+    Planner used(*car, stiff(0.02, std::nullopt));
+    (void)drive(used, before);
+    used.reset();
+    EXPECT_EQ(drive(used, 10), expected) << "after " << before << " periods";
+  }
 }
 
 TEST(EffortChoice, is_that_of_the_cost_without_limits_and_what_is_given_with_them) {
