@@ -23,7 +23,8 @@ constexpr double kBelowOneDrive = 0.5;        // of the rate of one drive: where
 constexpr const char* kTradeoffNote =
     "Left and down is better. On the left what was observed; beside it what was certified, which "
     "tells variants apart whose drives were never unsafe: the mean over drives of the sum of "
-    "next-step certificates, each drive's at most 1. Whiskers are 99 % intervals: Clopper and "
+    "next-step certificates. Of the model it bounds the share of unsafe drives, up to chance; of "
+    "another plant it does so only with a model error. Whiskers are 99 % intervals: Clopper and "
     "Pearson's of the rate, a bootstrap's of means. A variant without an unsafe drive stands at 0, "
     "left of the break, "
     "and its whisker ends at the highest rate that is compatible with that. Costs are means over "

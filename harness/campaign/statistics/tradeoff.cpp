@@ -23,7 +23,7 @@ TradeoffPoint point_of(const StoreReader& store, std::size_t place, std::int64_t
   Eigen::ArrayXd weights;
   store.for_each_episode(id, [&](const EpisodeRow& row) {
     poisson_weights(row.seed, weights);
-    if (std::isfinite(row.next_step_sum)) certified.add(std::min(1.0, row.next_step_sum), weights);
+    if (std::isfinite(row.next_step_sum)) certified.add(row.next_step_sum, weights);
     if (row.outcome != outcome_name(Outcome::kReached) || !std::isfinite(row.cost)) return;
     cost.add(row.cost, weights);
   });

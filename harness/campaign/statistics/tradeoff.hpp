@@ -24,8 +24,9 @@ struct TradeoffPoint {
   /// The cost of the drives that reached the target. A drive that ended before it was there, or ran
   /// out of time, was not charged for the same way: its cost does not compare.
   DriveMean cost{};
-  /// What is certified of a drive: the sum of its next-step certificates, at most 1. Its
-  /// expectation bounds the probability that a drive is unsafe.
+  /// The sum of a drive's next-step certificates. Its expectation, which may be above 1, bounds the
+  /// probability that a drive is unsafe, where the plant is what the certificates are about: the
+  /// model, or within the model error.
   DriveMean certified{};
 };
 

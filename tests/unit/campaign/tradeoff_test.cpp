@@ -83,13 +83,13 @@ TEST(Tradeoff, costs_are_of_the_drives_that_reached_the_target) {
   EXPECT_LT(cost.interval.upper, 119.0);
 }
 
-TEST(Tradeoff, certifies_a_drive_to_be_unsafe_with_at_most_one) {
+TEST(Tradeoff, adds_up_what_is_certified_of_each_drive) {
   const testing::TemporaryFolder folder;
   fill(folder.path(), family_campaign());
   const std::vector<TradeoffPanel> panels = tradeoff_panels(StoreReader(folder.path()));
   const DriveMean& certified = panels[0].families[0].points[0].certified;
   EXPECT_EQ(certified.drives, kDrives);
-  EXPECT_NEAR(certified.mean, (1.0 + 19.0 * 0.01) / 20.0, 1e-12);  // rounding
+  EXPECT_NEAR(certified.mean, (3.0 + 19.0 * 0.01) / 20.0, 1e-12);  // rounding
 }
 
 TEST(Tradeoff, of_drives_that_never_reach_the_target_has_no_cost) {
