@@ -16,10 +16,10 @@
 #include <Eigen/Core>
 
 #include "controller/planning/assignment_rounds.hpp"
+#include "controller/planning/effort_choice.hpp"
 #include "controller/planning/plan.hpp"
 #include "controller/planning/plan_evaluator.hpp"
 #include "controller/planning/planner_settings.hpp"
-#include "controller/planning/risk/effort_choice.hpp"
 #include "controller/planning/start/start_choice.hpp"
 #include "controller/prediction/prediction.hpp"
 #include "controller/prediction/propagator.hpp"

@@ -1,4 +1,4 @@
-#include "controller/planning/risk/effort_choice.hpp"
+#include "controller/planning/effort_choice.hpp"
 
 #include <algorithm>
 #include <cmath>
