@@ -4,92 +4,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "controller/control/controller.hpp"
-#include "controller/estimation/estimator.hpp"
-#include "controller/measure/quantisation/gaussian_quantiser.hpp"
-#include "controller/planning/solvers/ocp_solver.hpp"
-#include "controller/prediction/propagator.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
+#include "tests/unit/scenario/scenario_round_trip.hpp"
 
 namespace qsmpc::harness {
 namespace scenario_file_test {
 
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-void expect_equal(const Scenario& a, const Scenario& b) {
-  EXPECT_EQ(a.name, b.name);
-  EXPECT_EQ(a.description, b.description);
-  EXPECT_EQ(a.seed, b.seed);
-  EXPECT_EQ(a.model.system, b.model.system);
-  EXPECT_EQ(a.model.parameters, b.model.parameters);
-  EXPECT_EQ(a.plant.kind, b.plant.kind);
-  EXPECT_EQ(a.plant.mjcf, b.plant.mjcf);
-  EXPECT_EQ(a.time_step, b.time_step);
-  EXPECT_EQ(a.initial_state.mean, b.initial_state.mean);
-  EXPECT_EQ(a.initial_state.covariance, b.initial_state.covariance);
-  EXPECT_EQ(a.disturbance.covariance, b.disturbance.covariance);
-  EXPECT_EQ(a.disturbance.sensor, b.disturbance.sensor);
-  EXPECT_EQ(a.safe_set.bounds.lower, b.safe_set.bounds.lower);
-  EXPECT_EQ(a.safe_set.bounds.upper, b.safe_set.bounds.upper);
-  ASSERT_EQ(a.safe_set.obstacles.size(), b.safe_set.obstacles.size());
-  for (std::size_t i = 0; i < a.safe_set.obstacles.size(); ++i) {
-    EXPECT_EQ(a.safe_set.obstacles[i].lower, b.safe_set.obstacles[i].lower);
-    EXPECT_EQ(a.safe_set.obstacles[i].upper, b.safe_set.obstacles[i].upper);
-  }
-  EXPECT_EQ(a.target.state, b.target.state);
-  EXPECT_EQ(a.target.radius, b.target.radius);
-  EXPECT_EQ(a.target.angles, b.target.angles);
-  EXPECT_EQ(a.estimator.kind, b.estimator.kind);
-  EXPECT_EQ(a.step_limit, b.step_limit);
-  EXPECT_EQ(a.stop_when_unsafe, b.stop_when_unsafe);
-  EXPECT_EQ(a.video.camera, b.video.camera);
-  EXPECT_EQ(a.video.width, b.video.width);
-  EXPECT_EQ(a.video.height, b.video.height);
-  EXPECT_EQ(a.video.fps, b.video.fps);
-  EXPECT_EQ(a.video.overlays, b.video.overlays);
-}
-
-void expect_equal(const Scenario::Controller& a, const Scenario::Controller& b) {
-  EXPECT_EQ(a.kind, b.kind);
-  EXPECT_EQ(a.lqr_about, b.lqr_about);
-  EXPECT_EQ(a.horizon, b.horizon);
-  EXPECT_EQ(a.policy, b.policy);
-  EXPECT_EQ(a.feedback_gain, b.feedback_gain);
-  EXPECT_EQ(a.optimise_gain, b.optimise_gain);
-  EXPECT_EQ(a.solver, b.solver);
-  EXPECT_EQ(a.input_bounding, b.input_bounding);
-  EXPECT_EQ(a.quantisation.state, b.quantisation.state);
-  EXPECT_EQ(a.quantisation.noise, b.quantisation.noise);
-  EXPECT_EQ(a.quantisation.compressed, b.quantisation.compressed);
-  EXPECT_EQ(a.quantisation.quantiser, b.quantisation.quantiser);
-  EXPECT_EQ(a.propagate_noise, b.propagate_noise);
-  EXPECT_EQ(a.propagator, b.propagator);
-  EXPECT_EQ(a.cost.state, b.cost.state);
-  EXPECT_EQ(a.cost.input, b.cost.input);
-  EXPECT_EQ(a.cost.terminal, b.cost.terminal);
-  EXPECT_EQ(a.penalty.shape, b.penalty.shape);
-  EXPECT_EQ(a.penalty.box, b.penalty.box);
-  EXPECT_EQ(a.penalty.obstacle, b.penalty.obstacle);
-  EXPECT_EQ(a.penalty.length, b.penalty.length);
-  EXPECT_EQ(a.input_lower, b.input_lower);
-  EXPECT_EQ(a.input_upper, b.input_upper);
-  EXPECT_EQ(a.max_iterations, b.max_iterations);
-  EXPECT_EQ(a.deadline, b.deadline);
-  EXPECT_EQ(a.threads, b.threads);
-}
-
-// Equal values, and equal bytes when written again.
-void expect_round_trip(const Scenario& scenario) {
-  const std::string text = to_yaml(scenario);
-  SCOPED_TRACE(text);
-  const Scenario back = parse_scenario(text);
-  expect_equal(scenario, back);
-  expect_equal(scenario.controller, back.controller);
-  EXPECT_EQ(to_yaml(back), text);
-}
 
 TEST(ScenarioFile, what_is_left_out_gets_its_documented_default) {
   const Scenario scenario = parse_scenario(minimal_text);
@@ -217,86 +141,6 @@ TEST(ScenarioFile, every_controller_key_reaches_its_value) {
   EXPECT_EQ(controller.max_iterations, 31);
   EXPECT_EQ(controller.deadline, 0.075);
   EXPECT_EQ(controller.threads, 3);
-}
-
-TEST(ScenarioFile, every_controller_and_estimator_can_be_named) {
-  for (const controller::ControllerEntry& entry : controller::controllers()) {
-    const Scenario scenario = minimal_with({"controller.kind=" + entry.name});
-    EXPECT_EQ(scenario.controller.kind, entry.name);
-    expect_round_trip(scenario);
-  }
-  const Scenario about_target =
-      minimal_with({"controller.kind=lqr", "controller.lqr.about=target"});
-  EXPECT_EQ(about_target.controller.lqr_about, "target");
-  expect_round_trip(about_target);
-  for (const controller::EstimatorEntry& entry : controller::estimators()) {
-    const Scenario scenario = minimal_with({"estimator.kind=" + entry.name});
-    EXPECT_EQ(scenario.estimator.kind, entry.name);
-    expect_round_trip(scenario);
-  }
-  const Scenario noisy = minimal_with({"disturbance.sensor=[1, 1, 1]"});
-  EXPECT_EQ(noisy.estimator.kind, "last_measurement");
-  expect_round_trip(noisy);
-}
-
-// These do not go with an open loop, or with another solver, as the text above has them.
-TEST(ScenarioFile, gains_can_be_optimised_and_another_solver_be_named) {
-  const Scenario gains = minimal_with({"controller.optimise_gain=true"});
-  EXPECT_TRUE(gains.controller.optimise_gain);
-  expect_round_trip(gains);
-  const Scenario other = minimal_with({"controller.solver=slsqp"});
-  EXPECT_EQ(other.controller.solver, "slsqp");
-  EXPECT_EQ(other.controller.input_bounding, "bounded");
-  expect_round_trip(other);
-}
-
-TEST(ScenarioFile, every_bounding_of_the_inputs_can_be_named) {
-  for (const controller::InputBoundingEntry& entry : controller::input_boundings()) {
-    const Scenario scenario = minimal_with({"controller.input_bounding=" + entry.name});
-    EXPECT_EQ(scenario.controller.input_bounding, entry.name);
-    expect_round_trip(scenario);
-  }
-}
-
-TEST(ScenarioFile, penalties_weigh_nothing_by_default_where_limits_of_the_risk_are_kept) {
-  const auto weights = [](const std::vector<std::string>& overrides) {
-    const Scenario::Penalty& penalty = minimal_with(overrides).controller.penalty;
-    return std::pair(penalty.box, penalty.obstacle);
-  };
-  const std::pair usual(450.0, 400.0);
-  EXPECT_EQ(weights({}), usual);
-  EXPECT_EQ(weights({"risk.plan=0.02"}), std::pair(0.0, 0.0));
-  EXPECT_EQ(weights({"risk.mission=0.02"}), std::pair(0.0, 0.0));
-  // These know no limits, and would drive into everything.
-  EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=nominal"}), usual);
-  EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=lqr"}), usual);
-  EXPECT_EQ(weights({"risk.plan=0.02", "controller.penalty.box=7"}), std::pair(7.0, 0.0));
-  const Scenario limited = minimal_with({"risk.plan=0.02"});
-  const Scenario again = parse_scenario(to_yaml(limited), {.file = "again.yaml"});
-  EXPECT_EQ(again.controller.penalty.box, 0.0);
-}
-
-TEST(ScenarioFile, a_deadline_is_written_unless_there_is_none) {
-  const Scenario some = minimal_with({"controller.deadline=0.30000000000000004"});
-  EXPECT_THAT(to_yaml(some), HasSubstr("\n  deadline: 0.30000000000000004\n"));
-  expect_round_trip(some);
-  const Scenario none = parse_scenario(minimal_text);
-  EXPECT_THAT(to_yaml(none), Not(HasSubstr("deadline")));
-  expect_round_trip(none);
-}
-
-TEST(ScenarioFile, every_propagator_of_noise_and_every_quantiser_can_be_named) {
-  for (const controller::PropagatorEntry& entry : controller::propagators()) {
-    if (entry.name == "noise_free") continue;  // it is propagate_noise: false
-    const Scenario scenario = minimal_with({"controller.propagator=" + entry.name});
-    EXPECT_EQ(scenario.controller.propagator, entry.name);
-    expect_round_trip(scenario);
-  }
-  for (const controller::QuantiserEntry& entry : controller::quantisers()) {
-    const Scenario scenario = minimal_with({"controller.quantisation.quantiser=" + entry.name});
-    EXPECT_EQ(scenario.controller.quantisation.quantiser, entry.name);
-    expect_round_trip(scenario);
-  }
 }
 
 TEST(ScenarioFile, every_shipped_scenario_is_valid_and_named_like_its_file) {

@@ -10,6 +10,7 @@
 
 #include "harness/mujoco/mujoco_model.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "models/constants.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc::harness {

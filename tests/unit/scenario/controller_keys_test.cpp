@@ -1,0 +1,107 @@
+// The keys of the controller and the estimator: names, defaults that depend on others, writing
+// back.
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "controller/control/controller.hpp"
+#include "controller/estimation/estimator.hpp"
+#include "controller/measure/quantisation/gaussian_quantiser.hpp"
+#include "controller/planning/solvers/ocp_solver.hpp"
+#include "controller/prediction/propagator.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "models/constants.hpp"
+#include "tests/unit/scenario/scenario_fixture.hpp"
+#include "tests/unit/scenario/scenario_round_trip.hpp"
+
+namespace qsmpc::harness {
+namespace controller_keys_test {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(ControllerKeys, every_controller_and_estimator_can_be_named) {
+  for (const controller::ControllerEntry& entry : controller::controllers()) {
+    const Scenario scenario = minimal_with({"controller.kind=" + entry.name});
+    EXPECT_EQ(scenario.controller.kind, entry.name);
+    expect_round_trip(scenario);
+  }
+  const Scenario about_target =
+      minimal_with({"controller.kind=lqr", "controller.lqr.about=target"});
+  EXPECT_EQ(about_target.controller.lqr_about, "target");
+  expect_round_trip(about_target);
+  for (const controller::EstimatorEntry& entry : controller::estimators()) {
+    const Scenario scenario = minimal_with({"estimator.kind=" + entry.name});
+    EXPECT_EQ(scenario.estimator.kind, entry.name);
+    expect_round_trip(scenario);
+  }
+  const Scenario noisy = minimal_with({"disturbance.sensor=[1, 1, 1]"});
+  EXPECT_EQ(noisy.estimator.kind, "last_measurement");
+  expect_round_trip(noisy);
+}
+
+// These do not go with an open loop, or with another solver, as the text above has them.
+TEST(ControllerKeys, gains_can_be_optimised_and_another_solver_be_named) {
+  const Scenario gains = minimal_with({"controller.optimise_gain=true"});
+  EXPECT_TRUE(gains.controller.optimise_gain);
+  expect_round_trip(gains);
+  const Scenario other = minimal_with({"controller.solver=slsqp"});
+  EXPECT_EQ(other.controller.solver, "slsqp");
+  EXPECT_EQ(other.controller.input_bounding, "bounded");
+  expect_round_trip(other);
+}
+
+TEST(ControllerKeys, every_bounding_of_the_inputs_can_be_named) {
+  for (const controller::InputBoundingEntry& entry : controller::input_boundings()) {
+    const Scenario scenario = minimal_with({"controller.input_bounding=" + entry.name});
+    EXPECT_EQ(scenario.controller.input_bounding, entry.name);
+    expect_round_trip(scenario);
+  }
+}
+
+TEST(ControllerKeys, penalties_weigh_nothing_by_default_where_limits_of_the_risk_are_kept) {
+  const auto weights = [](const std::vector<std::string>& overrides) {
+    const Scenario::Penalty& penalty = minimal_with(overrides).controller.penalty;
+    return std::pair(penalty.box, penalty.obstacle);
+  };
+  const std::pair usual(450.0, 400.0);
+  EXPECT_EQ(weights({}), usual);
+  EXPECT_EQ(weights({"risk.plan=0.02"}), std::pair(0.0, 0.0));
+  EXPECT_EQ(weights({"risk.mission=0.02"}), std::pair(0.0, 0.0));
+  // These know no limits, and would drive into everything.
+  EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=nominal"}), usual);
+  EXPECT_EQ(weights({"risk.plan=0.02", "controller.kind=lqr"}), usual);
+  EXPECT_EQ(weights({"risk.plan=0.02", "controller.penalty.box=7"}), std::pair(7.0, 0.0));
+  const Scenario limited = minimal_with({"risk.plan=0.02"});
+  const Scenario again = parse_scenario(to_yaml(limited), {.file = "again.yaml"});
+  EXPECT_EQ(again.controller.penalty.box, 0.0);
+}
+
+TEST(ControllerKeys, a_deadline_is_written_unless_there_is_none) {
+  const Scenario some = minimal_with({"controller.deadline=0.30000000000000004"});
+  EXPECT_THAT(to_yaml(some), HasSubstr("\n  deadline: 0.30000000000000004\n"));
+  expect_round_trip(some);
+  const Scenario none = parse_scenario(minimal_text);
+  EXPECT_THAT(to_yaml(none), Not(HasSubstr("deadline")));
+  expect_round_trip(none);
+}
+
+TEST(ControllerKeys, every_propagator_of_noise_and_every_quantiser_can_be_named) {
+  for (const controller::PropagatorEntry& entry : controller::propagators()) {
+    if (entry.name == "noise_free") continue;  // it is propagate_noise: false
+    const Scenario scenario = minimal_with({"controller.propagator=" + entry.name});
+    EXPECT_EQ(scenario.controller.propagator, entry.name);
+    expect_round_trip(scenario);
+  }
+  for (const controller::QuantiserEntry& entry : controller::quantisers()) {
+    const Scenario scenario = minimal_with({"controller.quantisation.quantiser=" + entry.name});
+    EXPECT_EQ(scenario.controller.quantisation.quantiser, entry.name);
+    expect_round_trip(scenario);
+  }
+}
+
+}  // namespace controller_keys_test
+}  // namespace qsmpc::harness
