@@ -32,6 +32,7 @@ int parse_and_run(int argc, char** argv) {
   add_render_command(app, exit_code);
   add_report_command(app, exit_code);
   add_reproduce_command(app, exit_code);
+  add_doctor_command(app, exit_code);
   add_list_command(app, exit_code);
   add_schema_command(app, exit_code);
   add_validate_command(app, exit_code);

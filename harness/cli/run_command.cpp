@@ -18,8 +18,11 @@
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
 #include "harness/cli/scenario_arguments.hpp"
+#include "harness/doctor/diagnosis.hpp"
 #include "harness/episode/episode.hpp"
+#include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
+#include "harness/plant/plant_check.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/scenario_warnings.hpp"
 #include "harness/text/printable.hpp"
@@ -79,6 +82,12 @@ int run(const RunArguments& arguments) {
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
   for (const std::string& warning : scenario_warnings(scenario)) {
+    std::cerr << "qsmpc: warning: " << warning << '\n';
+  }
+  if (const auto problem = plant_problem(scenario, arguments.scenario, arguments.overrides)) {
+    throw InputError(*problem);
+  }
+  for (const std::string& warning : plant_warnings(scenario)) {
     std::cerr << "qsmpc: warning: " << warning << '\n';
   }
   const std::string folder = arguments.out.empty()

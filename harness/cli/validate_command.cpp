@@ -12,7 +12,9 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/doctor/diagnosis.hpp"
 #include "harness/errors.hpp"
+#include "harness/plant/plant_check.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/scenario_warnings.hpp"
 #include "harness/text/json_text.hpp"
@@ -34,7 +36,15 @@ FileVerdict verdict_on_scenario(const std::string& file) {
   FileVerdict verdict{.file = file, .errors = validate_scenario_file(file)};
   if (!verdict.errors.empty()) return verdict;
   try {
-    verdict.warnings = scenario_warnings(load_scenario(file));
+    const Scenario scenario = load_scenario(file);
+    if (const auto problem = plant_problem(scenario, file)) {
+      verdict.errors.push_back(*problem);
+      return verdict;
+    }
+    verdict.warnings = scenario_warnings(scenario);
+    for (std::string& warning : plant_warnings(scenario)) {
+      verdict.warnings.push_back(std::move(warning));
+    }
   } catch (const InputError& error) {
     verdict.errors.push_back(error.where());  // of a file that was changed since
   }

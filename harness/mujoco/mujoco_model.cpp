@@ -15,12 +15,16 @@
 
 #include "harness/errors.hpp"
 #include "harness/mujoco/mujoco_errors.hpp"
+#include "harness/mujoco/newer_mjcf.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kExtendedModel = "qsmpc_extended_model.xml";
-constexpr const char* kExpectedModel = "a MuJoCo model (MJCF) that loads without a warning";
+
+std::string expected_model() {
+  return fmt::format("a model (MJCF) that MuJoCo {} loads without a warning", mujoco_version());
+}
 
 // MuJoCo writes "line 4", "line = 4" or "Line number=4"; its parser says 0 where it knows none.
 int line_in(const std::string& text) {
@@ -31,8 +35,11 @@ int line_in(const std::string& text) {
 
 SimulatorError model_error(const std::string& path, std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  return SimulatorError(
-      {.file = path, .line = line_in(text), .found = text, .expected = kExpectedModel});
+  const std::string hint = newer_mjcf_hint(text);
+  return SimulatorError({.file = path,
+                         .line = line_in(text),
+                         .found = text,
+                         .expected = hint.empty() ? expected_model() : hint});
 }
 
 struct XmlSource {
@@ -43,7 +50,7 @@ struct XmlSource {
 /// `path`: what errors name.
 MujocoModelPtr load_xml(const std::string& path, const XmlSource& source) {
   if (!std::ifstream(path).good()) {
-    throw InputError({.file = path, .found = "no readable file", .expected = kExpectedModel});
+    throw InputError({.file = path, .found = "no readable file", .expected = expected_model()});
   }
   // The loader calls srand(), which is not safe on several threads.
   static std::mutex mutex;

@@ -1,5 +1,7 @@
 #include "harness/scenario/scenario_file.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 
 #include "harness/scenario/overrides.hpp"
@@ -55,6 +57,23 @@ std::vector<InputError::Where> validate_scenario_file(const std::string& path_or
   } catch (const InputError& error) {
     return {error.where()};
   }
+}
+
+InputError::Where place_of_key(const std::string& path_or_name,
+                               const std::vector<std::string>& overrides, const std::string& key) {
+  const std::string path = find_scenario(path_or_name);
+  YamlNode tree = parse_yaml(read_text_file(path), path);
+  for (const std::string& override : overrides) apply_override(tree, override);
+  const YamlNode* nearest = &tree;
+  for (std::size_t begin = 0; begin < key.size();) {
+    const std::size_t end = std::min(key.find('.', begin), key.size());
+    const YamlNode* next = nearest->find(key.substr(begin, end - begin));
+    if (next == nullptr) break;
+    nearest = next;
+    begin = end + 1;
+  }
+  if (nearest->from_override) return {.file = kOverrideSource};
+  return {.file = path, .line = nearest->key_line > 0 ? nearest->key_line : nearest->line};
 }
 
 }  // namespace qsmpc::harness

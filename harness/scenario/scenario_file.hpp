@@ -47,6 +47,13 @@ struct ScenarioSource {
 [[nodiscard]] std::vector<InputError::Where> validate_scenario_file(
     const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
+/// Where `key`, a dotted path, stands in a scenario file with `overrides` applied: `file` ("--set"
+/// for an override) and `line` of its value, or of the nearest section around it that is there.
+/// Throws InputError where there is no such file, or no tree of keys in it.
+[[nodiscard]] InputError::Where place_of_key(const std::string& path_or_name,
+                                             const std::vector<std::string>& overrides,
+                                             const std::string& key);
+
 /// The scenario as a file with every key written out. Loading it gives the same values, bit for
 /// bit. The same scenario always gives the same bytes; a shipped MuJoCo XML file is written by its
 /// name, so that no path of this machine is in it, any other by its absolute path.

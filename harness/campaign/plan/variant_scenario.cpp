@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "harness/errors.hpp"
-#include "harness/plant/plant_registry.hpp"
-#include "harness/plant/plant_variation.hpp"
+#include "harness/plant/plant_check.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/overrides.hpp"
 #include "harness/scenario/plant_choice.hpp"
@@ -119,17 +118,6 @@ std::string plant_text(const Scenario& scenario) {
     if (const YamlNode* node = tree.find(key)) text += yaml_flow(*node) + "\n";
   }
   return text;
-}
-
-void try_plant(const Scenario& scenario) {
-  (void)make_plant(scenario);
-  if (!varies(scenario.disturbance)) return;
-  try {
-    // Refuses a variation that the plant has nothing for; any seed does.
-    (void)make_plant(scenario, draw_variation(scenario.disturbance, scenario.seed));
-  } catch (const SimulatorError&) {
-    // One vehicle of many that cannot be simulated is an episode's fault, no wrong file.
-  }
 }
 
 std::string in_words(const InputError::Where& where) {
