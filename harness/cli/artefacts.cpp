@@ -27,6 +27,11 @@ std::string in_folder(const std::string& folder, const std::string& file) {
   return folder + "/" + file;
 }
 
+bool file_exists(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
 std::string row(const std::string& name, const std::string& value) {
   return fmt::format("  {:<28} {}\n", name, value);
 }
@@ -99,22 +104,37 @@ EpisodeVideoOptions video_options(const Scenario& scenario) {
   return options;
 }
 
-void make_video(const EpisodeView& view, const VideoFiles& files,
+bool make_video(const EpisodeView& view, const VideoFiles& files,
                 const EpisodeVideoOptions& options, const VideoTalk& talk) {
-  remove_file(files.numbers);  // those of an earlier video
   const int before = interrupts();
+  const bool is_there = file_exists(files.video);
+  int all = 0;
   VideoTimings timings;
   try {
     Progress progress("rendering", talk.quiet);
     timings = write_episode_video(view, options, files.video, [&](int done, int total) {
+      all = total;
       progress.update(done, total, "frames");
-      return interrupts() == before;
+      const bool stopped = interrupts() != before;
+      if (stopped && is_there && done < total) throw Interrupted();
+      // It is about to get its name: these numbers are of the video before it.
+      if (stopped || done == total) remove_file(files.numbers);
+      return !stopped;
     });
+  } catch (const Interrupted&) {
+    remove_file(partial_path_of(files.video));
+    std::cerr << fmt::format("qsmpc: interrupted: {} is left as it was\n",
+                             printable(files.video, 400));
+    return false;
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
   }
   write_file(files.numbers, video_json(timings));
   if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n{}\n", timings.gl, video_line(timings));
+  if (timings.frames == all) return true;
+  std::cerr << fmt::format("qsmpc: interrupted: {} ends early, after {} of {} frames\n",
+                           printable(files.video, 400), timings.frames, all);
+  return false;
 }
 
 void make_still(const EpisodeView& view, const std::string& path,
@@ -135,8 +155,7 @@ void write_summary(const EpisodeView& view, const std::string& folder, bool with
 void write_page(const EpisodeView& view, const std::string& folder, bool with_video) {
   EpisodePageOptions options{.video_file = with_video ? kVideoFile : ""};
   const std::string numbers = in_folder(folder, kVideoNumbersFile);
-  std::error_code ignored;
-  if (with_video && std::filesystem::exists(numbers, ignored)) {
+  if (with_video && file_exists(numbers)) {
     const VideoTimings video = read_video_timings(numbers);
     options.video_from = video.from;
     options.video_speed = video.speed;

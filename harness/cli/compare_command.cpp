@@ -84,6 +84,16 @@ TextFile error_file(const Comparison& comparison, const std::string& path) {
                                    origin)};
 }
 
+/// Nothing if interrupted.
+std::optional<Comparison> comparison_of(const Scenario& scenario,
+                                        const ComparisonOptions& options) {
+  try {
+    return compare_plants(scenario, options);
+  } catch (const Interrupted&) {
+    return std::nullopt;
+  }
+}
+
 std::string files_table(const std::string& folder, const std::vector<TextFile>& more) {
   std::string text = fmt::format("  numbers  {}/{}\n  data     {}/{}\n", folder,
                                  kComparisonNumbersFile, folder, kComparisonFile);
@@ -111,7 +121,7 @@ int compare(CompareArguments& arguments) {
     make_output_folder(folder);
     if (!arguments.error_file.empty()) make_output_folder(folder_of(arguments.error_file));
   };
-  const std::optional<Comparison> comparison = compare_plants(scenario, options);
+  const std::optional<Comparison> comparison = comparison_of(scenario, options);
   if (!comparison) {
     std::cerr << "qsmpc: interrupted; nothing was written\n";
     return kInterruptedExit;

@@ -108,6 +108,7 @@ int predict(const PredictArguments& arguments) {
                                progress.update(static_cast<int>(done), static_cast<int>(total),
                                                "paths");
                              }};
+  const InterruptPatience patience(2);  // the first leaves out the simulation
   const PredictionReport report = predict_scenario(scenario, options);
   write_prediction(report, folder);
   print_result(arguments.json ? prediction_json(report)

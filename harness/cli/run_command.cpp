@@ -118,7 +118,7 @@ int run(const RunArguments& arguments) {
 
   print_result(arguments.json ? summary_json(view, {.video_file = with_video ? kVideoFile : ""})
                               : summary_table(view, folder, with_video));
-  if (trace.outcome == Outcome::kInterrupted) return kInterruptedExit;
+  if (interrupts() > 0) return kInterruptedExit;
   return asked_to_tell(arguments.fail_on, view.summary()) ? kToldFailure : kDone;
 }
 
