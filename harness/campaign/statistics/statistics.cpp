@@ -34,6 +34,7 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   statistics.scenario = variant.scenario;
   statistics.settings = variant.settings;
   statistics.plant = variant.plant;
+  statistics.scenario_text = variant.scenario_text;
   statistics.episodes = store.campaign().episodes / std::ssize(store.variants());
   statistics.cost = spread_of(store, variant.id, EpisodeNumber::kCost, tally.cost());
   statistics.min_clearance =
@@ -41,6 +42,10 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   statistics.time_to_target =
       spread_of(store, variant.id, EpisodeNumber::kTimeToTarget, tally.time_to_target());
   statistics.ocp_ms = planning_times(store, variant.id, statistics.periods);
+  store.for_each_path(variant.id, kMostDrawnPaths,
+                      [&](const std::string& outcome, const std::vector<PathPoint>& path) {
+                        statistics.paths.push_back({.outcome = outcome, .points = path});
+                      });
   return statistics;
 }
 
