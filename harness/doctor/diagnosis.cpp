@@ -12,9 +12,12 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kSmall = 0.75;        // ratio
-constexpr double kLarge = 1.0 / 0.75;  // ratio
-constexpr double kNothing = 0.05;      // ratio
+// Ratios: wrong where it matters, and in any case.
+constexpr double kSmall = 0.75;
+constexpr double kLarge = 1.0 / 0.75;
+constexpr double kTooSmall = 0.5;
+constexpr double kTooLarge = 2.0;
+constexpr double kNothing = 0.05;  // ratio
 constexpr double kLatePeriods = 1.5;
 constexpr double kForeseen = 0.25;           // of the state's scale
 constexpr double kMismatchDeviations = 3.0;  // of the planned noise
@@ -82,15 +85,18 @@ AnswerVerdict verdict_of(const Scenario& scenario, const PlantAnswers& answers,
                          const InputAnswer& answer, std::size_t state) {
   const StateAnswer& found = answer.states[state];
   const double noise = planned_deviation(scenario, state);
-  if (noise > 0.0 && !(found.discrepancy > noise)) return AnswerVerdict::kAsModel;
+  const double scale = answers.scale[static_cast<Eigen::Index>(state)];
+  const bool matters = noise == 0.0 || found.discrepancy > noise;
   if (std::isnan(found.ratio)) {
-    const double size = found.plant.cwiseAbs().maxCoeff();
-    const double scale = answers.scale[static_cast<Eigen::Index>(state)];
-    return size > kForeseen * scale && scale > 0.0 ? AnswerVerdict::kUnforeseen
-                                                   : AnswerVerdict::kAsModel;
+    const bool moves = found.plant.cwiseAbs().maxCoeff() > kForeseen * scale && scale > 0.0;
+    return matters && moves ? AnswerVerdict::kUnforeseen : AnswerVerdict::kAsModel;
   }
-  if (std::abs(found.ratio) < kNothing) return AnswerVerdict::kNone;
-  if (found.ratio < 0.0) return AnswerVerdict::kSign;
+  if (matters || found.model.cwiseAbs().maxCoeff() > kForeseen * scale) {
+    if (std::abs(found.ratio) < kNothing) return AnswerVerdict::kNone;
+    if (found.ratio < 0.0) return AnswerVerdict::kSign;
+    if (found.ratio < kTooSmall || found.ratio > kTooLarge) return AnswerVerdict::kSize;
+  }
+  if (!matters) return AnswerVerdict::kAsModel;
   if (found.ratio < kSmall || found.ratio > kLarge) return AnswerVerdict::kSize;
   if (found.delay > kLatePeriods * answers.period) return AnswerVerdict::kLate;
   const bool is_apart = noise > 0.0 && found.discrepancy > kMismatchDeviations * noise;

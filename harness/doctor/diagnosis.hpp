@@ -24,8 +24,10 @@ enum class AnswerVerdict {
 /// A word for it, "ok", "none", "sign", "size", "late", "unforeseen", "mismatch".
 [[nodiscard]] const char* verdict_name(AnswerVerdict verdict);
 
-/// What is said of state `state`'s answer. It matters where its discrepancy by period is above the
-/// planned noise's deviation, or where no noise is planned.
+/// What is said of state `state`'s answer. A discrepancy by period matters above the planned
+/// noise's deviation, or where no noise is planned. An answer that is missing, has the wrong sign
+/// or less than half or more than twice the size is wrong in any case where the model's is above a
+/// quarter of the state's scale.
 [[nodiscard]] AnswerVerdict verdict_of(const Scenario& scenario, const PlantAnswers& answers,
                                        const InputAnswer& answer, std::size_t state);
 

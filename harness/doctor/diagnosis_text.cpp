@@ -1,8 +1,11 @@
 #include "harness/doctor/diagnosis_text.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,24 +18,42 @@
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
+#include "harness/text/utf8.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kFourDigits = 1e4;
+constexpr double kRounding = 1e-6;  // of the largest change of a state
 
 std::string with_unit(double value, const models::Coordinate& coordinate) {
   return format_short(value) + (coordinate.unit.empty() ? "" : " " + coordinate.unit);
 }
 
-std::string row(const std::vector<std::string>& cells) {
-  static const std::vector<std::size_t> widths{26, 18, 16, 16, 8, 10};
-  std::string line = "  ";
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    line += i < widths.size() ? padded(cells[i], widths[i]) : cells[i];
+/// Rows of cells, each column as wide as its widest cell.
+std::string aligned(const std::vector<std::vector<std::string>>& rows) {
+  constexpr std::size_t kGap = 2;
+  std::vector<std::size_t> widths;
+  for (const auto& row : rows) {
+    widths.resize(std::max(widths.size(), row.size()));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], utf8_characters(row[i]));
+    }
   }
-  while (!line.empty() && line.back() == ' ') line.pop_back();
-  return line + "\n";
+  std::string text;
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      line += std::string(kGap, ' ') + padded(row[i], widths[i]);
+    }
+    while (line.ends_with(' ')) line.pop_back();
+    text += line + "\n";
+  }
+  return text;
+}
+
+/// A change of a state; what is rounding beside `scale` is 0.
+std::string change(double value, double scale, const models::Coordinate& coordinate) {
+  return with_unit(std::abs(value) < kRounding * scale ? 0.0 : value, coordinate);
 }
 
 std::string held(const InputAnswer& answer, const models::SystemDescription& system) {
@@ -41,16 +62,14 @@ std::string held(const InputAnswer& answer, const models::SystemDescription& sys
   return fmt::format("{} ±{}", input.name, with_unit(answer.amplitude, input));
 }
 
-/// Rounded to four digits, as one would write it.
-double rounded(double value) {
-  if (value == 0.0) return 0.0;
-  const double unit = std::pow(10.0, std::floor(std::log10(std::abs(value)))) / kFourDigits * 10.0;
-  return std::round(value / unit) * unit;
+/// A number with four digits, as one would write it.
+std::string four_digits(double value) {
+  return yaml_number(std::stod(fmt::format("{:.4g}", value)));
 }
 
 std::string term_text(const std::string& actuator, const std::string& more, double gain) {
   return fmt::format("{{actuator: {}, {}gain: {}}}", quoted_yaml(actuator), more,
-                     yaml_number(std::stod(fmt::format("{:.4g}", rounded(gain)))));
+                     four_digits(gain));
 }
 
 /// The keys with the gains that were found, to be put under `plant`.
@@ -127,22 +146,24 @@ std::string diagnosis_table(const Diagnosis& diagnosis) {
                   printable(scenario.name),
                   printable(std::filesystem::path(scenario.plant.mjcf).filename().string()),
                   system.name, answers.periods, format_short(answers.period));
-  text += row({"held", "state", "model", "plant", "ratio", "delay", "verdict"});
+  std::vector<std::vector<std::string>> rows{
+      {"held", "state", "model", "plant", "ratio", "delay", "verdict"}};
   for (const InputAnswer& answer : answers.inputs) {
     std::string what = held(answer, system);
     for (std::size_t i = 0; i < answer.states.size(); ++i) {
       const StateAnswer& state = answer.states[i];
       const models::Coordinate& coordinate = system.states[i];
+      const double scale = answers.scale[static_cast<Eigen::Index>(i)];
       const Eigen::Index last = state.model.size() - 1;
       const bool answered = !std::isnan(state.ratio);
-      text +=
-          row({what, coordinate.name, with_unit(state.model[last], coordinate),
-               with_unit(state.plant[last], coordinate), answered ? format_short(state.ratio) : "",
-               answered ? format_short(state.delay) + " s" : "",
-               verdict_name(verdict_of(scenario, answers, answer, i))});
-      what.clear();
+      rows.push_back(
+          {std::exchange(what, ""), coordinate.name, change(state.model[last], scale, coordinate),
+           change(state.plant[last], scale, coordinate), answered ? format_short(state.ratio) : "",
+           answered ? format_short(state.delay) + " s" : "",
+           verdict_name(verdict_of(scenario, answers, answer, i))});
     }
   }
+  text += aligned(rows);
   const std::vector<std::string> warnings = answer_warnings(scenario, answers);
   for (const std::string& warning : warnings) text += "warning: " + warning + "\n";
   if (warnings.empty()) text += "ok: sign, size and delay are those of the model\n";

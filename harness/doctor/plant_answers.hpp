@@ -22,8 +22,10 @@ struct StateAnswer {
   /// The plant's answer over the model's, fitted together with a delay by least squares; not a
   /// number where the model's is not above a hundredth of the state's largest change.
   double ratio = 0.0;
-  double delay = 0.0;        ///< s by which the plant's is later; 0 where the ratio is unknown
-  double discrepancy = 0.0;  ///< largest difference by period, extrapolated to the full input
+  double delay = 0.0;  ///< s by which the plant's is later; 0 where the ratio is unknown
+  /// Largest difference in the second half of the drive, by period and extrapolated to the full
+  /// input: what goes on growing, not how the first periods begin.
+  double discrepancy = 0.0;
 };
 
 /// To an input that is held, or to none.

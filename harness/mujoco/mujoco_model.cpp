@@ -26,11 +26,14 @@ std::string expected_model() {
   return fmt::format("a model (MJCF) that MuJoCo {} loads without a warning", mujoco_version());
 }
 
-// MuJoCo writes "line 4", "line = 4" or "Line number=4"; its parser says 0 where it knows none.
+// MuJoCo writes "line 4", "line = 4" or "Line number=4"; its parser says 0 where it knows none, and
+// the line of an include then comes after it.
 int line_in(const std::string& text) {
   static const std::regex pattern("[Ll]ine(?: number)?(?: |=| = )([0-9]{1,8})");
-  std::smatch match;
-  return std::regex_search(text, match, pattern) ? std::stoi(match[1].str()) : 0;
+  for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match) {
+    if (const int line = std::stoi((*match)[1].str()); line > 0) return line;
+  }
+  return 0;
 }
 
 SimulatorError model_error(const std::string& path, std::string text) {

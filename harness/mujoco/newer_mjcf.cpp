@@ -17,14 +17,14 @@ struct NewerName {
 };
 
 constexpr std::string_view kLeftOut = "leave it out";
-constexpr std::string_view kDrawing = "leave it out: it only concerns drawing";
+constexpr std::string_view kDrawing = "leave it out, it only concerns drawing";
 constexpr std::string_view kForceRange = "give the actuators of the joint a forcerange";
 constexpr std::string_view kDeformable = "leave it out, or use a composite";
 
 constexpr std::array kValues{
     NewerName{"implicitfast", "2.3.3", "write implicit"},
     NewerName{"filterexact", "3.0.0", "write filter"},
-    NewerName{"sdf", "3.0.0", "write a mesh, or a shape of its own"},
+    NewerName{"sdf", "3.0.0", "write a mesh or a primitive"},
 };
 
 constexpr std::array kElements{
@@ -38,6 +38,10 @@ constexpr std::array kElements{
     NewerName{"plugin", "2.3.0", kLeftOut},
     NewerName{"camprojection", "3.0.0", kLeftOut},
     NewerName{"jointactuatorfrc", "2.3.7", "write an actuatorfrc sensor for each actuator"},
+    NewerName{"tendonactuatorfrc", "3.3.1", "write an actuatorfrc sensor for each actuator"},
+    NewerName{"e_potential", "3.3.0", kLeftOut},
+    NewerName{"e_kinetic", "3.3.0", kLeftOut},
+    NewerName{"layer", "3.2.5", kDrawing},
     NewerName{"distance", "3.1.6", kLeftOut},
     NewerName{"normal", "3.1.6", kLeftOut},
     NewerName{"fromto", "3.1.6", kLeftOut},
@@ -60,7 +64,7 @@ constexpr std::array kAttributes{
     NewerName{"timeconst", "3.1.6", "write a general actuator with dyntype=\"filter\""},
     NewerName{"inheritrange", "3.1.3", "write the ctrlrange out"},
     NewerName{"eulerdamp", "3.0.0",
-              "leave it out: Euler integrates the damping of joints implicitly, always"},
+              "leave it out, Euler always integrates the damping of joints implicitly"},
     NewerName{"invdiscrete", "3.0.0", kLeftOut},
     NewerName{"island", "3.0.0", kLeftOut},
     NewerName{"nativeccd", "3.2.3", kLeftOut},
@@ -76,7 +80,7 @@ constexpr std::array kAttributes{
     NewerName{"maxhullvert", "3.2.0", kLeftOut},
     NewerName{"elevation", "3.1.2", "give the height field as a PNG file"},
     NewerName{"assetdir", "2.3.0", "write meshdir and texturedir"},
-    NewerName{"content_type", "2.3.7", "leave it out: the ending of the file's name tells"},
+    NewerName{"content_type", "2.3.7", "leave it out, the extension of the file name decides"},
     NewerName{"realtime", "2.3.0", kDrawing},
     NewerName{"ellipsoidinertia", "2.3.4", kDrawing},
     NewerName{"bvactive", "3.1.2", kDrawing},
@@ -98,8 +102,8 @@ std::string hint_in(const Table& table, const std::string& complaint, const char
   if (!std::regex_search(complaint, match, std::regex(pattern))) return "";
   for (const NewerName& newer : table) {
     if (match[1].str() != newer.name) continue;
-    return fmt::format("{} came with MuJoCo {}, and this program has {}: {}", newer.name,
-                       newer.version, mujoco_version(), newer.instead);
+    return fmt::format("a model for MuJoCo {}: {} came with {}; {}", mujoco_version(), newer.name,
+                       newer.version, newer.instead);
   }
   return "";
 }
@@ -112,8 +116,15 @@ std::string newer_mjcf_hint(const std::string& complaint) {
   for (const std::string& hint :
        {hint_in(kValues, complaint, "invalid keyword: '([^']*)'"),
         hint_in(kAttributes, complaint, "unrecognized attribute: '([^']*)'"),
-        hint_in(kElements, complaint, "unrecognized element +Element '([^']*)'")}) {
+        hint_in(kElements, complaint, R"(unrecognized element\s+Element '([^']*)')")}) {
     if (!hint.empty()) return hint;
+  }
+  // MuJoCo's own words already say what to write.
+  if (std::regex_search(complaint, std::regex("has `\\w+` but not `\\w+`"))) {
+    return fmt::format(
+        "a model for MuJoCo {}: a range limits without more only since 3.0.0; write <compiler "
+        "autolimits=\"true\"/>",
+        mujoco_version());
   }
   return "";
 }

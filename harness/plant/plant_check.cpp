@@ -1,5 +1,8 @@
 #include "harness/plant/plant_check.hpp"
 
+#include <cstddef>
+
+#include "harness/mujoco/mujoco_model.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/plant/plant_variation.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -13,9 +16,27 @@ std::string with_place(const InputError::Where& where) {
   return InputError(told).what();
 }
 
+/// The scenario's key that `where`, an error of its MuJoCo file, is about.
+InputError::Where scenario_place(const InputError::Where& where, const Scenario& scenario,
+                                 const std::string& path_or_name,
+                                 const std::vector<std::string>& overrides) {
+  if (!scenario.plant.mapping) return place_of_key(path_or_name, overrides, "plant.mjcf");
+  // "joint NAME": what the mapping names and the model does not have.
+  if (const std::size_t space = where.key.find(' '); space != std::string::npos) {
+    const auto place = place_of_element(path_or_name, overrides, where.key.substr(0, space),
+                                        where.key.substr(space + 1));
+    if (place) return *place;
+  }
+  return place_of_key(path_or_name, overrides, where.key.empty() ? "plant.mjcf" : "plant");
+}
+
 }  // namespace
 
 void try_plant(const Scenario& scenario) {
+  // What is only drawn has to load as well.
+  if (scenario.plant.kind == "analytic" && !scenario.plant.mjcf.empty()) {
+    (void)load_mujoco_model(scenario.plant.mjcf);
+  }
   (void)make_plant(scenario);
   if (!varies(scenario.disturbance)) return;
   try {
@@ -35,10 +56,9 @@ std::optional<InputError::Where> plant_problem(const Scenario& scenario,
   } catch (const InputError& error) {
     const InputError::Where& where = error.where();
     const bool is_of_scenario = where.file.empty();  // a key of it that the plant does not offer
-    const std::string model_key = scenario.plant.mapping ? "plant" : "plant.mjcf";
-    InputError::Where told =
-        place_of_key(path_or_name, overrides, is_of_scenario ? where.key : model_key);
-    told.key = is_of_scenario ? where.key : model_key;
+    InputError::Where told = is_of_scenario
+                                 ? place_of_key(path_or_name, overrides, where.key)
+                                 : scenario_place(where, scenario, path_or_name, overrides);
     told.found = is_of_scenario ? where.found : with_place(where);
     told.expected = where.expected;
     return told;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
+#include <optional>
 
 #include "harness/scenario/overrides.hpp"
 #include "harness/scenario/scenario_reader.hpp"
@@ -26,6 +28,37 @@ Scenario read_text(const std::string& text, const ScenarioSource& source, Proble
 }
 
 std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
+
+YamlNode overridden_tree(const std::string& path, const std::vector<std::string>& overrides) {
+  YamlNode tree = parse_yaml(read_text_file(path), path);
+  for (const std::string& override : overrides) apply_override(tree, override);
+  return tree;
+}
+
+InputError::Where place_of(const std::string& path, const std::string& key, const YamlNode& node) {
+  if (node.from_override) return {.file = kOverrideSource, .key = key};
+  return {.file = path, .line = node.key_line > 0 ? node.key_line : node.line, .key = key};
+}
+
+struct FoundElement {
+  std::string key;
+  const YamlNode* node;
+};
+
+/// The first text `element` below `node` under a key of which `names_it`, or in a list.
+std::optional<FoundElement> find_element(const YamlNode& node, const std::string& key,
+                                         const std::string& element,
+                                         const std::function<bool(const std::string&)>& names_it) {
+  for (std::size_t i = 0; i < node.items.size(); ++i) {
+    const bool is_map = node.kind == YamlNode::Kind::kMap;
+    const YamlNode& child = node.items[i];
+    const std::string below = is_map ? key + "." + node.keys[i] : key;
+    const bool is_name = child.kind == YamlNode::Kind::kText && child.text == element;
+    if (is_name && (!is_map || names_it(node.keys[i]))) return FoundElement{below, &child};
+    if (auto found = find_element(child, below, element, names_it)) return found;
+  }
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -62,8 +95,7 @@ std::vector<InputError::Where> validate_scenario_file(const std::string& path_or
 InputError::Where place_of_key(const std::string& path_or_name,
                                const std::vector<std::string>& overrides, const std::string& key) {
   const std::string path = find_scenario(path_or_name);
-  YamlNode tree = parse_yaml(read_text_file(path), path);
-  for (const std::string& override : overrides) apply_override(tree, override);
+  const YamlNode tree = overridden_tree(path, overrides);
   const YamlNode* nearest = &tree;
   for (std::size_t begin = 0; begin < key.size();) {
     const std::size_t end = std::min(key.find('.', begin), key.size());
@@ -72,8 +104,24 @@ InputError::Where place_of_key(const std::string& path_or_name,
     nearest = next;
     begin = end + 1;
   }
-  if (nearest->from_override) return {.file = kOverrideSource};
-  return {.file = path, .line = nearest->key_line > 0 ? nearest->key_line : nearest->line};
+  return place_of(path, key, *nearest);
+}
+
+std::optional<InputError::Where> place_of_element(const std::string& path_or_name,
+                                                  const std::vector<std::string>& overrides,
+                                                  const std::string& kind,
+                                                  const std::string& element) {
+  const std::string path = find_scenario(path_or_name);
+  const YamlNode tree = overridden_tree(path, overrides);
+  const YamlNode* plant = tree.find("plant");
+  if (plant == nullptr) return std::nullopt;
+  const auto names_it = [&](const std::string& key) {
+    return key == kind || (kind == "joint" && key == "wheel") ||
+           (kind == "site" && (key == "front_axle" || key == "rear_axle"));
+  };
+  const auto found = find_element(*plant, "plant", element, names_it);
+  if (!found) return std::nullopt;
+  return place_of(path, found->key, *found->node);
 }
 
 }  // namespace qsmpc::harness

@@ -48,11 +48,17 @@ struct ScenarioSource {
     const std::string& path_or_name, const std::vector<std::string>& overrides = {});
 
 /// Where `key`, a dotted path, stands in a scenario file with `overrides` applied: `file` ("--set"
-/// for an override) and `line` of its value, or of the nearest section around it that is there.
+/// for an override) and `line` of it, or of the nearest section around it that is there.
 /// Throws InputError where there is no such file, or no tree of keys in it.
 [[nodiscard]] InputError::Where place_of_key(const std::string& path_or_name,
                                              const std::vector<std::string>& overrides,
                                              const std::string& key);
+
+/// Where the mapping under `plant` names `element`, a "joint", "body", "sensor", "actuator" or
+/// "site" by its `kind`: as place_of_key, with `key`; none where it does not.
+[[nodiscard]] std::optional<InputError::Where> place_of_element(
+    const std::string& path_or_name, const std::vector<std::string>& overrides,
+    const std::string& kind, const std::string& element);
 
 /// The scenario as a file with every key written out. Loading it gives the same values, bit for
 /// bit. The same scenario always gives the same bytes; a shipped MuJoCo XML file is written by its

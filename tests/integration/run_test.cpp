@@ -346,21 +346,33 @@ TEST(Run, a_killed_episode_can_be_rendered_and_reported_as_far_as_it_came) {
 
 TEST(Run, a_fault_of_the_plant_is_an_outcome_with_mujocos_words) {
   const TemporaryFolder folder;
-  const std::string xml = folder.file("bad.xml", "<mujoco><worldbody><oops/></worldbody></mujoco>");
-  const ProcessResult result =
-      run_qsmpc(small_run(folder.path() + "/out",
-                          {"--set", "plant.mjcf=" + xml, "--set", "vehicle.footprint=point"}),
-                {.folder = folder.path()});
+  // Gains at which the robot's wheels spin until MuJoCo gives up.
+  const ProcessResult result = run_qsmpc(
+      {"run", "differential_robot", "--no-video", "--out", folder.path() + "/out", "--set",
+       "limit.steps=6", "--set",
+       "plant.input.yaw_rate=[{actuator: left_motor, gain: 1e18}, {actuator: right_motor, gain: "
+       "-1e18}]"},
+      {.folder = folder.path()});
   EXPECT_EQ(result.exit_code, 1) << result.errors;
-  EXPECT_THAT(result.errors, HasSubstr("oops"));
+  EXPECT_THAT(result.errors, HasSubstr("warning: the plant breaks"));
   const auto summary = nlohmann::json::parse(read_text(folder.path() + "/out/summary.json"));
   EXPECT_EQ(summary["outcome"], "fault");
   EXPECT_FALSE(exists(folder.path() + "/MUJOCO_LOG.TXT"));
-  // Where the footprint is to come from the file, it is a wrong file.
-  const ProcessResult refused =
-      run_qsmpc(small_run(folder.path() + "/none", {"--set", "plant.mjcf=" + xml}));
-  EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.errors, HasSubstr("oops"));
+}
+
+TEST(Run, a_vehicle_that_mujoco_does_not_load_is_a_wrong_file) {
+  const TemporaryFolder folder;
+  const std::string xml = folder.file("bad.xml", "<mujoco><worldbody><oops/></worldbody></mujoco>");
+  for (const char* footprint : {"point", "from_mjcf"}) {
+    const ProcessResult refused = run_qsmpc(
+        small_run(folder.path() + "/none", {"--set", "plant.mjcf=" + xml, "--set",
+                                            std::string("vehicle.footprint=") + footprint}),
+        {.folder = folder.path()});
+    EXPECT_EQ(refused.exit_code, 2);
+    EXPECT_THAT(refused.errors, HasSubstr("oops"));
+    EXPECT_FALSE(exists(folder.path() + "/none"));
+  }
+  EXPECT_FALSE(exists(folder.path() + "/MUJOCO_LOG.TXT"));
 }
 
 TEST(Commands, list_and_validate_and_help) {

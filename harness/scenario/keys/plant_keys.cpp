@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "harness/mujoco/mujoco_model.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/model_error_reader.hpp"
@@ -83,17 +82,6 @@ std::string default_mjcf(const models::SystemDescription& system, const std::str
   return farthest;
 }
 
-/// Notes why MuJoCo does not load the file, if it does not.
-void note_broken_model(const std::string& path, Section& section, const std::string& key) {
-  try {
-    (void)load_mujoco_model(path);
-  } catch (const InputError& error) {
-    InputError::Where where = error.where();
-    const std::string expected = std::exchange(where.expected, "");
-    section.note(key, expected, InputError(where).what());
-  }
-}
-
 void read_mjcf(ScenarioReading& reading, Section& section, const KeyDescription& about) {
   Scenario::Plant& plant = reading.scenario.plant;
   const bool knows_system = reading.dynamics != nullptr;
@@ -109,8 +97,6 @@ void read_mjcf(ScenarioReading& reading, Section& section, const KeyDescription&
     section.note(about.name,
                  "a file beside the scenario, or " + expected_names(name, shipped_mjcf_names()),
                  "no file " + name);
-  } else if (!plant.mjcf.empty() && reading.lookup.must_exist && !reading.lookup.is_recorded) {
-    note_broken_model(plant.mjcf, section, about.name);
   }
 }
 
