@@ -12,7 +12,7 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
-#include "harness/text/json_text.hpp"
+#include "harness/report/script_json.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -276,25 +276,6 @@ class EpisodeData {
   int horizon_;  // stages with a certificate
 };
 
-/// Nothing in it can end the element that it stands in.
-std::string for_script(const Json& json) {
-  const std::string text = compact_json_text(json);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else if (c == '>') {
-      safe += "\\u003e";
-    } else if (c == '&') {
-      safe += "\\u0026";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
-
 }  // namespace
 
 std::string episode_data(const EpisodeView& view, const PageScene& scene) {
@@ -304,7 +285,7 @@ std::string episode_data(const EpisodeView& view, const PageScene& scene) {
   for (const Chart& chart : scene.charts) json["charts"].push_back(chart_data(chart));
   json["video"] = {{"from", scene.video_from}, {"speed", scene.video_speed}};
   if (scene.map != nullptr) json["map"] = data.plane(*scene.map);
-  return for_script(json);
+  return script_json(json);
 }
 
 }  // namespace qsmpc::harness

@@ -12,6 +12,7 @@
 #include "harness/report/episode_charts.hpp"
 #include "harness/report/episode_data.hpp"
 #include "harness/report/episode_map.hpp"
+#include "harness/report/episode_scene.hpp"
 #include "harness/report/key_figures.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/text/html.hpp"
@@ -91,6 +92,35 @@ std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts
   return html + "</div>\n" + map_drawing(*map) + "</figure>\n";
 }
 
+std::string scene_box(std::string_view layer, std::string_view words) {
+  return fmt::format(
+      "<label><input type=\"checkbox\" checked=\"checked\" data-scene=\"{}\"/>{}</label>", layer,
+      words);
+}
+
+/// The view in three dimensions, which the scene's script fills, or why there is none.
+std::string scene_figure(const EpisodeScene& scene, bool in_plane,
+                         const controller::DecisionParts& parts) {
+  const std::string note =
+      scene.note.empty() ? "" : "<p class=\"note\">" + escape_html(scene.note) + "</p>\n";
+  if (scene.data.empty()) return note;
+  std::string html =
+      "<figure class=\"card\" id=\"scene\" hidden>\n<figcaption>The drive in three dimensions"
+      "</figcaption>\n<p class=\"note how\">Drag to turn it, with the right button or two fingers "
+      "to move it. Once clicked, the wheel and the keys plus and minus bring it nearer and "
+      "farther, "
+      "and the arrow keys turn it.</p>\n"
+      "<div class=\"layers\">" +
+      scene_box("follow", "follow the vehicle");
+  if (in_plane) {
+    if (parts.particles) html += scene_box("particles", "particles");
+    if (parts.stages > 0) html += scene_box("plan", "plan") + scene_box("ghost", "model’s vehicle");
+    html += scene_box("way", "way driven");
+  }
+  return html + "<button type=\"button\" class=\"whole\">Show all of it</button></div>\n" +
+         "<div class=\"scene\"></div>\n" + note + "</figure>\n";
+}
+
 std::string player(const Trace& trace) {
   return fmt::format(
       "<div class=\"card player needs-script\" role=\"group\" aria-label=\"Moment of the drive\" "
@@ -121,7 +151,8 @@ constexpr std::string_view kStageCharts =
     "and "
     "its particles, and what each source alone would give.</p>\n</figure>\n";
 
-std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodePageOptions& options) {
+std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeScene& scene,
+                  const EpisodePageOptions& options) {
   const Trace& trace = view.trace();
   const std::string_view meaning = view.parts().stages > 0 ? kMeaning : kMeaningWithoutPlan;
   if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(meaning);
@@ -129,9 +160,10 @@ std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodePag
   const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
   return fmt::format(
       "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
-      "<div class=\"stack\">\n{}{}</div>\n</div>\n",
+      "<div class=\"stack\">\n{}{}</div>\n</div>\n{}",
       player(trace), video(options), moment, meaning, live_map(map, parts),
-      parts.stages > 0 ? kStageCharts : std::string_view());
+      parts.stages > 0 ? kStageCharts : std::string_view(),
+      scene_figure(scene, map != nullptr, parts));
 }
 
 std::string charts_html(const std::vector<Chart>& charts, const std::string& map) {
@@ -168,18 +200,24 @@ std::string episode_page(const EpisodeView& view, const EpisodePageOptions& opti
                                                        .video_from = options.video_from,
                                                        .video_speed = options.video_speed})
                                  : std::string();
+  const EpisodeScene scene = episode_scene(view, ground);
 
   std::string html = introduction(trace) + figures.outcome + figures.tiles;
-  html += drive(view, ground, options);
+  html += drive(view, ground, scene, options);
   html += charts_html(charts, maps ? map_figure(maps->drive) : std::string());
   html += kMismatchNote;
   html += figures.mismatch + ending(trace);
   if (moves) {
     html += "<script type=\"application/json\" id=\"episode-data\">" + data + "</script>\n";
   }
+  if (!scene.data.empty()) {
+    html += "<script type=\"application/json\" id=\"scene-data\">" + scene.data + "</script>\n";
+  }
   return framed_page({.title = trace.scenario.name + ": episode",
                       .version = trace.version,
-                      .kind = moves ? PageKind::kEpisode : PageKind::kPlain},
+                      .kind = !moves               ? PageKind::kPlain
+                              : scene.data.empty() ? PageKind::kEpisode
+                                                   : PageKind::kEpisodeScene},
                      html);
 }
 

@@ -21,6 +21,13 @@ function stageColour(stage, horizon) {
   return `color-mix(in oklab, var(--c0), var(--c4) ${share.toFixed(0)}%)`;
 }
 
+// Of the way driven, by the clearance (m) at the end of a period.
+function wayColour(clearance) {
+  if (!Number.isFinite(clearance)) return "var(--soft)";
+  const calm = Math.min(Math.max(clearance / kCalmClearance, 0), 1);
+  return `color-mix(in oklab, var(--bad), var(--c5) ${(100 * calm).toFixed(0)}%)`;
+}
+
 // Half axes and direction of N(0, S)'s ellipses, for S given by three numbers.
 function principalAxes(xx, xy, yy) {
   const middle = (xx + yy) / 2;
@@ -93,10 +100,7 @@ class LiveMap {
       const known = ends.every(Number.isFinite);
       const line = svgElement("path", {d: known ?
         `M${this.at(ends[0], ends[1])}L${this.at(ends[2], ends[3])}` : ""}, this.way);
-      const clearance = this.data.clearance[k + 1];
-      const calm = Math.min(Math.max(clearance / kCalmClearance, 0), 1);
-      line.style.stroke = Number.isFinite(clearance)
-        ? `color-mix(in oklab, var(--bad), var(--c5) ${(100 * calm).toFixed(0)}%)` : "var(--soft)";
+      line.style.stroke = wayColour(this.data.clearance[k + 1]);
       this.lines.push(line);
     }
   }

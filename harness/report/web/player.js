@@ -203,7 +203,11 @@ class Player {
     this.time = Math.min(Math.max(time, 0), this.end);
     const periods = this.time / data.period;
     const k = Math.min(Math.floor(periods + 1e-6), data.steps - 1);
-    if (this.map) this.map.show(k, Math.min(Math.max(periods - k, 0), 1));
+    const share = Math.min(Math.max(periods - k, 0), 1);
+    if (this.map) this.map.show(k, share);
+    // For the view in three dimensions, whose script is apart (scene3d.js).
+    document.dispatchEvent(new CustomEvent("qsmpc-moment", {
+      detail: {data, period: k, share, time: this.time, stageColour, wayColour}}));
     if (k !== this.period) for (const chart of this.stages) chart.show(k);
     this.period = k;
     for (const chart of this.charts) chart.show(this.time);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -15,35 +14,13 @@
 #include "harness/report/episode_map.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "tests/support/example_trace.hpp"
+#include "tests/unit/report/packed_data.hpp"
 
 namespace qsmpc::harness {
 namespace episode_data_test {
 
 using testing::example_trace;
-
-std::vector<std::uint8_t> bytes_of(const std::string& text) {
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<std::uint8_t> bytes;
-  std::uint32_t group = 0;
-  int bits = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    group = group << 6U | static_cast<std::uint32_t>(digits.find(c));
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes.push_back(static_cast<std::uint8_t>(group >> static_cast<unsigned>(bits)));
-  }
-  return bytes;
-}
-
-template <class Number>
-std::vector<Number> numbers_of(const nlohmann::json& text) {
-  const std::vector<std::uint8_t> bytes = bytes_of(text.get<std::string>());
-  std::vector<Number> numbers(bytes.size() / sizeof(Number));
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
-  return numbers;
-}
+using testing::numbers_of;
 
 nlohmann::json data_of(const Trace& trace) {
   const EpisodeView view(trace);
