@@ -150,8 +150,8 @@ void add_compare_command(CLI::App& app, int& exit_code) {
                    "NAME: of which plant; default: the one named last")
       ->needs(error_file);
   add_set_option(*command, arguments->overrides);
-  command->add_option("--seed", arguments->seed,
-                      "of the first episode and of the paths; default: the scenario's");
+  add_seed_option(*command, arguments->seed,
+                  "of the first episode and of the paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-compare");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print comparison.json instead of the table");

@@ -133,7 +133,7 @@ void add_predict_command(CLI::App& app, int& exit_code) {
       ->add_option("--monte-carlo", arguments->samples,
                    "simulate so many paths of the model as a check of the certificates")
       ->check(CLI::Range(std::int64_t{1}, kMostSamples));
-  command->add_option("--seed", arguments->seed, "of the simulated paths; default: the scenario's");
+  add_seed_option(*command, arguments->seed, "of the simulated paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-predict");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print predict.json instead of the table");

@@ -130,7 +130,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);
-  command->add_option("--seed", arguments->seed, "of all random numbers; default: the scenario's");
+  add_seed_option(*command, arguments->seed, "of all random numbers; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
   // An interrupt has an exit code of its own.
