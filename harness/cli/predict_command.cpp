@@ -22,6 +22,7 @@
 #include "harness/prediction/prediction_report.hpp"
 #include "harness/prediction/prediction_table.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/scenario_warnings.hpp"
 #include "harness/scenario/value_checks.hpp"
 
 namespace qsmpc::harness {
@@ -95,6 +96,7 @@ int conclude(const PredictionReport& report) {
 int predict(const PredictArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
+  print_warnings(scenario_warnings(scenario));
   PredictionOptions options{.inputs = take_inputs(arguments, scenario)};
   const std::string folder =
       arguments.out.empty() ? default_folder(scenario.name, "predict") : arguments.out;

@@ -66,6 +66,7 @@ struct VariantStatistics {
   std::string scenario{};
   std::string settings{};
   std::string plant{};
+  std::string no_bound{};     ///< why its certificates are no bounds; empty where they are
   std::int64_t episodes = 0;  ///< asked for
   std::int64_t done = 0;
   std::map<std::string, std::int64_t> outcomes{};
