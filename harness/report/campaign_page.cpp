@@ -91,6 +91,14 @@ std::string spread_table(const CampaignStatistics& statistics) {
          table_html(table);
 }
 
+/// Why some certificates are no bounds; empty where all are.
+std::string no_bound_words(const CampaignStatistics& statistics) {
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (!variant.no_bound.empty()) return " No bound: " + variant.no_bound + ".";
+  }
+  return {};
+}
+
 std::string certificates_table(const CampaignStatistics& statistics) {
   PageTable table{.label = "Certificates of the next step, by variant",
                   .heads = {"variant", "periods", "unsafe", "observed", "certified", "p",
@@ -99,15 +107,18 @@ std::string certificates_table(const CampaignStatistics& statistics) {
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
     const std::int64_t exceeded = exceeded_bins(variant.calibration);
+    const std::string certified = number_html(variant.certified_step_rate()) +
+                                  (variant.no_bound.empty() ? "" : " <strong>no bound</strong>");
     table.rows.push_back({variant_head(statistics, n), fmt::format("{}", variant.periods),
                           fmt::format("{}", variant.unsafe_periods),
-                          number_html(variant.unsafe_step_rate()),
-                          number_html(variant.certified_step_rate()), number_html(variant.p_value),
+                          number_html(variant.unsafe_step_rate()), certified,
+                          number_html(variant.p_value),
                           exceeded > 0 ? fmt::format("<strong>{}</strong>", exceeded) : "0",
                           number_html(variant.ocp_ms.median), number_html(variant.ocp_ms.p99)});
   }
   return section_head("Certificates of the next step, and planning",
-                      "p is small where more periods end unsafe than certified for them.") +
+                      "p is small where more periods end unsafe than certified for them." +
+                          no_bound_words(statistics)) +
          verdict_html(certificate_verdict(statistics)) + table_html(table);
 }
 

@@ -13,11 +13,17 @@
 #include "harness/report/comparison_verdict.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/report/table_page.hpp"
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
 
 namespace qsmpc::harness {
 namespace {
+
+/// The head of what is certified.
+const char* certified_head(const Comparison& comparison) {
+  return why_no_bound(comparison.scenario).empty() ? "certified" : "certified: no bound";
+}
 
 std::string kicker(const Comparison& comparison) {
   const Scenario& scenario = comparison.scenario;
@@ -158,7 +164,8 @@ std::string rate_html(const Comparison& comparison, const HorizonStage& stage) {
 
 PageTable stage_table(const Comparison& comparison, const PlantComparison& plant) {
   PageTable table{.label = "Along the plan, by stage: " + plant.name,
-                  .heads = {"stage", "W₂ to the model, at most", "W₂", "floor of W₂", "certified"},
+                  .heads = {"stage", "W₂ to the model, at most", "W₂", "floor of W₂",
+                            certified_head(comparison)},
                   .rows = {}};
   if (comparison.with_error) table.heads.emplace_back("with model error");
   table.heads.emplace_back("observed, 99 % interval");
@@ -225,11 +232,12 @@ const HorizonStage& worst_stage(const PlantComparison& plant) {
 }
 
 std::string certificate_section(const Comparison& comparison, const ComparisonFigure& figure) {
-  PageTable table{.label = "Certificates against what was observed, by plant",
-                  .heads = {"plant", "stages exceeded", "worst stage", "certified there",
-                            "observed there, 99 % interval", "paths broken", "periods",
-                            "ended unsafe", "certified", "p", "exceeded in closed loop"},
-                  .rows = {}};
+  PageTable table{
+      .label = "Certificates against what was observed, by plant",
+      .heads = {"plant", "stages exceeded", "worst stage", "certified there",
+                "observed there, 99 % interval", "paths broken", "periods", "ended unsafe",
+                certified_head(comparison), "p", "exceeded in closed loop"},
+      .rows = {}};
   for (const PlantComparison& plant : comparison.plants) {
     const HorizonStage& worst = worst_stage(plant);
     const ClosedLoop& loop = plant.closed_loop;
@@ -268,6 +276,7 @@ std::string comparison_page(const Comparison& comparison) {
       "<h1>" + escape_html(comparison.scenario.name) + ": plants beside the model</h1>\n";
   html += kicker(comparison);
   if (const auto unsafe = unsafe_verdict(comparison)) html += verdict_html(*unsafe);
+  if (const auto no_bound = no_bound_verdict(comparison)) html += verdict_html(*no_bound);
   html += verdict_html(comparison_verdict(comparison));
   html += closed_loop_section(comparison);
   html += certificate_section(comparison, all[kCertificateFigure]);

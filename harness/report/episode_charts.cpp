@@ -86,7 +86,9 @@ Chart certificate_chart(const EpisodeView& view) {
     }
     return largest;
   };
-  Chart chart{.title = "Certificates: bounds of the probability of being unsafe",
+  const bool holds = view.summary().no_bound.empty();
+  Chart chart{.title = holds ? "Certificates: bounds of the probability of being unsafe"
+                             : "Certificates, no bounds: see above",
               .note = "What is below the axis, 0 included, is drawn at its foot.",
               .x_label = kTimeLabel,
               .y_label = "probability (–)",

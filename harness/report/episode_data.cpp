@@ -46,6 +46,8 @@ class EpisodeData {
                  {"solved", parts_.status},
                  {"times", of_steps([](const StepRecord& step) { return step.time; })},
                  {"clearance", clearances()},
+                 {"clearanceUnit", view_.clearance_unit()},
+                 {"holds", view_.summary().no_bound.empty()},
                  {"solve", of_steps([](const StepRecord& step) { return step.timing.total; })},
                  {"cost", cost_parts()},
                  {"inputs", inputs()},

@@ -144,7 +144,7 @@ constexpr std::string_view kWhy =
 
 constexpr std::string_view kStageCharts =
     "<figure class=\"card\" id=\"stage-certificates\" hidden>\n<figcaption>Certificates of this "
-    "plan, stage by stage</figcaption>\n<p class=\"note\">Upper bounds of the probability of being "
+    "plan, stage by stage</figcaption>\n<p class=\"note\">{} of the probability of being "
     "unsafe at each stage; 10⁻⁹ and less at the foot.</p>\n</figure>\n"
     "<figure class=\"card\" id=\"stage-budgets\" hidden>\n<figcaption>Error budget of this plan, "
     "stage by stage</figcaption>\n<p class=\"note\">Bound of the distance between the model’s law "
@@ -162,7 +162,10 @@ std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeSce
       "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
       "<div class=\"stack\">\n{}{}</div>\n</div>\n{}",
       player(trace), video(options), moment, meaning, live_map(map, parts),
-      parts.stages > 0 ? kStageCharts : std::string_view(),
+      parts.stages > 0 ? fmt::format(kStageCharts, view.summary().no_bound.empty()
+                                                       ? "Upper bounds"
+                                                       : "Estimates that are no bounds")
+                       : std::string(),
       scene_figure(scene, map != nullptr, parts));
 }
 

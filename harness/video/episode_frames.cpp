@@ -163,7 +163,7 @@ render::Frame EpisodeFrames::at(double time) const {
     }
   }
   const std::size_t step = step_at(now);
-  frame.hud = hud_rows(view_.trace(), step, now, speed(now));
+  frame.hud = hud_rows(view_.trace(), step, now, track_.driven_speed(now));
   add_plan(steps_[step], frame);
   add_belief(steps_[step], frame);
   if (overlays_.body) frame.body = body_at(frame.pose);
@@ -260,12 +260,6 @@ std::vector<std::vector<render::PlanarPoint>> EpisodeFrames::body_at(
     }
   }
   return lines;
-}
-
-double EpisodeFrames::speed(double time) const {
-  const models::ParameterMap& parameters = view_.scenario().model.parameters;
-  const auto constant = parameters.find("speed");
-  return constant != parameters.end() ? constant->second : track_.smooth_speed(time);
 }
 
 }  // namespace qsmpc::harness

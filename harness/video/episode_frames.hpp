@@ -58,7 +58,6 @@ class EpisodeFrames {
   [[nodiscard]] std::vector<std::vector<render::PlanarPoint>> body_at(
       const render::PlanarPose& pose) const;
   [[nodiscard]] std::optional<render::PlanarPose> ghost(std::size_t step, double time) const;
-  [[nodiscard]] double speed(double time) const;
   [[nodiscard]] render::ParticleStage planar(const controller::DiscreteMeasure& measure) const;
 
   const EpisodeView& view_;

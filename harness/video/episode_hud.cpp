@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/trace/risk_use.hpp"
 
 namespace qsmpc::harness {
@@ -168,6 +169,7 @@ std::vector<render::StripChart> strip_charts(const EpisodeView& view, const Char
   std::vector<render::StripChart> charts;
   if (!trace.steps[step].certificates.empty()) {
     charts.push_back(certificate_chart(history, ranges, scenario.risk.stage));
+    if (!view.summary().no_bound.empty()) charts.back().label = "next step, no bound";
   }
   if (!system.inputs.empty()) {
     charts.push_back(input_chart(history, scenario.controller, system, 0));
@@ -188,6 +190,9 @@ std::vector<render::HudRow> hud_rows(const Trace& trace, std::size_t index, doub
   if (!step.certificates.empty() && step.plan_states.cols() > 1) {
     rows.push_back(
         {"P(unsafe) whole plan", bound_text(controller::horizon_bound(step.certificates))});
+  }
+  if (!why_no_bound(trace.scenario).empty()) {
+    rows.push_back({.name = "certificates", .value = "no bound", .warning = true});
   }
   add_risk_rows(trace, index, rows);
   if (step.fallback) rows.push_back({"applied", "the plan before, shifted"});

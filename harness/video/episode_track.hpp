@@ -47,8 +47,9 @@ class EpisodeTrack {
   /// A pose near the vehicle's that moves smoothly: what a camera follows.
   [[nodiscard]] render::PlanarPose smooth_pose(double time) const;
 
-  /// m/s, of the smooth pose.
-  [[nodiscard]] double smooth_speed(double time) const;
+  /// m/s, how far the plant came by itself in the control period about `time`, before the
+  /// disturbance, over the period; 0 without steps.
+  [[nodiscard]] double driven_speed(double time) const;
 
   /// The smallest rectangle about the way; of no area without steps.
   [[nodiscard]] render::PlanarRectangle extent() const;
@@ -58,17 +59,13 @@ class EpisodeTrack {
     double time = 0.0;
     render::PlanarPose pose;
   };
-  struct LocalLine {
-    render::PlanarPose value;
-    render::PlanarPose slope;
-  };
 
   void add_poses(const EpisodeView& view);
   void add_motion(const Trace& trace);
-  [[nodiscard]] LocalLine local_line(double time) const;
 
   double duration_ = 0.0;
   std::vector<TimedPose> instants_;   // at the control instants, after the jump
+  std::vector<double> speeds_;        // m/s, of each period
   std::vector<TimedPose> drawn_;      // with the jumps eased
   std::vector<MotionSample> motion_;  // with the jumps eased
 };

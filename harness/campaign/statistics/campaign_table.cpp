@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t kNameWidth = 28;   // of variants
 constexpr std::size_t kTitleLimit = 76;  // of a variant's name in a line of its own
 constexpr std::size_t kFullName = 100;
+constexpr std::size_t kNoBoundLimit = 94;  // bytes of the reason in its line
 constexpr std::size_t kOutcomeLimit = 16;
 constexpr std::size_t kDoneWidth = 7;   // of the number of drives
 constexpr std::size_t kRateWidth = 14;  // of the limits of a rate in percent
@@ -142,6 +143,9 @@ std::string certificate_section(const CampaignStatistics& statistics) {
                         probability(variant.certified_step_rate()),
                         probability(variant.p_value) + (variant.p_value < kSurprising ? " !" : ""),
                         fmt::format("{} of {}{}", exceeded, filled, exceeded > 0 ? " !" : ""));
+    if (!variant.no_bound.empty()) {
+      text += fmt::format("     NO BOUND: {}\n", printable(variant.no_bound, kNoBoundLimit));
+    }
   }
   return text;
 }

@@ -80,6 +80,7 @@ struct VariantStatistics {
   std::string settings{};
   std::string plant{};
   std::string scenario_text{};  ///< resolved, as YAML
+  std::string no_bound{};       ///< why its certificates are no bounds; empty where they are
   std::int64_t episodes = 0;    ///< asked for
   std::int64_t done = 0;
   std::map<std::string, std::int64_t> outcomes{};

@@ -97,6 +97,19 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));
 }
 
+TEST(episode_frames, speed_is_the_plants_and_neither_the_models_constant_nor_the_noises) {
+  Trace trace = straight_trace();
+  trace.scenario.model.parameters["speed"] = 9.0;
+  // The plant loses speed in its third period: half of the stride, then the same kick.
+  for (std::size_t k = 3; k < trace.steps.size(); ++k) trace.steps[k].state.x() -= 0.5 * kStride;
+  trace.final_state.x() -= 0.5 * kStride;
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
+  EXPECT_THAT(row_of(frames.at(0.15), "speed"), HasSubstr("1.50"));
+  EXPECT_THAT(row_of(frames.at(0.25), "speed"), HasSubstr("0.75"));
+  EXPECT_THAT(row_of(frames.at(0.35), "speed"), HasSubstr("1.50"));
+}
+
 TEST(episode_frames, a_collision_is_told_when_it_was_and_as_an_alarm) {
   Trace trace = straight_trace();
   EXPECT_FALSE(EpisodeFrames(EpisodeView(trace)).at(0.6).alarm);
