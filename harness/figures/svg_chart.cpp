@@ -146,15 +146,16 @@ std::string axis_break_up(const PlotFrame& frame) {
   return fmt::format("V{0:.1f}m-4 2l8 -4m0 4l-8 4M{1:.1f} {2:.1f}", y - 2.0, kChartLeft, y + 2.0);
 }
 
-/// Upwards about `middle`, in two lines where one would be longer than the drawing is high.
+/// Upwards about `middle`, in two lines where one would leave the drawing.
 std::string y_label_svg(const std::string& label, double middle) {
-  constexpr double kLabelSize = 12.5;
+  constexpr double kLabelSize = 14.5;  // on a telephone, where letters are largest
   const auto line = [&](int x, const std::string& text) {
     return fmt::format(
         "<text class=\"middle label\" transform=\"translate({} {:.1f}) rotate(-90)\">{}</text>", x,
         middle, escape_html(text));
   };
-  if (estimated_width(label, kLabelSize) <= kHeight) return line(14, label);
+  const double room = 2.0 * std::min(middle, kHeight - middle);
+  if (estimated_width(label, kLabelSize) <= room) return line(14, label);
   const std::size_t half = label.find(' ', label.size() / 2);
   if (half == std::string::npos) return line(14, label);
   return line(11, label.substr(0, half)) + line(25, label.substr(half + 1));

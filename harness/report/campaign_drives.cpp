@@ -25,7 +25,9 @@ namespace {
 constexpr std::size_t kMostMaps = 12;
 constexpr std::size_t kMostAxisNumbers = 20;  // that have room below an axis
 constexpr std::size_t kMapNameLimit = 44;     // bytes of a variant's name
-constexpr std::size_t kMostProminent = 30;    // paths of one outcome that may be drawn strongly
+// Paths of one outcome that may be drawn strongly; fewer of those that arrived, to see the others.
+constexpr std::size_t kMostProminent = 30;
+constexpr std::size_t kMostProminentArrived = 8;
 constexpr std::size_t kReasonLimit = 200;
 constexpr double kSideRoom = 0.5;       // left and right of the outer variants
 constexpr std::size_t kRangeBegin = 1;  // of spread_shares
@@ -69,10 +71,11 @@ void add_paths(const VariantStatistics& variant, PlaneMap& map) {
     const bool arrived = drive->outcome == outcome_name(Outcome::kReached);
     std::string words = drive->outcome;
     std::ranges::replace(words, '_', ' ');
-    MapPath path{.name = fmt::format("{} ({})", words, counts[drive->outcome]),
-                 .colour = outcome_colour(drive->outcome),
-                 .faint = arrived || counts[drive->outcome] > kMostProminent,
-                 .end_mark = arrived ? MapMark::kNone : MapMark::kDot};
+    MapPath path{
+        .name = fmt::format("{} ({})", words, counts[drive->outcome]),
+        .colour = outcome_colour(drive->outcome),
+        .faint = counts[drive->outcome] > (arrived ? kMostProminentArrived : kMostProminent),
+        .end_mark = arrived ? MapMark::kNone : MapMark::kDot};
     for (const PathPoint& point : drive->points)
       path.points.push_back({.x = point.x, .y = point.y});
     map.paths.push_back(std::move(path));
@@ -81,6 +84,7 @@ void add_paths(const VariantStatistics& variant, PlaneMap& map) {
 
 std::string drawn_text(const VariantStatistics& variant) {
   const std::int64_t drawn = std::ssize(variant.paths);
+  if (drawn == variant.done && variant.reached.events == variant.done) return {};
   if (drawn == variant.done) return "Dots: where drives ended that did not arrive.";
   return fmt::format(
       "{} of {} drives are drawn, those first that were unsafe or did not arrive, which have a dot "

@@ -36,7 +36,7 @@ constexpr std::string_view kMeaningWithoutPlan =
     "not covered; it is measured below.</p>\n</section>\n";
 
 constexpr std::string_view kMismatchNote =
-    "<h2>Mismatch of the plant against the planner’s model</h2>\n"
+    "<h3>Mismatch of the plant against the planner’s model</h3>\n"
     "<p class=\"note\">What is left of the plant’s next state after the model’s prediction and the "
     "disturbance are taken away, over all steps. An exact model has zeros.</p>\n";
 
@@ -151,25 +151,41 @@ constexpr std::string_view kStageCharts =
     "and "
     "its particles, and what each source alone would give.</p>\n</figure>\n";
 
+std::string columns(const std::string& left, const std::string& right) {
+  return fmt::format(
+      "<div class=\"grid drive\">\n<div class=\"stack\">\n{}</div>\n<div "
+      "class=\"stack\">\n{}</div>\n</div>\n",
+      left, right);
+}
+
+/// What shows the drive stands on top, side by side; what explains it below, in both columns.
 std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeScene& scene,
                   const EpisodePageOptions& options) {
   const Trace& trace = view.trace();
-  const std::string_view meaning = view.parts().stages > 0 ? kMeaning : kMeaningWithoutPlan;
-  if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(meaning);
   const controller::DecisionParts& parts = view.parts();
+  const std::string head = "<h2 class=\"drive-head\">The drive</h2>\n";
+  const std::string film = video(options);
+  const std::string meaning(parts.stages > 0 ? kMeaning : kMeaningWithoutPlan);
+  if (trace.steps.empty()) return head + film + meaning;
   const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
-  return fmt::format(
-      "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
-      "<div class=\"stack\">\n{}{}</div>\n</div>\n{}",
-      player(trace), video(options), moment, meaning, live_map(map, parts),
-      parts.stages > 0 ? fmt::format(kStageCharts, view.summary().no_bound.empty()
-                                                       ? "Upper bounds"
-                                                       : "Estimates that are no bounds")
-                       : std::string(),
-      scene_figure(scene, map != nullptr, parts));
+  const std::string plane = live_map(map, parts);
+  std::string html = head + player(trace);
+  if (!film.empty() && !plane.empty()) {
+    html += columns(film + moment, plane + meaning);
+  } else if (film.empty() && plane.empty()) {
+    html += columns(moment, meaning);
+  } else {
+    html += columns(film + plane, moment + meaning);
+  }
+  if (parts.stages > 0) {
+    const char* const what =
+        view.summary().no_bound.empty() ? "Upper bounds" : "Estimates that are no bounds";
+    html += "<div class=\"grid drive below\">\n" + fmt::format(kStageCharts, what) + "</div>\n";
+  }
+  return html + scene_figure(scene, map != nullptr, parts);
 }
 
-std::string charts_html(const std::vector<Chart>& charts, const std::string& map) {
+std::string charts_html(const std::vector<Chart>& charts) {
   std::string html = "<h2>Along the drive</h2>\n";
   if (!charts.empty()) {
     html +=
@@ -178,7 +194,7 @@ std::string charts_html(const std::vector<Chart>& charts, const std::string& map
     for (const Chart& chart : charts) html += chart_figure(chart);
     html += "</div>\n";
   }
-  return html + "<div class=\"grid below\">\n" + map + "</div>\n";
+  return html;
 }
 
 std::string ending(const Trace& trace) {
@@ -207,9 +223,10 @@ std::string episode_page(const EpisodeView& view, const EpisodePageOptions& opti
 
   std::string html = introduction(trace) + figures.outcome + figures.tiles;
   html += drive(view, ground, scene, options);
-  html += charts_html(charts, maps ? map_figure(maps->drive) : std::string());
-  html += kMismatchNote;
-  html += figures.mismatch + ending(trace);
+  html += charts_html(charts) + "<div class=\"grid below\">\n";
+  if (maps) html += map_figure(maps->drive);
+  html += "<section class=\"card mismatch\">\n" + std::string(kMismatchNote) + figures.mismatch +
+          "</section>\n</div>\n" + ending(trace);
   if (moves) {
     html += "<script type=\"application/json\" id=\"episode-data\">" + data + "</script>\n";
   }

@@ -6,6 +6,7 @@ const kDotSizes = [1.7, 2.7, 4.2];        // pixels, by weight
 const kEllipseLevels = [0.5, 0.95];       // of the probability
 const kVehicle = "M-9-5.5H4L9 0 4 5.5H-9z";  // view box units, heading right
 const kNearView = 3.0;                    // how many times larger the near view shows
+const kNearTicks = 6;                     // about so many along its width
 const kCalmClearance = 1.0;               // m, from which on the way has its calm colour
 
 function svgElement(name, attributes, parent) {
@@ -39,6 +40,23 @@ function principalAxes(xx, xy, yy) {
   };
 }
 
+// 1, 2 or 5 times a power of ten, so that about `count` of them fill `span`.
+function tickStep(span, count) {
+  const power = 10 ** Math.floor(Math.log10(span / count));
+  const digit = span / count / power;
+  return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
+}
+
+// The multiples of `step` from `low` to `high`, with their labels.
+function ticksEvery(low, high, step) {
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const ticks = [];
+  for (let n = Math.ceil(low / step); n * step <= high; ++n) {
+    ticks.push({value: n * step, label: (n * step).toFixed(decimals).replace(/^-(?=.*[1-9])/, "−").replace(/^-/, "")});
+  }
+  return ticks;
+}
+
 class LiveMap {
   constructor(figure, data) {
     this.data = data;
@@ -48,6 +66,7 @@ class LiveMap {
     this.figure = figure;
     this.view = figure.querySelector("svg.clip");
     this.zoom = 1;
+    this.nearAxes = svgElement("g", {class: "near-axes"}, this.view.parentNode);
     const root = svgElement("g", {id: "moment"}, this.view);
     this.way = svgElement("g", {class: "driven"}, root);
     this.addWay();
@@ -76,11 +95,14 @@ class LiveMap {
     }
   }
 
-  // The near view follows the vehicle; the axes' numbers would not fit it and are not shown.
+  // The near view follows the vehicle, and so do the numbers of its axes.
   setZoom(zoom) {
     this.zoom = zoom;
     this.figure.classList.toggle("near-view", zoom > 1);
-    if (zoom === 1) this.view.removeAttribute("viewBox");
+    if (zoom === 1) {
+      this.view.removeAttribute("viewBox");
+      this.nearAxes.replaceChildren();
+    }
     this.show(this.period, this.share);
   }
 
@@ -200,6 +222,29 @@ class LiveMap {
     const corner = [this.x(x) - width / 2, this.y(y) - height / 2];
     this.view.setAttribute("viewBox",
       [...corner, width, height].map((value) => value.toFixed(1)).join(" "));
+    this.drawAxes(corner, width, height);
+  }
+
+  // Ticks about the part of the plane that begins at `corner` (view box units).
+  drawAxes([left, top], width, height) {
+    const {scale, xLeft, yTop} = this.map;
+    const [x, y] = [this.view.x.baseVal.value, this.view.y.baseVal.value];
+    const foot = y + height * this.zoom;
+    const step = tickStep(width / scale, kNearTicks);
+    this.nearAxes.replaceChildren();
+    const text = (attributes, label) => {
+      svgElement("text", attributes, this.nearAxes).textContent = label;
+    };
+    for (const {value, label} of ticksEvery(xLeft + left / scale, xLeft + (left + width) / scale, step)) {
+      const at = (x + (this.x(value) - left) * this.zoom).toFixed(1);
+      svgElement("path", {class: "axis", d: `M${at} ${foot}v5`}, this.nearAxes);
+      text({class: "middle", x: at, y: foot + 18}, label);
+    }
+    for (const {value, label} of ticksEvery(yTop - (top + height) / scale, yTop - top / scale, step)) {
+      const at = y + (this.y(value) - top) * this.zoom;
+      svgElement("path", {class: "axis", d: `M${x} ${at.toFixed(1)}h-5`}, this.nearAxes);
+      text({class: "end", x: x - 8, y: (at + 4).toFixed(1)}, label);
+    }
   }
 
   // The moment that is `share` of the way through period k; share 1 of the last one is the end.

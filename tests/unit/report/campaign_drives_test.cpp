@@ -48,20 +48,28 @@ CampaignStatistics campaign(std::vector<VariantStatistics> variants) {
 }
 
 TEST(DriveMaps, show_every_drive_coloured_by_its_outcome_those_that_arrived_below) {
-  const DriveMaps drives =
-      drive_maps(campaign({variant(0, {"collision", "timeout", "reached", "reached"})}));
+  std::vector<std::string> outcomes(11, "reached");
+  outcomes[0] = "collision";
+  outcomes[1] = "timeout";
+  const DriveMaps drives = drive_maps(campaign({variant(0, outcomes)}));
   ASSERT_EQ(drives.maps.size(), 1U);
   const PlaneMap& map = drives.maps[0];
-  ASSERT_EQ(map.paths.size(), 4U);
-  EXPECT_EQ(map.paths[0].name, "reached (2)");
+  ASSERT_EQ(map.paths.size(), 11U);
+  EXPECT_EQ(map.paths[0].name, "reached (9)");
   EXPECT_EQ(map.paths[0].colour, kGreen);
   EXPECT_TRUE(map.paths[0].faint);
-  EXPECT_EQ(map.paths[2].name, "timeout (1)");
-  EXPECT_EQ(map.paths[3].colour, kVermilion);
-  EXPECT_FALSE(map.paths[3].faint);
-  EXPECT_EQ(map.paths[3].end_mark, MapMark::kDot);
+  EXPECT_EQ(map.paths[9].name, "timeout (1)");
+  EXPECT_EQ(map.paths[10].colour, kVermilion);
+  EXPECT_FALSE(map.paths[10].faint);
+  EXPECT_EQ(map.paths[10].end_mark, MapMark::kDot);
   EXPECT_EQ(map.obstacles.size(), 1U);
   EXPECT_EQ(map.targets.size(), 1U);
+}
+
+TEST(DriveMaps, draw_few_drives_that_arrived_strongly_and_speak_of_no_dots) {
+  const DriveMaps drives = drive_maps(campaign({variant(0, {"reached", "reached"})}));
+  EXPECT_FALSE(drives.maps.at(0).paths.at(0).faint);
+  EXPECT_TRUE(drives.maps[0].note.empty());
 }
 
 TEST(DriveMaps, say_what_they_leave_out) {
