@@ -33,7 +33,9 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& words) 
     parents += (parents.empty() ? "" : " ") + command->get_name();
     command = *found;
   }
-  return command->help(parents);
+  // App::help would explain the command that was parsed, which is this one.
+  const std::string name = (parents.empty() ? "" : parents + " ") + command->get_name();
+  return command->get_formatter()->make_help(command, name, CLI::AppFormatMode::Normal);
 }
 
 }  // namespace

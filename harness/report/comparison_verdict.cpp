@@ -103,9 +103,9 @@ std::optional<PageVerdict> no_bound_verdict(const Comparison& comparison) {
   const std::string why = why_no_bound(comparison.scenario);
   if (why.empty()) return std::nullopt;
   return PageVerdict{.title = "No certificate is a bound here",
-                     .sentences = {fmt::format("Because {}. Along the plan the policy sees the "
-                                               "state itself.",
-                                               why)}};
+                     .sentences = {"Certificates hold for a policy that sees the state, as along "
+                                   "the plan; " +
+                                   why + "."}};
 }
 
 PageVerdict comparison_verdict(const Comparison& comparison) {

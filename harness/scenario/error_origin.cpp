@@ -111,7 +111,7 @@ KeyDescription disturbance_part() {
   return {.name = "disturbance",
           .values = {MappingValue{{{.name = "kind",
                                     .values = {NameValue{disturbance_kind_names()}},
-                                    .words = "how it got the noise",
+                                    .words = "how it got the noise: `state` or `force`",
                                     .fallback_words = kUnknown},
                                    deviation("friction"),
                                    deviation("mass"),

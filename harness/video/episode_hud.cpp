@@ -188,11 +188,10 @@ std::vector<render::HudRow> hud_rows(const Trace& trace, std::size_t index, doub
   std::vector<render::HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
                                    {"speed", fmt::format("{:.2f} m/s", speed)}};
   if (!step.certificates.empty() && step.plan_states.cols() > 1) {
-    rows.push_back(
-        {"P(unsafe) whole plan", bound_text(controller::horizon_bound(step.certificates))});
-  }
-  if (!why_no_bound(trace.scenario).empty()) {
-    rows.push_back({.name = "certificates", .value = "no bound", .warning = true});
+    const double bound = controller::horizon_bound(step.certificates);
+    const bool holds = why_no_bound(trace.scenario).empty();
+    rows.push_back(holds ? render::HudRow{"P(unsafe) whole plan", bound_text(bound)}
+                         : render::HudRow{"whole plan, no bound", fmt::format("{:.1e}", bound)});
   }
   add_risk_rows(trace, index, rows);
   if (step.fallback) rows.push_back({"applied", "the plan before, shifted"});

@@ -217,7 +217,7 @@ TEST(ErrorOrigin, of_a_file_that_has_changed_is_warned_of) {
   const std::string path = scenario_with_error_of(folder, own);
   EXPECT_THAT(scenario_warnings(load_scenario(path, own)), ::testing::IsEmpty());
   std::string heavier = car;
-  const std::size_t mass = heavier.find("mass=\"");
+  const std::size_t mass = heavier.find("mass=\"3.5\"");
   ASSERT_NE(mass, std::string::npos);
   heavier.insert(mass + 6, "1");
   (void)folder.file("car.xml", heavier);

@@ -97,6 +97,17 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));
 }
 
+TEST(episode_frames, what_is_no_bound_is_not_called_one) {
+  Trace trace = straight_trace();
+  trace.scenario.disturbance.sensor = Eigen::Matrix3d::Identity();
+  const EpisodeView view(trace);
+  const render::Frame frame = EpisodeFrames(view).at(0.2);
+  EXPECT_EQ(frame.charts[0].label, "next step, no bound");
+  EXPECT_EQ(row_of(frame, "whole plan, no bound"), "2.5e-01");
+  for (const render::HudRow& row : frame.hud)
+    EXPECT_EQ(row.name.find("P(unsafe)"), std::string::npos);
+}
+
 TEST(episode_frames, speed_is_the_plants_and_neither_the_models_constant_nor_the_noises) {
   Trace trace = straight_trace();
   trace.scenario.model.parameters["speed"] = 9.0;
