@@ -341,34 +341,6 @@ TEST_F(StoreTest, is_not_folded_while_others_read_it) {
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
 }
 
-TEST_F(StoreTest, gives_back_the_paths_of_failures_before_others_and_of_no_more_than_asked_for) {
-  Store store = open(testing::quick_campaign());
-  for (const auto& [seed, outcome] : {std::pair{5, "reached"}, {6, "collision"}, {7, "reached"}}) {
-    EpisodeRow row = testing::example_row(0, static_cast<std::uint64_t>(seed), outcome);
-    row.path = {{.x = 0.0, .y = -1.25}, {.x = 1.0 * seed, .y = 1e-7}};
-    store.add(row, false);
-  }
-  store.add(testing::example_row(0, 8), false);  // without a path
-  const auto paths = [&](std::int64_t most) {
-    std::vector<std::pair<std::string, std::vector<PathPoint>>> found;
-    StoreReader(folder.path())
-        .for_each_path(0, most, [&](const std::string& outcome, const auto& path) {
-          found.emplace_back(outcome, path);
-        });
-    return found;
-  };
-  ASSERT_EQ(paths(10).size(), 3U);
-  EXPECT_EQ(paths(10)[0].first, "collision");
-  EXPECT_EQ(paths(10)[0].second,
-            (std::vector<PathPoint>{{.x = 0.0, .y = -1.25}, {.x = 6.0, .y = 1e-7}}));
-  EXPECT_EQ(paths(10)[2].second[1].x, 7.0);
-  EXPECT_EQ(paths(2).size(), 2U);
-  store.add(testing::example_row(0, 6, "timeout"), true);  // replaced by one without a path
-  EXPECT_EQ(paths(10).size(), 2U);
-  database().exec("UPDATE path SET points = '[[0]]'");
-  EXPECT_THROW((void)paths(10), IoError);
-}
-
 /// A store as the first schema had it, with one episode.
 void make_first_store(const std::string& path) {
   SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
