@@ -78,7 +78,7 @@ std::string layer_box(std::string_view layer, std::string_view words) {
 std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts) {
   if (map == nullptr) return {};
   std::string html =
-      "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The plane at this moment"
+      "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The map at this moment"
       "</figcaption>\n<p class=\"note\">The way driven, from <span class=\"near\">near</span> the "
       "unsafe set to <span class=\"far\">1 m and more</span> from it";
   html += parts.stages > 0 ? kMapOfPlans : "; the vehicle";

@@ -14,6 +14,13 @@
 
 namespace qsmpc::harness {
 
+/// Whether a system has no place in the plane, but moves along a line: it is drawn on a rail along
+/// x, and y is time (see EpisodeFrames).
+[[nodiscard]] bool is_on_rail(const models::SystemDescription& system);
+
+/// The state that is drawn along x: the first position (m) of a system on a rail; -1 for none.
+[[nodiscard]] int drawn_x(const models::SystemDescription& system);
+
 /// The coordinates of `state` that are drawn; 0 where a system has none.
 [[nodiscard]] render::PlanarPose planar_pose(const models::SystemDescription& system,
                                              const Eigen::Ref<const Eigen::VectorXd>& state);
@@ -43,6 +50,9 @@ class EpisodeTrack {
 
   /// The way from the start to `pose(time)`.
   [[nodiscard]] std::vector<render::PlanarPoint> driven_path(double time) const;
+
+  /// s, when the vehicle was at point `index` of the way, which is not its last one.
+  [[nodiscard]] double path_time(std::size_t index) const { return drawn_[index].time; }
 
   /// A pose near the vehicle's that moves smoothly: what a camera follows.
   [[nodiscard]] render::PlanarPose smooth_pose(double time) const;

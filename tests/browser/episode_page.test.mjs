@@ -260,13 +260,15 @@ test("its policy stops a script that is put into it", async () => {
   await page.close();
 });
 
-test("a system without a place in the plane has its charts and no map", async () => {
+test("a system without a place in the plane has its charts, and a map of two states", async () => {
   const out = temporaryFolder();
   qsmpc("run", "double_integrator", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=5");
   const {page, seen} = await openPage(browser, join(out, "report.html"));
   await slideTo(page, 0.2);
   assert.deepEqual(seen.errors, []);
-  assert.equal(await page.locator("#live-map").count(), 0);
+  assert.ok(await page.locator("#live-map").isVisible());
+  assert.match(await page.locator("#live-map svg").first().textContent(), /velocity \(m\/s\)/);
+  assert.ok(await page.locator("#live-map .dots[d]:not([d=''])").count() > 0);
   assert.ok(await page.locator("#charts .plot").count() >= 6);
   await page.close();
 });

@@ -4,6 +4,7 @@
 const kSvg = "http://www.w3.org/2000/svg";
 const kDotSizes = [1.7, 2.7, 4.2];        // pixels, by weight
 const kEllipseLevels = [0.5, 0.95];       // of the probability
+const kPoint = "M-6 0a6 6 0 1 0 12 0a6 6 0 1 0-12 0z";  // of a system without a heading
 const kVehicle = "M-9-5.5H4L9 0 4 5.5H-9z";  // view box units, heading right
 const kNearView = 3.0;                    // how many times larger the near view shows
 const kNearTicks = 6;                     // about so many along its width
@@ -16,18 +17,35 @@ function svgElement(name, attributes, parent) {
   return element;
 }
 
-// Colours of the stages, from the belief to the last: blue to vermilion through the palette.
-function stageColour(stage, horizon) {
-  const share = horizon > 0 ? 100 * stage / horizon : 0;
-  return `color-mix(in oklab, var(--c0), var(--c4) ${share.toFixed(0)}%)`;
+// The video's palettes (render/colour.cpp): of the stages, from the present to the horizon's end, and
+// of the clearance, from 0 to kCalmClearance.
+const kStageColours = ["#0d0887", "#39049a", "#5f01a5", "#8008a5", "#9e1a9b", "#b93389", "#cf4c74",
+  "#e16561", "#f0804e", "#f99d3b", "#fcbe2c"];
+const kClearanceColours = ["#c21429", "#c7ad75", "#058078"];
+
+// The colour at `share` (0 … 1) of a palette, as #rrggbb.
+function paletteAt(colours, share) {
+  const place = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
+  const index = Math.min(Math.floor(place), colours.length - 2);
+  const channels = [1, 3, 5].map((at) => {
+    const [from, to] = [colours[index], colours[index + 1]]
+      .map((colour) => parseInt(colour.slice(at, at + 2), 16));
+    return Math.round(from + (place - index) * (to - from)).toString(16).padStart(2, "0");
+  });
+  return `#${channels.join("")}`;
 }
 
+const stageColour = (stage, horizon) =>
+  paletteAt(kStageColours, horizon > 0 ? stage / horizon : 0);
+
+const clearanceColour = (clearance) => paletteAt(kClearanceColours, clearance / kCalmClearance);
+
+// Lighter where the ground is dark.
+const onGround = (colour) => `color-mix(in oklab, ${colour}, white var(--lift))`;
+
 // Of the way driven, by the clearance (m) at the end of a period.
-function wayColour(clearance) {
-  if (!Number.isFinite(clearance)) return "var(--soft)";
-  const calm = Math.min(Math.max(clearance / kCalmClearance, 0), 1);
-  return `color-mix(in oklab, var(--bad), var(--c5) ${(100 * calm).toFixed(0)}%)`;
-}
+const wayColour = (clearance) =>
+  Number.isFinite(clearance) ? onGround(clearanceColour(clearance)) : "var(--soft)";
 
 // Half axes and direction of N(0, S)'s ellipses, for S given by three numbers.
 function principalAxes(xx, xy, yy) {
@@ -84,9 +102,10 @@ class LiveMap {
     this.planLine = svgElement("path", {class: "planned"}, this.layers.plan);
     this.nodes = this.range().map((stage) =>
       svgElement("circle", {class: "node", r: 3.2}, this.layers.plan));
-    this.nodes.forEach((node, stage) => { node.style.fill = stageColour(stage, data.horizon); });
-    this.ghost = svgElement("path", {class: "ghost", d: kVehicle}, this.layers.ghost);
-    this.vehicle = svgElement("path", {id: "vehicle", class: "vehicle", d: kVehicle}, root);
+    this.nodes.forEach((node, stage) => { node.style.fill = onGround(stageColour(stage, data.horizon)); });
+    const shape = Number.isFinite(this.map.poses[2]) ? kVehicle : kPoint;
+    this.ghost = svgElement("path", {class: "ghost", d: shape}, this.layers.ghost);
+    this.vehicle = svgElement("path", {id: "vehicle", class: "vehicle", d: shape}, root);
     document.getElementById("near-view").addEventListener("change", (event) =>
       this.setZoom(event.target.checked ? kNearView : 1));
     for (const box of figure.querySelectorAll("input[data-layer]")) {
@@ -132,7 +151,7 @@ class LiveMap {
     this.dots = [];
     this.ellipses = [];
     for (const stage of this.range().reverse()) {
-      const colour = stageColour(stage, this.data.horizon);
+      const colour = onGround(stageColour(stage, this.data.horizon));
       this.dots[stage] = kDotSizes.map((size) => {
         const dots = svgElement("path", {class: "dots", "stroke-width": size},
                                 this.layers.particles);
