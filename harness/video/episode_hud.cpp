@@ -208,7 +208,7 @@ std::vector<render::HudRow> hud_rows(const Trace& trace, std::size_t index, doub
   std::vector<render::HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
                                    {"speed", fmt::format("{:.2f} m/s", speed)}};
   if (!step.certificates.empty() && step.plan_states.cols() > 1) {
-    rows.push_back({"risk, whole plan", bound_text(controller::horizon_bound(step.certificates))});
+    rows.push_back({"risk of plan", bound_text(controller::horizon_bound(step.certificates))});
   }
   add_risk_rows(trace, index, rows);
   if (step.fallback) rows.push_back({"applied", "previous plan"});
