@@ -93,6 +93,15 @@ View chase_view(const PlanarPose& pose, double distance, const PictureSize& size
                     size);
 }
 
+View rail_view(const PlanarPose& pose, double height, double distance, const PictureSize& size) {
+  return aimed_view({.target = {pose.x, pose.y, height},
+                     .distance = distance,
+                     .azimuth = 0.5 * std::numbers::pi,
+                     .elevation = kChaseElevation * kRadPerDegree,
+                     .field_of_view = kChaseFieldOfView * kRadPerDegree},
+                    size);
+}
+
 View region_view(CameraKind kind, const PlanarRectangle& region, const PictureSize& size) {
   const bool top = kind == CameraKind::kTop;
   Aim aim{.target = {0.5 * (region.x_lower + region.x_upper),

@@ -41,6 +41,11 @@ struct View {
 /// From behind and above the vehicle at `pose`, which stands `distance` metres from the camera.
 [[nodiscard]] View chase_view(const PlanarPose& pose, double distance, const PictureSize& size);
 
+/// From before and above a rail along x, on which the vehicle at `pose` stands: along y, with the
+/// point `height` metres above the vehicle's place on the ground in the middle.
+[[nodiscard]] View rail_view(const PlanarPose& pose, double height, double distance,
+                             const PictureSize& size);
+
 /// Shows all of `region`, from above (kTop) or obliquely (kFixed).
 [[nodiscard]] View region_view(CameraKind kind, const PlanarRectangle& region,
                                const PictureSize& size);

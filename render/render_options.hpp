@@ -23,7 +23,8 @@ struct EpisodeScene {
   /// What the top and fixed cameras must show; of no area: the world's bounds, obstacles and
   /// target.
   PlanarRectangle region{};
-  /// Whether the vehicle stands so high that none of its joints takes it below the ground.
+  /// Whether the vehicle stands on a rail along x, so high that none of its joints takes it below
+  /// the ground; the chase camera then looks along y.
   bool raised = false;
   std::string heading{};  ///< one line above the episode's panes; empty: none
 };

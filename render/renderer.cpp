@@ -67,6 +67,7 @@ struct Stage {
   double chase_distance;
   PlanarRectangle region;
   PlanarPoint target;
+  bool raised;
   std::string heading;
   Vehicle vehicle;
   ScenePainter painter;
@@ -75,6 +76,7 @@ struct Stage {
       : chase_distance(scene.chase_distance),
         region(shown_region(scene)),
         target(scene.world.target),
+        raised(scene.raised),
         heading(scene.heading),
         vehicle(scene.mjcf_path, pane.width, pane.height, scene.raised),
         painter(scene.world, region) {}
@@ -87,7 +89,10 @@ struct Stage {
     const double by_length = kChaseLengths * vehicle.length();
     const double nearest = std::max(by_length, kLeastChaseDistance);
     const double distance = std::clamp(chase_distance, nearest, kFarthestChase * nearest);
-    return chase_view(frame.followed.value_or(frame.pose), distance, size);
+    const PlanarPose followed = frame.followed.value_or(frame.pose);
+    constexpr double kRaisedAim = 0.6;  // of what the vehicle is raised by
+    return raised ? rail_view(followed, kRaisedAim * vehicle.lift(), distance, size)
+                  : chase_view(followed, distance, size);
   }
 
   void draw(const Frame& frame, const View& view, SmoothingWorkspace& smoothing, Image& out) {

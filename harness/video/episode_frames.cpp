@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -149,9 +148,10 @@ double EpisodeFrames::longest_plan() const {
       const render::PlanarPose to = planar_pose(view_.system(), step.plan_states.col(i));
       length += std::hypot(to.x - from.x, to.y - from.y);
     }
-    if (on_rail_) {
-      length = std::max(length, -lane(static_cast<std::size_t>(step.plan_states.cols())));
-    }
+    // A rail's camera looks across: it needs more room for the same length.
+    constexpr double kAcross = 1.35;
+    const auto stages = static_cast<std::size_t>(step.plan_states.cols());
+    if (on_rail_) length = std::max(length, -kAcross * lane(stages));
     longest = std::max(longest, length);
   }
   return longest;
@@ -250,7 +250,6 @@ void EpisodeFrames::put_on_rail(std::size_t step, double time, render::Frame& fr
     section.right.y += since;
   }
   frame.followed->y = 0.0;
-  frame.followed->heading = 0.5 * std::numbers::pi;
   if (!joints_) return;
   if (frame.qpos.empty()) frame.qpos = joints_->qpos(state_at(step, time));
   if (!frame.ghost) return;

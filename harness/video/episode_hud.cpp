@@ -215,8 +215,8 @@ std::vector<render::HudRow> hud_rows(const Trace& trace, std::size_t index, doub
   if (!step.certificates.empty() && step.plan_states.cols() > 1) {
     const double bound = controller::horizon_bound(step.certificates);
     const bool holds = why_no_bound(trace.scenario).empty();
-    rows.push_back(holds ? render::HudRow{"risk, whole plan", bound_text(bound)}
-                         : render::HudRow{"whole plan, no bound", percent_text(bound)});
+    rows.push_back(holds ? render::HudRow{"risk of plan", bound_text(bound)}
+                         : render::HudRow{"plan, no bound", percent_text(bound)});
   }
   add_risk_rows(trace, index, rows);
   if (step.fallback) rows.push_back({"applied", "previous plan"});

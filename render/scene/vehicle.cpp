@@ -434,4 +434,6 @@ VehicleMarks Vehicle::marks(const Frame& frame) {
 
 double Vehicle::length() const { return simulator_->length; }
 
+double Vehicle::lift() const { return simulator_->lift; }
+
 }  // namespace qsmpc::render

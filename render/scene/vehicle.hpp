@@ -52,6 +52,9 @@ class Vehicle {
   /// stands still in the world is no part of it.
   [[nodiscard]] double length() const;
 
+  /// m, that it is raised by; 0 where it need not be.
+  [[nodiscard]] double lift() const;
+
  private:
   struct Simulator;
   [[nodiscard]] std::vector<std::vector<PlanarPoint>> shadows() const;

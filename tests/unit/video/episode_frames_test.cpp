@@ -93,7 +93,7 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   ASSERT_EQ(frame.particles.size(), 3U);
   EXPECT_DOUBLE_EQ(frame.particles[1].points[0].x, 3.0 * kStride);
   EXPECT_EQ(frame.charts[0].value, "≤ 0.3 %");
-  EXPECT_EQ(row_of(frame, "risk, whole plan"), "≤ 26 %");  // 0.003 + 0.25, rounded up
+  EXPECT_EQ(row_of(frame, "risk of plan"), "≤ 26 %");  // 0.003 + 0.25, rounded up
   EXPECT_THAT(row_of(frame, "speed"), HasSubstr("1.50"));
   EXPECT_THAT(frame.charts[1].values, ::testing::ElementsAre(0.0, 0.1, 0.2));
   EXPECT_EQ(frame.charts[0].values.size(), 3U);
