@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -28,6 +29,7 @@
 #include "harness/scenario/model_error_reader.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/text/printable.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -104,6 +106,9 @@ std::string files_table(const std::string& folder, const std::vector<TextFile>& 
 int compare(CompareArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
+  refuse_beyond_memory(
+      scenario, arguments.scenario, arguments.overrides,
+      std::min(usable_threads(arguments.options.threads), arguments.options.episodes));
   const std::string folder =
       arguments.out.empty() ? default_folder(scenario.name, "compare") : arguments.out;
 

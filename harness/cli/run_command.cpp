@@ -81,6 +81,7 @@ int run(const RunArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
+  refuse_beyond_memory(scenario, arguments.scenario, arguments.overrides);
   for (const std::string& warning : scenario_warnings(scenario)) {
     std::cerr << "qsmpc: warning: " << warning << '\n';
   }

@@ -1,5 +1,9 @@
 #include "harness/cli/scenario_arguments.hpp"
 
+#include "harness/assembly/memory_need.hpp"
+#include "harness/errors.hpp"
+#include "harness/scenario/scenario_file.hpp"
+
 namespace qsmpc::harness {
 
 void add_scenario_argument(CLI::App& command, std::string& scenario) {
@@ -10,6 +14,17 @@ void add_scenario_argument(CLI::App& command, std::string& scenario) {
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides) {
   command.add_option("--set", overrides, "KEY=VALUE: replaces a key of the scenario")
       ->allow_extra_args(false);
+}
+
+void refuse_beyond_memory(const Scenario& scenario, const std::string& path_or_name,
+                          const std::vector<std::string>& overrides, int count) {
+  const auto problem = memory_problem(scenario, count, usable_memory());
+  if (!problem) return;
+  InputError::Where where = place_of_key(path_or_name, overrides, "controller.quantisation");
+  where.key = "controller.quantisation";
+  where.found = problem->found;
+  where.expected = problem->expected;
+  throw InputError(where);
 }
 
 }  // namespace qsmpc::harness
