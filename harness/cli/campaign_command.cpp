@@ -9,6 +9,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "harness/assembly/memory_need.hpp"
 #include "harness/campaign/plan/campaign_file.hpp"
 #include "harness/campaign/plan/campaign_plan.hpp"
 #include "harness/campaign/runner.hpp"
@@ -91,6 +92,18 @@ CampaignProgress drive(const Campaign& campaign, const std::string& folder,
   return run_campaign(campaign, folder, options);
 }
 
+void refuse_beyond_memory(const Campaign& campaign, const CampaignArguments& arguments) {
+  const double usable = usable_memory();
+  for (const CampaignVariant& variant : campaign.variants) {
+    const auto problem = memory_problem(variant.resolved, arguments.options.jobs, usable);
+    if (!problem) continue;
+    throw InputError({.file = arguments.campaign,
+                      .key = "variant " + variant.name,
+                      .found = problem->found,
+                      .expected = problem->expected + ", e.g. with fewer --jobs"});
+  }
+}
+
 int campaign_command(CampaignArguments& arguments) {
   const Campaign campaign = load_campaign(arguments.campaign);
   if (!arguments.shard.empty()) arguments.options.shard = parse_shard(arguments.shard);
@@ -98,6 +111,7 @@ int campaign_command(CampaignArguments& arguments) {
     print_result(arguments.json ? campaign_plan_json(campaign) : campaign_plan_text(campaign));
     return kDone;
   }
+  refuse_beyond_memory(campaign, arguments);
   const std::string folder =
       arguments.out.empty() ? default_folder(campaign.name, "campaign") : arguments.out;
   const CampaignProgress end = drive(campaign, folder, arguments);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
@@ -31,6 +32,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/scenario_warnings.hpp"
 #include "harness/text/printable.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -112,6 +114,9 @@ int compare(CompareArguments& arguments) {
   Scenario warned = scenario;
   warned.error_origin.reset();  // whether the error holds for these plants is what is measured
   print_warnings(scenario_warnings(warned));
+  refuse_beyond_memory(
+      scenario, arguments.scenario, arguments.overrides,
+      std::min(usable_threads(arguments.options.threads), arguments.options.episodes));
   const std::string folder =
       arguments.out.empty() ? default_folder(scenario.name, "compare") : arguments.out;
 

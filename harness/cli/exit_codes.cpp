@@ -31,7 +31,8 @@ int report_exception(const std::exception_ptr& exception) {
   } catch (const Interrupted& error) {
     return told(error.what(), kInterruptedExit);
   } catch (const std::bad_alloc&) {
-    return told("out of memory", kInternalError);
+    return told("out of memory: fewer points, a shorter horizon or a smaller video need less",
+                kIoTrouble);
   } catch (const std::exception& error) {
     return told("internal error: " + std::string(error.what()), kInternalError);
   } catch (...) {

@@ -9,7 +9,7 @@ enum ExitCode : int {
   kDone = 0,
   kToldFailure = 1,  ///< it ran, and the outcome is one of --fail-on
   kBadInput = 2,     ///< bad usage or bad file
-  kIoTrouble = 3,    ///< something could not be read or written
+  kIoTrouble = 3,    ///< something could not be read or written, or there was no memory for it
   kInternalError = 4,
   kInterruptedExit = 130,
 };

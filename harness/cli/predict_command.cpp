@@ -98,6 +98,7 @@ int predict(const PredictArguments& arguments) {
   scenario.seed = arguments.seed.value_or(scenario.seed);
   print_warnings(scenario_warnings(scenario));
   PredictionOptions options{.inputs = take_inputs(arguments, scenario)};
+  refuse_beyond_memory(scenario, arguments.scenario, arguments.overrides);
   const std::string folder =
       arguments.out.empty() ? default_folder(scenario.name, "predict") : arguments.out;
   make_output_folder(folder);

@@ -83,6 +83,7 @@ int run(const RunArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
+  refuse_beyond_memory(scenario, arguments.scenario, arguments.overrides);
   if (const auto problem = plant_problem(scenario, arguments.scenario, arguments.overrides)) {
     throw InputError(*problem);
   }

@@ -1,5 +1,8 @@
 #include "harness/cli/scenario_arguments.hpp"
 
+#include "harness/assembly/memory_need.hpp"
+#include "harness/errors.hpp"
+#include "harness/scenario/scenario_file.hpp"
 #include "harness/text/number_parse.hpp"
 
 namespace qsmpc::harness {
@@ -22,6 +25,17 @@ void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed,
     return "found " + text + ", expected a whole number from 0 to 18446744073709551615";
   };
   command.add_option("--seed", seed, words)->check(CLI::Validator(problem, "", "seed"));
+}
+
+void refuse_beyond_memory(const Scenario& scenario, const std::string& path_or_name,
+                          const std::vector<std::string>& overrides, int count) {
+  const auto problem = memory_problem(scenario, count, usable_memory());
+  if (!problem) return;
+  InputError::Where where = place_of_key(path_or_name, overrides, "controller.quantisation");
+  where.key = "controller.quantisation";
+  where.found = problem->found;
+  where.expected = problem->expected;
+  throw InputError(where);
 }
 
 }  // namespace qsmpc::harness

@@ -8,6 +8,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "harness/scenario/scenario.hpp"
+
 namespace qsmpc::harness {
 
 /// SCENARIO, which is required.
@@ -19,5 +21,10 @@ void add_set_option(CLI::App& command, std::vector<std::string>& overrides);
 /// `--seed N`: `words` say of what.
 void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed,
                      const std::string& words);
+
+/// Throws InputError where `count` drives of `scenario` at the same time need more memory than the
+/// documented share; `path_or_name` and `overrides` are what the scenario was loaded from.
+void refuse_beyond_memory(const Scenario& scenario, const std::string& path_or_name,
+                          const std::vector<std::string>& overrides, int count = 1);
 
 }  // namespace qsmpc::harness

@@ -52,6 +52,10 @@ void read_moments(Section& section, Eigen::Index dim, controller::ModelError& er
     section.note("covariance", "a symmetric, positive semidefinite matrix", *problem);
     return;
   }
+  if (const auto problem = tiny_variance(*covariance)) {
+    section.note("covariance", expected_variances(), *problem);
+    return;
+  }
   error.covariance = *covariance;
 }
 

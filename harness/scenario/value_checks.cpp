@@ -87,6 +87,19 @@ std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix) {
   return fmt::format("a matrix with the eigenvalue {:.6g}", least * scale);
 }
 
+std::optional<std::string> tiny_variance(const Eigen::MatrixXd& covariance) {
+  for (const double variance : covariance.diagonal()) {
+    if (variance > 0.0 && variance < kLeastVariance) {
+      return fmt::format("a variance of {:.3g}", variance);
+    }
+  }
+  return std::nullopt;
+}
+
+std::string expected_variances() {
+  return fmt::format("variances that are 0 or at least {:g}", kLeastVariance);
+}
+
 std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
                                       const controller::SafeSet& safe_set,
                                       const std::vector<models::Coordinate>& states) {

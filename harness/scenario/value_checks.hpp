@@ -19,6 +19,20 @@ namespace qsmpc::harness {
 /// that differ by more than 1e-9 of the largest entry, or an eigenvalue below minus 1e-9 of it.
 [[nodiscard]] std::optional<std::string> make_semidefinite(Eigen::MatrixXd& matrix);
 
+/// The least variance that is not 0: certificates divide by it and square what comes out, and below
+/// it that leaves the range of numbers, so that a bound may come out too low.
+inline constexpr double kLeastVariance = 1e-300;
+
+/// The first variance of a covariance that is neither 0 nor at least kLeastVariance, e.g.
+/// "a variance of 1e-305".
+[[nodiscard]] std::optional<std::string> tiny_variance(const Eigen::MatrixXd& covariance);
+
+/// What is expected where `tiny_variance` found something.
+[[nodiscard]] std::string expected_variances();
+
+/// The largest number of a state, in its unit: simulators give up not far beyond.
+inline constexpr double kLargestCoordinate = 1e9;
+
 /// Which bound or obstacle makes the state `point` unsafe, its body included, naming states as
 /// `states` does, e.g. "x = 13, outside of the bounds -1 < x < 12" or
 /// "a body that reaches 0.1 into safe_set.obstacles.0".

@@ -328,6 +328,19 @@ TEST(Run, a_plant_that_takes_very_many_steps_hears_that_it_is_to_end) {
   EXPECT_FALSE(exists(out));  // it has not even begun to drive
 }
 
+TEST(Run, sizes_beyond_the_memory_are_refused_before_anything_is_done) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() + "/out";
+  const ProcessResult result = run_qsmpc(
+      {"run", "dubins_obstacles", "--out", out, "--set", "controller.horizon=1000", "--set",
+       "controller.quantisation={state: 100000, noise: 10000, compressed: 100000}"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_EQ(lines(result.errors), 1) << result.errors;
+  EXPECT_THAT(result.errors, ContainsRegex("controller.quantisation: found sizes that need about "
+                                           ".* GB of memory"));
+  EXPECT_FALSE(exists(out));
+}
+
 TEST(Run, a_killed_episode_can_be_rendered_and_reported_as_far_as_it_came) {
   const TemporaryFolder folder;
   const std::string partial = folder.path() + "/episode.h5.partial";

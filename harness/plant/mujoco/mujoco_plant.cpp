@@ -57,7 +57,13 @@ class MujocoPlant final : public Plant {
     }
     const MujocoTrap trap;
     fault_.reset();
-    simulation_->reset(state);
+    try {
+      simulation_->reset(state);
+    } catch (const MujocoError& error) {
+      throw SimulatorError({.file = simulation_->file(),
+                            .found = fmt::format("{} when placed", error.what()),
+                            .expected = "a state that MuJoCo can simulate"});
+    }
     return sample();
   }
 

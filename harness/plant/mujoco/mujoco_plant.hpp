@@ -53,6 +53,7 @@ struct MujocoPlantSetup {
 /// - Any error or warning of MuJoCo, a state that is not finite (or huge, beyond 1e10), and an
 ///   input or a disturbance that is not finite is a fault, "WORDS at TIME s": the state and the
 ///   samples are the last good ones, and every later step brings the same fault until `reset`.
+/// - A state for `reset` that MuJoCo refuses, e.g. a huge one, throws SimulatorError.
 /// - Vectors of a wrong size, and a state for `reset` that is not finite, throw
 ///   std::invalid_argument.
 /// Steps with equal arguments after `reset` are equal bit for bit.

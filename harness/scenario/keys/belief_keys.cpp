@@ -33,7 +33,11 @@ ScenarioKey sensor_key() {
                 .see = "[below](#measurement-noise)",
                 .unit = "unit²",
                 .fallback_words = "zero: it sees the state"},
-      .member = [](Scenario& scenario) -> Eigen::MatrixXd& { return scenario.disturbance.sensor; }};
+      .member = [](Scenario& scenario) -> Eigen::MatrixXd& { return scenario.disturbance.sensor; },
+      .check =
+          [](const ScenarioReading& reading, Section& section) {
+            check_variances(section, "sensor", reading.scenario.disturbance.sensor);
+          }};
 }
 
 ScenarioKey disturbance_kind_key() {
@@ -75,37 +79,45 @@ ScenarioKey initial_state_key() {
                               .fallback_words = "zero: known exactly"},
                     .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
                       return scenario.initial_state.covariance;
-                    }}},
+                    },
+                    .check =
+                        [](const ScenarioReading& reading, Section& section) {
+                          check_variances(section, "covariance",
+                                          reading.scenario.initial_state.covariance);
+                        }}},
           .after = ReadAfter::kSystem,
           .table = "plant"};
 }
 
 ScenarioKey disturbance_key() {
-  return {.about = {.name = "disturbance"},
-          .keys = {{.about = {.name = "covariance",
-                              .values = {MatrixValue{}},
-                              .words =
-                                  "*n* × *n* covariance of the Gaussian noise that is added to the "
-                                  "state in every control period",
-                              .unit = "unit²",
-                              .fallback_words = "zero: none"},
-                    .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
-                      return scenario.disturbance.covariance;
-                    }},
-                   sensor_key(),
-                   disturbance_kind_key(),
-                   deviation_key(
-                       "friction", "the plant's friction and tyre stiffness",
-                       [](Scenario& scenario) -> double& { return scenario.disturbance.friction; }),
-                   deviation_key(
-                       "mass", "the plant's masses and inertias",
-                       [](Scenario& scenario) -> double& { return scenario.disturbance.mass; }),
-                   deviation_key("wheelbase", "the distances of the plant's axles",
-                                 [](Scenario& scenario) -> double& {
-                                   return scenario.disturbance.wheelbase;
-                                 })},
-          .after = ReadAfter::kSystem,
-          .table = "plant"};
+  return {
+      .about = {.name = "disturbance"},
+      .keys =
+          {{.about = {.name = "covariance",
+                      .values = {MatrixValue{}},
+                      .words = "*n* × *n* covariance of the Gaussian noise that is added to the "
+                               "state in every control period",
+                      .unit = "unit²",
+                      .fallback_words = "zero: none"},
+            .member = [](Scenario& scenario) -> Eigen::MatrixXd& {
+              return scenario.disturbance.covariance;
+            },
+            .check =
+                [](const ScenarioReading& reading, Section& section) {
+                  check_variances(section, "covariance", reading.scenario.disturbance.covariance);
+                }},
+           sensor_key(),
+           disturbance_kind_key(),
+           deviation_key(
+               "friction", "the plant's friction and tyre stiffness",
+               [](Scenario& scenario) -> double& { return scenario.disturbance.friction; }),
+           deviation_key("mass", "the plant's masses and inertias",
+                         [](Scenario& scenario) -> double& { return scenario.disturbance.mass; }),
+           deviation_key(
+               "wheelbase", "the distances of the plant's axles",
+               [](Scenario& scenario) -> double& { return scenario.disturbance.wheelbase; })},
+      .after = ReadAfter::kSystem,
+      .table = "plant"};
 }
 
 ScenarioKey estimator_key() {

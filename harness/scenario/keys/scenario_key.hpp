@@ -88,6 +88,8 @@ struct ScenarioKey {
 /// Notes that `point`, the value of `key`, is not in the safe set.
 void check_safe(const ScenarioReading& reading, Section& section, const char* key,
                 const Eigen::VectorXd& point);
+/// Notes that the value of `key`, a covariance, has variances too small for certificates.
+void check_variances(Section& section, const char* key, const Eigen::MatrixXd& covariance);
 
 /// `key` with the keys of its section, and its member's default.
 [[nodiscard]] KeyDescription describe(const ScenarioKey& key);

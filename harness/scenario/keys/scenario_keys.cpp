@@ -1,6 +1,8 @@
 #include <iterator>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/scenario_text.hpp"
 #include "harness/scenario/value_checks.hpp"
@@ -39,8 +41,20 @@ KeyDescription describe(const ScenarioKey& key) {
 
 void check_safe(const ScenarioReading& reading, Section& section, const char* key,
                 const Eigen::VectorXd& point) {
+  Eigen::Index largest = 0;
+  if (point.cwiseAbs().maxCoeff(&largest) > kLargestCoordinate) {
+    section.note(key, fmt::format("numbers of at most {:g} in size", kLargestCoordinate),
+                 fmt::format("{:g}", point[largest]));
+    return;
+  }
   const auto problem = why_unsafe(point, reading.scenario.safe_set, reading.system().states);
   if (problem) section.note(key, "a state in the safe set", *problem);
+}
+
+void check_variances(Section& section, const char* key, const Eigen::MatrixXd& covariance) {
+  if (const auto problem = tiny_variance(covariance)) {
+    section.note(key, expected_variances(), *problem);
+  }
 }
 
 }  // namespace qsmpc::harness

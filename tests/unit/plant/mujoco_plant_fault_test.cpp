@@ -90,6 +90,17 @@ TEST_F(MujocoPlantFaultDeathTest, a_period_ends_where_the_process_is_asked_to_st
       ::testing::ExitedWithCode(17), "");
 }
 
+TEST_F(MujocoPlantFault, a_place_beyond_what_mujoco_takes_is_its_error) {
+  const auto car = make_car();
+  try {
+    car->reset(pose(1e11, 0.0, 0.0));
+    FAIL();
+  } catch (const SimulatorError& error) {
+    EXPECT_THAT(error.where().found, HasSubstr("QPOS"));
+  }
+  EXPECT_NO_THROW(car->reset(pose(1.0, 0.0, 0.0)));
+}
+
 TEST_F(MujocoPlantFault, lasts_until_reset_and_is_then_forgotten) {
   const auto car = make_car();
   car->reset(pose(0.0, 0.0, 0.0));

@@ -299,6 +299,10 @@ INSTANTIATE_TEST_SUITE_P(
                       "target.state", "x = 5, outside", "a state in the safe set"),
         after_minimal("target_in_an_obstacle", "safe_set: {obstacles: [{x: [5, 8]}]}\n", 5,
                       "target.state", "inside safe_set.obstacles.0", "the safe set"),
+        Broken{"huge_target", minimal_with("[5, 0, 0]", "[5, 1e11, 0]"), 5, "target.state", "1e+11",
+               "at most 1e+09 in size"},
+        Broken{"huge_start", minimal_with("{mean: [0, 0, 0]}", "{mean: [-1e11, 0, 0]}"), 4,
+               "initial_state.mean", "-1e+11", "at most 1e+09 in size"},
         Broken{"no_radius", minimal_with("[5, 0, 0]", "[5, 0, 0], radius: 0"), 5, "target.radius",
                "0", "> 0"}),
     name_of);
@@ -319,6 +323,27 @@ TEST(BrokenScenarios, a_matrix_asymmetric_by_rounding_is_made_symmetric) {
       minimal_text +
       "disturbance: {covariance: [[1, 0.5, 0], [0.50000000000001, 1, 0], [0, 0, 1]]}\n");
   EXPECT_EQ(scenario.disturbance.covariance, scenario.disturbance.covariance.transpose());
+}
+
+TEST(BrokenScenarios, variances_below_those_that_certificates_hold_for_are_refused) {
+  for (const std::string key : {"initial_state.covariance", "disturbance.covariance",
+                                "disturbance.sensor", "model_error.covariance"}) {
+    const std::string section = key.substr(0, key.find('.'));
+    const std::string mean = section == "initial_state" ? "mean: [0, 0, 0], " : "";
+    const std::string rms = section == "model_error" ? "rms: [0.1, 0.1, 0.1], " : "";
+    const auto text = [&](const std::string& covariance) {
+      return "--- {name: test, model: {system: dubins}, plant: {kind: analytic, mjcf: \"\"}, "
+             "target: {state: [5, 0, 0]}" +
+             std::string(section == "initial_state" ? "" : ", initial_state: {mean: [0, 0, 0]}") +
+             ", " + section + ": {" + mean + rms + key.substr(key.find('.') + 1) + ": " +
+             covariance + "}}\n";
+    };
+    const InputError::Where where = refusal_of(text("[1, 9.9e-301, 0]"));
+    EXPECT_EQ(where.key, key);
+    EXPECT_EQ(where.found, "a variance of 9.9e-301");
+    EXPECT_EQ(where.expected, "variances that are 0 or at least 1e-300");
+    EXPECT_NO_THROW((void)parse_scenario(text("[1, 1e-300, 0]"))) << key;
+  }
 }
 
 TEST(BrokenScenarios, a_zero_covariance_and_a_zero_cost_are_accepted) {
