@@ -91,9 +91,10 @@ int run(const RunArguments& arguments) {
   for (const std::string& warning : plant_warnings(scenario)) {
     std::cerr << "qsmpc: warning: " << warning << '\n';
   }
-  const std::string folder = arguments.out.empty()
-                                 ? default_folder(scenario.name, fmt::format("{}", seed))
-                                 : arguments.out;
+  const std::string folder =
+      arguments.out.empty()
+          ? default_folder(scenario.name, fmt::format("{}", seed), arguments.overrides)
+          : arguments.out;
   make_output_folder(folder);
   write_file(folder + "/" + kScenarioFile, to_yaml(scenario));
 
@@ -132,7 +133,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);
   command->add_option("--seed", arguments->seed, "of all random numbers; default: the scenario's");
-  command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
+  command->add_option("--out", arguments->out,
+                      "output folder; default: out/NAME-SEED, with --set and digits that belong "
+                      "to the settings");
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
   // An interrupt has an exit code of its own.
   add_fail_on_option(*command, arguments->fail_on,

@@ -7,6 +7,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include "harness/campaign/store/store_checksum.hpp"
 #include "harness/trace/ending.hpp"
 
 namespace qsmpc::harness {
@@ -172,6 +173,7 @@ void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   timing.bind(5, row.timing.deadline_misses);
   run(timing);
   insert_periods(database, row);
+  insert_checksum(database, row.variant, stored_seed(row.seed));
 }
 
 void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed) {

@@ -102,10 +102,21 @@ CREATE TABLE risk_against_cost (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+// Episodes of earlier versions have no checksum.
+constexpr const char* kFourthSchema = R"sql(
+CREATE TABLE episode_checksum (
+  variant INTEGER NOT NULL,
+  seed INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  PRIMARY KEY (variant, seed)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& store_migrations() {
-  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema, kThirdSchema};
+  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema, kThirdSchema,
+                                                   kFourthSchema};
   return migrations;
 }
 

@@ -103,6 +103,20 @@ TEST(CommitPartialFile, gives_a_finished_file_its_name) {
   EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
 }
 
+TEST(PendingFile, does_not_write_through_a_symbolic_link) {
+  const TemporaryFolder folder;
+  const std::string precious = folder.file("precious", "old");
+  std::filesystem::create_symlink(precious, folder / "a.txt.partial");
+  EXPECT_THAT(io_error_of([&] { write_file(folder / "a.txt", "new"); }),
+              HasSubstr("a.txt.partial"));
+  EXPECT_EQ(content_of(precious), "old");
+  // Only what stands beside it is refused: the file itself is replaced, not what it points to.
+  std::filesystem::create_symlink(precious, folder / "b.txt");
+  write_file(folder / "b.txt", "new");
+  EXPECT_EQ(content_of(precious), "old");
+  EXPECT_EQ(content_of(folder / "b.txt"), "new");
+}
+
 TEST(CommitPartialFile, keeps_the_old_file_where_there_is_no_finished_one) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.txt", "old");
