@@ -36,6 +36,7 @@ bool is_exceeded(const std::vector<CalibrationBin>& bins) {
 
 CampaignStatistics write_campaign_results(const std::string& folder, std::size_t worst) {
   const StoreReader store(folder);
+  store.verify();
   CampaignStatistics statistics = campaign_statistics(store);
   write_episodes_csv(store, folder + "/episodes.csv");
   write_file(folder + "/variants.csv", variants_csv(statistics));

@@ -117,8 +117,9 @@ int compare(CompareArguments& arguments) {
   refuse_beyond_memory(
       scenario, arguments.scenario, arguments.overrides,
       std::min(usable_threads(arguments.options.threads), arguments.options.episodes));
-  const std::string folder =
-      arguments.out.empty() ? default_folder(scenario.name, "compare") : arguments.out;
+  const std::string folder = arguments.out.empty()
+                                 ? default_folder(scenario.name, "compare", arguments.overrides)
+                                 : arguments.out;
 
   Progress progress("comparing", arguments.quiet);
   ComparisonOptions& options = arguments.options;

@@ -2,9 +2,12 @@
 
 #include <cctype>
 #include <cerrno>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <iostream>
+
+#include <fmt/format.h>
 
 #include "harness/errors.hpp"
 #include "harness/text/printable.hpp"
@@ -14,15 +17,29 @@ namespace {
 
 constexpr std::size_t kLongestWarning = 2000;  // bytes
 
+/// FNV-1a of 32 bits: the same on every machine, so that the same command has the same folder.
+std::uint32_t fnv1a(const std::string& text) {
+  std::uint32_t hash = 0x811c9dc5U;
+  for (const char letter : text) {
+    hash = (hash ^ static_cast<unsigned char>(letter)) * 0x01000193U;
+  }
+  return hash;
+}
+
 }  // namespace
 
-std::string default_folder(const std::string& name, const std::string& suffix) {
+std::string default_folder(const std::string& name, const std::string& suffix,
+                           const std::vector<std::string>& overrides) {
   std::string plain_name = name;
   for (char& c : plain_name) {
     const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
     if (!plain) c = '_';
   }
-  return "out/" + plain_name + "-" + suffix;
+  const std::string folder = "out/" + plain_name + "-" + suffix;
+  if (plain_name == name && overrides.empty()) return folder;
+  std::string all = name;
+  for (const std::string& override : overrides) all += '\0' + override;
+  return fmt::format("{}-{:08x}", folder, fnv1a(all));
 }
 
 void print_result(const std::string& text) {

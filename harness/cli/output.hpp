@@ -6,8 +6,11 @@
 
 namespace qsmpc::harness {
 
-/// "out/NAME-SUFFIX", with what does not belong in a file name replaced in `name`.
-[[nodiscard]] std::string default_folder(const std::string& name, const std::string& suffix);
+/// "out/NAME-SUFFIX", with what does not belong in a file name replaced in `name`. Where something
+/// was replaced, or the scenario was changed by `overrides` (--set), "-" and eight digits that tell
+/// it from other names and other overrides come after that.
+[[nodiscard]] std::string default_folder(const std::string& name, const std::string& suffix,
+                                         const std::vector<std::string>& overrides = {});
 
 /// Writes `text` to standard output. Throws IoError when it does not get there, e.g. on a full
 /// disk.

@@ -99,8 +99,9 @@ int predict(const PredictArguments& arguments) {
   print_warnings(scenario_warnings(scenario));
   PredictionOptions options{.inputs = take_inputs(arguments, scenario)};
   refuse_beyond_memory(scenario, arguments.scenario, arguments.overrides);
-  const std::string folder =
-      arguments.out.empty() ? default_folder(scenario.name, "predict") : arguments.out;
+  const std::string folder = arguments.out.empty()
+                                 ? default_folder(scenario.name, "predict", arguments.overrides)
+                                 : arguments.out;
   make_output_folder(folder);
 
   Progress progress("simulating", arguments.quiet);

@@ -89,9 +89,10 @@ int run(const RunArguments& arguments) {
   }
   print_warnings(scenario_warnings(scenario));
   print_warnings(plant_warnings(scenario));
-  const std::string folder = arguments.out.empty()
-                                 ? default_folder(scenario.name, fmt::format("{}", seed))
-                                 : arguments.out;
+  const std::string folder =
+      arguments.out.empty()
+          ? default_folder(scenario.name, fmt::format("{}", seed), arguments.overrides)
+          : arguments.out;
   make_output_folder(folder);
   write_file(folder + "/" + kScenarioFile, to_yaml(scenario));
 
@@ -130,7 +131,9 @@ void add_run_command(CLI::App& app, int& exit_code) {
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);
   add_seed_option(*command, arguments->seed, "of all random numbers; default: the scenario's");
-  command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
+  command->add_option("--out", arguments->out,
+                      "output folder; default: out/NAME-SEED, with --set and digits that belong "
+                      "to the settings");
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
   // An interrupt has an exit code of its own.
   add_fail_on_option(*command, arguments->fail_on,

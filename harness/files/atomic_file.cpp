@@ -72,8 +72,9 @@ void commit_partial_file(const std::string& path) { commit_file(partial_path_of(
 
 PendingFile::PendingFile(std::string path)
     : path_(std::move(path)), partial_path_(partial_path_of(path_)) {
-  descriptor_ = open_retrying(partial_path_, O_WRONLY | O_CREAT | O_TRUNC);
-  if (descriptor_ < 0) fail(path_, "be written", errno);
+  // A link in its place would let what is written end up elsewhere.
+  descriptor_ = open_retrying(partial_path_, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW);
+  if (descriptor_ < 0) fail(partial_path_, "be written", errno);
 }
 
 PendingFile::~PendingFile() {

@@ -26,7 +26,7 @@ void commit_partial_file(const std::string& path);
 class PendingFile {
  public:
   /// Creates `PATH.partial`, or empties one that a killed process left behind.
-  /// Throws IoError with the path and the system's words.
+  /// Throws IoError with the path and the system's words, also where that name is a symbolic link.
   explicit PendingFile(std::string path);
   PendingFile(const PendingFile&) = delete;
   PendingFile& operator=(const PendingFile&) = delete;

@@ -31,8 +31,8 @@ auto uninterrupted(const Call& call) -> decltype(call()) {
 
 RandomAccessFile::RandomAccessFile(std::string path) : path_(std::move(path)) {
   constexpr mode_t kMode = 0666;  // what the user's umask leaves of it
-  descriptor_ = uninterrupted(
-      [&] { return ::open(path_.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, kMode); });
+  constexpr int kFlags = O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW;
+  descriptor_ = uninterrupted([&] { return ::open(path_.c_str(), kFlags, kMode); });
   if (descriptor_ < 0) throw_system_words(path_, "written");
 }
 

@@ -12,7 +12,7 @@ namespace qsmpc::harness {
 /// system's words. Closing it leaves it where it is, with what was written.
 class RandomAccessFile {
  public:
-  /// Creates the file at `path`, or empties the one that is there.
+  /// Creates the file at `path`, or empties the one that is there. A symbolic link is refused.
   explicit RandomAccessFile(std::string path);
   RandomAccessFile(const RandomAccessFile&) = delete;
   RandomAccessFile& operator=(const RandomAccessFile&) = delete;

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "harness/errors.hpp"
+#include "harness/files/random_access_file.hpp"
 #include "harness/trace/hdf5_handle.hpp"
 #include "harness/trace/hdf5_impl.hpp"
 
@@ -33,6 +34,10 @@ Hdf5File Hdf5File::create(const std::string& path) {
   auto impl = std::make_unique<Impl>();
   impl->path = path;
   impl->writing = true;
+  {
+    // HDF5 would follow a symbolic link and empty what it points to; this refuses it.
+    const RandomAccessFile plain(path);
+  }
   const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
   impl->check(H5Pset_obj_track_times(creation.get(), false), "/");
   impl->check(H5Pset_file_space_strategy(creation.get(), H5F_FSPACE_STRATEGY_PAGE,

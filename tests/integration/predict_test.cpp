@@ -83,6 +83,25 @@ TEST(Predict, prints_a_table_and_uses_the_named_folder_by_default) {
   EXPECT_TRUE(fs::exists(folder.path() + "/out/dubins_corridor-predict/predict.h5"));
 }
 
+TEST(Predict, what_differs_has_a_folder_of_its_own_by_default) {
+  const TemporaryFolder folder;
+  const auto run_with = [&](const std::string& setting) {
+    return run_qsmpc({"predict", "dubins_corridor", "--quiet", "--steps", "1", "--set", setting},
+                     {.folder = folder.path()})
+        .exit_code;
+  };
+  const std::string out = folder.path() + "/out";
+  ASSERT_EQ(run_with("controller.horizon=2"), 0);
+  ASSERT_EQ(run_with("controller.horizon=3"), 0);
+  EXPECT_THAT(files_in(out), SizeIs(2));
+  // The same command has the same folder again.
+  ASSERT_EQ(run_with("controller.horizon=3"), 0);
+  EXPECT_THAT(files_in(out), SizeIs(2));
+  ASSERT_EQ(run_with("name=a/b"), 0);
+  ASSERT_EQ(run_with("name=a_b"), 0);
+  EXPECT_THAT(files_in(out), SizeIs(4));
+}
+
 TEST(Predict, one_seed_gives_the_same_bytes_and_another_one_others) {
   const TemporaryFolder folder;
   const auto numbers = [&](const char* name, const char* seed) {

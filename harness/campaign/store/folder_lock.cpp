@@ -77,7 +77,7 @@ std::string utc_text(std::int64_t seconds) {
 
 FolderLock::FolderLock(const std::string& folder) {
   const std::string path = path_in(folder);
-  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, kFileMode);
+  descriptor_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, kFileMode);
   if (descriptor_ < 0) fail(path, "be opened", errno);
   struct flock lock = whole_file();
   if (::fcntl(descriptor_, F_OFD_SETLK, &lock) != 0) {
@@ -101,7 +101,7 @@ FolderLock::~FolderLock() {
 
 std::optional<LockHolder> lock_holder(const std::string& folder) {
   const std::string path = path_in(folder);
-  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
   if (descriptor < 0 && errno == ENOENT) return std::nullopt;
   if (descriptor < 0) fail(path, "be read", errno);
   // Asking for the lock is not taking it. Only readers' locks may be asked for with a descriptor

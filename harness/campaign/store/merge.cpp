@@ -221,6 +221,7 @@ MergeResult merge_shards(const std::vector<std::string>& folders, const std::str
   std::vector<std::unique_ptr<StoreReader>> shards;
   for (const std::string& folder : folders) {
     shards.push_back(std::make_unique<StoreReader>(folder));
+    shards.back()->verify();
     require_same(*shards.front(), *shards.back(), folder);
   }
   require_all_shards(folders, shards);

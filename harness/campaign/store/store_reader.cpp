@@ -1,15 +1,18 @@
 #include "harness/campaign/store/store_reader.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <system_error>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include "harness/campaign/store/store_checksum.hpp"
 #include "harness/campaign/store/store_rows.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
+#include "harness/text/printable.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -84,6 +87,17 @@ StoreReader::StoreReader(const std::string& folder) {
 }
 
 StoreReader::~StoreReader() = default;
+
+void StoreReader::verify() const {
+  std::optional<StoredEpisode> damaged;
+  with_store_errors(implementation_->path,
+                    [&] { damaged = damaged_episode(implementation_->database); });
+  if (!damaged) return;
+  throw IoError(fmt::format(
+      "{}: the rows of variant {}, seed {} are not those that were written: the file is damaged; "
+      "use a copy, or drive the campaign again",
+      printable(implementation_->path, 400), damaged->variant + 1, damaged->seed));
+}
 
 const StoredCampaign& StoreReader::campaign() const { return implementation_->campaign; }
 

@@ -57,6 +57,9 @@ class StoreReader {
   /// another schema, with what to do about it; IoError where it cannot be read.
   explicit StoreReader(const std::string& folder);
   ~StoreReader();
+  /// Compares every episode with its checksum. Throws IoError that names the first one that is not
+  /// as it was written, and where the store cannot be read.
+  void verify() const;
   StoreReader(const StoreReader&) = delete;
   StoreReader& operator=(const StoreReader&) = delete;
 

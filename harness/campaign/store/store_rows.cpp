@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/campaign/store/store_checksum.hpp"
 #include "harness/trace/ending.hpp"
 
 namespace qsmpc::harness {
@@ -209,6 +210,7 @@ void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   run(timing);
   insert_periods(database, row);
   insert_path(database, row);
+  insert_checksum(database, row.variant, stored_seed(row.seed));
 }
 
 void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed) {

@@ -112,11 +112,21 @@ CREATE TABLE path (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+// Episodes of earlier versions have no checksum.
+constexpr const char* kChecksumSchema = R"sql(
+CREATE TABLE episode_checksum (
+  variant INTEGER NOT NULL,
+  seed INTEGER NOT NULL,
+  checksum INTEGER NOT NULL,
+  PRIMARY KEY (variant, seed)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& store_migrations() {
   static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema, kThirdSchema,
-                                                   kPathSchema};
+                                                   kPathSchema, kChecksumSchema};
   return migrations;
 }
 

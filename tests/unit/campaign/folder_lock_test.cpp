@@ -70,6 +70,14 @@ TEST(FolderLock, times_are_told_in_utc) {
   EXPECT_EQ(utc_text(951'827'696), "2000-02-29 12:34:56 UTC");
 }
 
+TEST(FolderLock, does_not_write_through_a_symbolic_link) {
+  const testing::TemporaryFolder folder;
+  const std::string precious = folder.file("precious", "old");
+  std::filesystem::create_symlink(precious, folder / "campaign.lock");
+  EXPECT_THROW(FolderLock{folder.path()}, IoError);
+  EXPECT_EQ(std::filesystem::file_size(precious), 3U);
+}
+
 TEST(FolderLock, says_where_it_cannot_be) { EXPECT_THROW(FolderLock{"/no/such/folder"}, IoError); }
 
 }  // namespace folder_lock_test

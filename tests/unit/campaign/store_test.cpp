@@ -3,9 +3,11 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <limits>
 
 #include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -51,6 +53,12 @@ class StoreTest : public ::testing::Test {
   }
   SQLite::Database database() const {
     return {folder.path() + "/" + kStoreFile, SQLite::OPEN_READWRITE};
+  }
+  /// The bytes of the store, with all that is in its log.
+  std::string content() const {
+    database().exec("PRAGMA journal_mode = DELETE");
+    std::ifstream file(path(), std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
   }
   std::string path() const { return folder.path() + "/" + kStoreFile; }
 
@@ -341,6 +349,35 @@ TEST_F(StoreTest, is_not_folded_while_others_read_it) {
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
 }
 
+TEST_F(StoreTest, a_change_of_any_column_of_an_episode_is_seen) {
+  open(testing::quick_campaign()).add(testing::example_row(0, 7), false);
+  EXPECT_NO_THROW(StoreReader(folder.path()).verify());
+  const std::string before = content();
+  for (const std::string table : {"episode", "episode_timing", "period", "period_timing"}) {
+    std::vector<std::string> columns;
+    {
+      SQLite::Database store = database();
+      SQLite::Statement info(store, "SELECT name FROM pragma_table_info(?)");
+      info.bind(1, table);
+      while (info.executeStep()) columns.push_back(info.getColumn(0).getString());
+    }
+    for (const std::string& column : columns) {
+      database().exec("UPDATE " + table + " SET " + column + " = CASE WHEN typeof(" + column +
+                      ") = 'text' THEN " + column + " || '.' ELSE -coalesce(" + column +
+                      ", 1) - 1 END");
+      EXPECT_THROW(StoreReader(folder.path()).verify(), IoError) << table << "." << column;
+      std::ofstream(path(), std::ios::binary) << before;
+      EXPECT_NO_THROW(StoreReader(folder.path()).verify()) << "as it was";
+    }
+  }
+}
+
+TEST_F(StoreTest, a_checksum_whose_episode_is_gone_is_seen) {
+  open(testing::quick_campaign()).add(testing::example_row(0, 7), false);
+  database().exec("DELETE FROM episode");
+  EXPECT_THROW(StoreReader(folder.path()).verify(), IoError);
+}
+
 /// A store as the first schema had it, with one episode.
 void make_first_store(const std::string& path) {
   SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
@@ -365,6 +402,7 @@ TEST_F(StoreTest, of_an_older_schema_is_brought_up_to_date_with_its_episodes) {
   EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), store_schema());
   const std::vector<EpisodeRow> rows = rows_of(1);
   ASSERT_EQ(rows.size(), 1U);
+  EXPECT_NO_THROW(StoreReader(folder.path()).verify());
   EXPECT_EQ(rows[0].cost, 9.0);
   EXPECT_EQ(rows[0].risk_exceeded, std::nullopt);
   EXPECT_EQ(rows[0].version, StoreReader(folder.path()).campaign().version);

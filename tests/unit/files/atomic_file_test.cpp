@@ -1,9 +1,13 @@
 // Files are there whole or not at all. The tests may run as root, for whom no folder is closed:
-// what fails is made to fail by kind (a file in place of a folder) or by a full device.
+// what fails is made to fail by kind (a file in place of a folder) or by a limit of files' sizes.
 #include "harness/files/atomic_file.hpp"
+
+#include <csignal>
+#include <filesystem>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
@@ -75,15 +79,39 @@ TEST(PendingFile, says_which_path_cannot_be_written_and_why) {
               HasSubstr("No such file or directory"));
 }
 
-TEST(PendingFile, a_full_disk_is_reported_and_nothing_is_left_behind) {
+/// Files of this process take no more than `bytes` while it lives: as on a full disk, what is
+/// written beyond is refused.
+class SmallFiles {
+ public:
+  explicit SmallFiles(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{.rlim_cur = bytes, .rlim_max = before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  SmallFiles(const SmallFiles&) = delete;
+  SmallFiles& operator=(const SmallFiles&) = delete;
+  SmallFiles(SmallFiles&&) = delete;
+  SmallFiles& operator=(SmallFiles&&) = delete;
+  ~SmallFiles() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    (void)std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(PendingFile, a_disk_that_takes_no_more_is_reported_and_nothing_is_left_behind) {
   const TemporaryFolder folder;
   const std::string path = folder.file("a.txt", "old");
-  std::filesystem::create_symlink("/dev/full", path + ".partial");
-  EXPECT_THAT(io_error_of([&] { write_file(path, "new"); }),
-              AllOf(HasSubstr(path), HasSubstr("No space left on device")));
+  const std::string error = [&] {
+    const SmallFiles small(2);
+    return io_error_of([&] { write_file(path, "new"); });
+  }();
+  EXPECT_THAT(error, AllOf(HasSubstr(path), HasSubstr("File too large")));
   EXPECT_EQ(content_of(path), "old");
-  EXPECT_FALSE(std::filesystem::is_symlink(path + ".partial"));
-  EXPECT_TRUE(std::filesystem::exists("/dev/full"));
+  EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
 }
 
 TEST(PendingFile, a_folder_of_the_final_name_is_reported) {
@@ -101,6 +129,20 @@ TEST(CommitPartialFile, gives_a_finished_file_its_name) {
   commit_partial_file(path);
   EXPECT_EQ(content_of(path), "new");
   EXPECT_FALSE(std::filesystem::exists(path + ".partial"));
+}
+
+TEST(PendingFile, does_not_write_through_a_symbolic_link) {
+  const TemporaryFolder folder;
+  const std::string precious = folder.file("precious", "old");
+  std::filesystem::create_symlink(precious, folder / "a.txt.partial");
+  EXPECT_THAT(io_error_of([&] { write_file(folder / "a.txt", "new"); }),
+              HasSubstr("a.txt.partial"));
+  EXPECT_EQ(content_of(precious), "old");
+  // Only what stands beside it is refused: the file itself is replaced, not what it points to.
+  std::filesystem::create_symlink(precious, folder / "b.txt");
+  write_file(folder / "b.txt", "new");
+  EXPECT_EQ(content_of(precious), "old");
+  EXPECT_EQ(content_of(folder / "b.txt"), "new");
 }
 
 TEST(CommitPartialFile, keeps_the_old_file_where_there_is_no_finished_one) {

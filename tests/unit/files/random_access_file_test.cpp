@@ -51,6 +51,10 @@ TEST(random_access_file, errors_name_the_path_and_the_systems_words) {
     EXPECT_THAT(error.what(), HasSubstr(path));
     EXPECT_THAT(error.what(), HasSubstr("No such file or directory"));
   }
+  const std::string precious = folder.file("precious", "old");
+  std::filesystem::create_symlink(precious, folder / "link");
+  EXPECT_THROW(RandomAccessFile(folder / "link"), IoError);
+  EXPECT_EQ(std::filesystem::file_size(precious), 3U);
   RandomAccessFile full("/dev/full");
   EXPECT_THROW(full.write_at(0, std::array<std::uint8_t, 1>{1}), IoError);
 }

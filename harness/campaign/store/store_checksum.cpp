@@ -1,0 +1,106 @@
+#include "harness/campaign/store/store_checksum.hpp"
+
+#include <array>
+#include <bit>
+#include <string_view>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+
+namespace qsmpc::harness {
+namespace {
+
+// Columns by name: those that later schemas add are not in checksums that were made before.
+constexpr std::array kQueries{
+    "SELECT outcome, fault, steps, time_to_target, unsafe, min_clearance, cost, next_step_max, "
+    "next_step_sum, horizon_max, thesis_max, iterations_median, fallbacks, trace, version, "
+    "risk_exceeded FROM episode WHERE variant = ? AND seed = ?",
+    "SELECT finished_at, wall_ms, deadline_misses FROM episode_timing "
+    "WHERE variant = ? AND seed = ?",
+    "SELECT period, certified, published, unsafe FROM period WHERE variant = ? AND seed = ? "
+    "ORDER BY period",
+    "SELECT period, ocp_ms FROM period_timing WHERE variant = ? AND seed = ? ORDER BY period",
+    "SELECT points FROM path WHERE variant = ? AND seed = ?"};
+
+/// FNV-1a of 64 bits: any single bit that changes changes it.
+class Hash {
+ public:
+  void add(std::uint64_t value) {
+    for (int n = 0; n < 8; ++n) add_byte(static_cast<unsigned char>(value >> (8 * n)));
+  }
+  void add(std::string_view text) {
+    add(text.size());
+    for (const char letter : text) add_byte(static_cast<unsigned char>(letter));
+  }
+  [[nodiscard]] std::int64_t value() const { return static_cast<std::int64_t>(state_); }
+
+ private:
+  void add_byte(unsigned char byte) {
+    state_ ^= byte;
+    state_ *= 0x100000001b3U;
+  }
+
+  std::uint64_t state_ = 0xcbf29ce484222325U;
+};
+
+void add_column(const SQLite::Column& column, Hash& hash) {
+  hash.add(static_cast<std::uint64_t>(column.getType()));
+  if (column.isInteger()) hash.add(static_cast<std::uint64_t>(column.getInt64()));
+  if (column.isFloat()) hash.add(std::bit_cast<std::uint64_t>(column.getDouble()));
+  if (column.isText()) hash.add(std::string_view(column.getString()));
+}
+
+/// Checksums of episodes of one store.
+class Checksums {
+ public:
+  explicit Checksums(SQLite::Database& database)
+      : statements_{
+            SQLite::Statement(database, kQueries[0]), SQLite::Statement(database, kQueries[1]),
+            SQLite::Statement(database, kQueries[2]), SQLite::Statement(database, kQueries[3]),
+            SQLite::Statement(database, kQueries[4])} {}
+
+  std::int64_t of(std::int64_t variant, std::int64_t seed) {
+    Hash hash;
+    hash.add(static_cast<std::uint64_t>(seed));
+    for (SQLite::Statement& statement : statements_) {
+      statement.bind(1, variant);
+      statement.bind(2, seed);
+      std::uint64_t rows = 0;
+      for (; statement.executeStep(); ++rows) {
+        for (int k = 0; k < statement.getColumnCount(); ++k) {
+          add_column(statement.getColumn(k), hash);
+        }
+      }
+      hash.add(rows);
+      statement.reset();
+    }
+    return hash.value();
+  }
+
+ private:
+  std::array<SQLite::Statement, kQueries.size()> statements_;
+};
+
+}  // namespace
+
+void insert_checksum(SQLite::Database& database, std::int64_t variant, std::int64_t seed) {
+  SQLite::Statement statement(database, "INSERT INTO episode_checksum VALUES (?, ?, ?)");
+  statement.bind(1, variant);
+  statement.bind(2, seed);
+  statement.bind(3, Checksums(database).of(variant, seed));
+  statement.exec();
+}
+
+std::optional<StoredEpisode> damaged_episode(SQLite::Database& database) {
+  Checksums checksums(database);
+  SQLite::Statement statement(database, "SELECT variant, seed, checksum FROM episode_checksum");
+  while (statement.executeStep()) {
+    const StoredEpisode episode{.variant = statement.getColumn(0).getInt64(),
+                                .seed = statement.getColumn(1).getInt64()};
+    if (checksums.of(episode.variant, episode.seed) != statement.getColumn(2).getInt64()) {
+      return episode;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace qsmpc::harness
