@@ -10,13 +10,12 @@ namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 constexpr double kChaseFieldOfView = 42.0;   // degrees, vertical
-constexpr double kChaseElevation = -25.0;    // degrees
-constexpr double kChaseLead = 0.16;          // of the distance: what is ahead matters more
+constexpr double kChaseElevation = -24.0;    // degrees
+constexpr double kChaseLead = 0.26;          // of the distance: what is ahead matters more
 constexpr double kRegionFieldOfView = 24.0;  // degrees; narrow, so that boxes hardly lean outwards
 constexpr double kFixedElevation = -42.0;    // degrees
 constexpr double kFixedAzimuth = 68.0;  // degrees; not along an axis, so that boxes show two sides
 constexpr double kRegionMargin = 0.07;  // of the picture, left free about the region
-constexpr double kLegendShare = 0.06;   // of the height, which the legend covers
 
 double dot(const SpacePoint& a, const SpacePoint& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -49,15 +48,14 @@ View aimed_view(const Aim& aim, const PictureSize& size) {
   view.far_plane = 100.0 * aim.distance;
   view.half_height = view.near_plane * std::tan(0.5 * aim.field_of_view);
   view.half_width = view.half_height * size.width / size.height;
-  view.centre = -size.covered_share * view.half_width;
   return view;
 }
 
-bool shows(const View& view, const PlanarRectangle& region, double covered_share) {
-  const double left = (covered_share + kRegionMargin * (1.0 - covered_share)) * view.width;
-  const double right = (1.0 - kRegionMargin * (1.0 - covered_share)) * view.width;
+bool shows(const View& view, const PlanarRectangle& region) {
+  const double left = kRegionMargin * view.width;
+  const double right = (1.0 - kRegionMargin) * view.width;
   const double top = kRegionMargin * view.height;
-  const double bottom = (1.0 - kRegionMargin - kLegendShare) * view.height;
+  const double bottom = (1.0 - kRegionMargin) * view.height;
   for (const double x : {region.x_lower, region.x_upper}) {
     for (const double y : {region.y_lower, region.y_upper}) {
       const auto pixel = project(view, {x, y, 0.0});
@@ -95,6 +93,15 @@ View chase_view(const PlanarPose& pose, double distance, const PictureSize& size
                     size);
 }
 
+View rail_view(const PlanarPose& pose, double height, double distance, const PictureSize& size) {
+  return aimed_view({.target = {pose.x, pose.y, height},
+                     .distance = distance,
+                     .azimuth = 0.5 * std::numbers::pi,
+                     .elevation = kChaseElevation * kRadPerDegree,
+                     .field_of_view = kChaseFieldOfView * kRadPerDegree},
+                    size);
+}
+
 View region_view(CameraKind kind, const PlanarRectangle& region, const PictureSize& size) {
   const bool top = kind == CameraKind::kTop;
   Aim aim{.target = {0.5 * (region.x_lower + region.x_upper),
@@ -110,8 +117,7 @@ View region_view(CameraKind kind, const PlanarRectangle& region, const PictureSi
   constexpr int kHalvings = 40;
   for (int i = 0; i < kHalvings; ++i) {
     aim.distance = 0.5 * (too_near + far_enough);
-    (shows(aimed_view(aim, size), region, size.covered_share) ? far_enough : too_near) =
-        aim.distance;
+    (shows(aimed_view(aim, size), region) ? far_enough : too_near) = aim.distance;
   }
   aim.distance = far_enough;
   return aimed_view(aim, size);
@@ -129,7 +135,7 @@ std::optional<PixelPoint> project(const View& view, const SpacePoint& point) {
     return std::nullopt;
   }
   const double scale = view.near_plane / seen[2];
-  const double across = (seen[0] * scale - view.centre) / view.half_width;
+  const double across = seen[0] * scale / view.half_width;
   const double upwards = seen[1] * scale / view.half_height;
   return PixelPoint{0.5 * (1.0 + across) * view.width, 0.5 * (1.0 - upwards) * view.height};
 }

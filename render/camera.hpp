@@ -18,12 +18,9 @@ enum class CameraKind { kChase, kTop, kFixed };
 /// Throws std::invalid_argument, naming the cameras there are.
 [[nodiscard]] CameraKind camera_kind(const std::string& name);
 
-/// Size of a picture, and the share of its width on the left that the head-up display covers; what
-/// a camera looks at is shown in the middle of the rest.
 struct PictureSize {
-  int width = 1280;
-  int height = 720;
-  double covered_share = 0.0;
+  int width = 1280;  ///< pixels
+  int height = 720;  ///< pixels
 };
 
 /// A camera with its lens. `right`, `up` and `forward` are orthonormal.
@@ -37,13 +34,17 @@ struct View {
   double far_plane = 500.0;  ///< m
   double half_height = 0.0;  ///< m, of the picture in the near plane
   double half_width = 0.0;   ///< m, the same
-  double centre = 0.0;       ///< m, the picture's centre in the near plane right of the axis
   int width = 0;             ///< pixels
   int height = 0;            ///< pixels
 };
 
 /// From behind and above the vehicle at `pose`, which stands `distance` metres from the camera.
 [[nodiscard]] View chase_view(const PlanarPose& pose, double distance, const PictureSize& size);
+
+/// From before and above a rail along x, on which the vehicle at `pose` stands: along y, with the
+/// point `height` metres above the vehicle's place on the ground in the middle.
+[[nodiscard]] View rail_view(const PlanarPose& pose, double height, double distance,
+                             const PictureSize& size);
 
 /// Shows all of `region`, from above (kTop) or obliquely (kFixed).
 [[nodiscard]] View region_view(CameraKind kind, const PlanarRectangle& region,

@@ -29,9 +29,10 @@ constexpr std::array<Colour, 5> kRisk{{{0.70F, 0.93F, 0.87F},
                                        {0.45F, 0.53F, 0.83F},
                                        {0.60F, 0.27F, 0.60F},
                                        {0.56F, 0.02F, 0.13F}}};
-// Vermilion, amber and blue of Okabe and Ito, a little darker.
+// From crimson over sand to teal: none of the stages' colours, and of a lightness that rises and
+// falls, so that its ends differ from its middle with any colour vision.
 constexpr std::array<Colour, 3> kClearance{
-    {{0.82F, 0.27F, 0.02F}, {0.90F, 0.62F, 0.10F}, {0.05F, 0.36F, 0.66F}}};
+    {{0.76F, 0.08F, 0.16F}, {0.78F, 0.68F, 0.46F}, {0.02F, 0.50F, 0.47F}}};
 
 template <std::size_t count>
 Colour on_ramp(const std::array<Colour, count>& ramp, double share) {

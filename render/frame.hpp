@@ -54,7 +54,7 @@ struct BeliefEllipses {
   PlanarEllipse most;
 };
 
-/// One stage of the tube along the plan: its two edges, and how likely the state is unsafe there.
+/// The tube along the plan at one place: its two edges, and how likely the state is unsafe there.
 struct TubeSection {
   PlanarPoint left;
   PlanarPoint right;
@@ -75,6 +75,8 @@ struct StripChart {
   std::size_t slots = 0;  ///< periods that the time axis holds; less than values: their number
   double lower = 0.0;     ///< range of the chart
   double upper = 1.0;
+  std::string lower_label{};  ///< of the range's ends; empty: their numbers
+  std::string upper_label{};
   bool logarithmic = false;
   std::optional<ChartLimit> limit{};
 };
@@ -98,9 +100,10 @@ struct Frame {
   std::vector<ParticleStage> particles;   ///< stage 0 first; coloured by stage, sized by weight
   std::vector<PlanarPoint> raw_points;    ///< what was compressed to the particles
   std::vector<BeliefEllipses> ellipses;   ///< stage 0 first; coloured by stage
-  std::vector<TubeSection> tube;          ///< stage 0 first; coloured by bound
+  std::vector<TubeSection> tube;          ///< from the plan's start to its end; coloured by bound
   std::vector<std::vector<PlanarPoint>> body;  ///< its outline on the ground, line by line
   std::optional<PlanarPose> ghost;             ///< where the vehicle was predicted to be now
+  std::vector<double> ghost_qpos;  ///< of every joint then; empty: as `qpos`, but at `ghost`
   std::string title;
   std::vector<HudRow> hud;
   std::vector<StripChart> charts;

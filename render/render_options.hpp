@@ -18,11 +18,14 @@ struct PictureOptions {
 struct EpisodeScene {
   World world;
   std::string mjcf_path;  ///< the vehicle's XML
-  /// m wanted from the chase camera to what it looks at; kept between 6.5 and 26 vehicle lengths.
+  /// m wanted from the chase camera to what it looks at; kept between 5 and 12 vehicle lengths.
   double chase_distance = 0.0;
   /// What the top and fixed cameras must show; of no area: the world's bounds, obstacles and
   /// target.
   PlanarRectangle region{};
+  /// Whether the vehicle stands on a rail along x, so high that none of its joints takes it below
+  /// the ground; the chase camera then looks along y.
+  bool raised = false;
   std::string heading{};  ///< one line above the episode's panes; empty: none
 };
 

@@ -7,7 +7,6 @@
 #include "render/gl/offscreen_context.hpp"
 #include "render/gl/smoothing.hpp"
 #include "render/hud/hud.hpp"
-#include "render/palette.hpp"
 #include "render/picture_layout.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/vehicle.hpp"
@@ -17,8 +16,8 @@ namespace {
 
 constexpr int kLeastSide = 64;               // pixels
 constexpr int kLargestSide = 8192;           // pixels
-constexpr double kChaseLengths = 6.5;        // vehicle lengths from the chase camera
-constexpr double kFarthestChase = 4.0;       // times the nearest: the vehicle stays recognisable
+constexpr double kChaseLengths = 5.0;        // vehicle lengths from the chase camera
+constexpr double kFarthestChase = 2.4;       // times the nearest: the vehicle stays recognisable
 constexpr double kLeastChaseDistance = 0.5;  // m
 constexpr std::size_t kLegendLines = 2;      // in a band
 
@@ -44,7 +43,10 @@ PlanarRectangle shown_region(const EpisodeScene& scene) {
 PictureLayout checked_layout(const PictureOptions& options, const Hud& hud, std::size_t episodes) {
   check(options, episodes);
   return picture_layout(options.width, options.height, options.camera, episodes,
-                        {.charts = hud.band_height(), .legend = hud.legend_height(kLegendLines)});
+                        {.charts = hud.band_height(),
+                         .legend = hud.legend_height(kLegendLines),
+                         .column = hud.column_width(),
+                         .line = hud.heading_height()});
 }
 
 PixelRectangle area_of(const PaneLayout& pane) {
@@ -64,6 +66,8 @@ void copy_into(const Image& part, int x, int y, Image& whole) {
 struct Stage {
   double chase_distance;
   PlanarRectangle region;
+  PlanarPoint target;
+  bool raised;
   std::string heading;
   Vehicle vehicle;
   ScenePainter painter;
@@ -71,27 +75,30 @@ struct Stage {
   Stage(const EpisodeScene& scene, const PaneLayout& pane)
       : chase_distance(scene.chase_distance),
         region(shown_region(scene)),
+        target(scene.world.target),
+        raised(scene.raised),
         heading(scene.heading),
-        vehicle(scene.mjcf_path, pane.width, pane.height),
+        vehicle(scene.mjcf_path, pane.width, pane.height, scene.raised),
         painter(scene.world, region) {}
 
-  [[nodiscard]] View view(const Frame& frame, const PaneLayout& pane, double covered) const {
-    const PictureSize size{pane.width, pane.height, covered};
+  [[nodiscard]] View view(const Frame& frame, const PaneLayout& pane) const {
+    const PictureSize size{pane.width, pane.height};
     if (pane.camera != CameraKind::kChase) {
       return region_view(pane.camera, region, size);
     }
     const double by_length = kChaseLengths * vehicle.length();
     const double nearest = std::max(by_length, kLeastChaseDistance);
     const double distance = std::clamp(chase_distance, nearest, kFarthestChase * nearest);
-    return chase_view(frame.followed.value_or(frame.pose), distance, size);
+    const PlanarPose followed = frame.followed.value_or(frame.pose);
+    constexpr double kRaisedAim = 0.6;  // of what the vehicle is raised by
+    return raised ? rail_view(followed, kRaisedAim * vehicle.lift(), distance, size)
+                  : chase_view(followed, distance, size);
   }
 
   void draw(const Frame& frame, const View& view, SmoothingWorkspace& smoothing, Image& out) {
     vehicle.place(frame);
     vehicle.draw(view);
-    std::vector<ColouredPoint> ghost;
-    if (frame.ghost) ghost = vehicle.ghost(*frame.ghost, palette::kGhost);
-    painter.paint(frame, view, vehicle.shadows(), ghost);
+    painter.paint(frame, view, vehicle.marks(frame));
     vehicle.read_picture(out);
     smooth_edges(out, smoothing);
   }
@@ -120,11 +127,47 @@ struct Renderer::Parts {
   }
 
   [[nodiscard]] View view(const Frame& frame, const PaneLayout& pane) const {
-    const double covered = layout.bands.empty() ? hud.covered_share(frame) : 0.0;
-    return stages[pane.episode]->view(frame, pane, covered);
+    return stages[pane.episode]->view(frame, pane);
   }
 
-  void draw_divided(const std::vector<const Frame*>& frames, Image& out) {
+  // In the picture; nothing when it is behind the camera.
+  [[nodiscard]] std::optional<PixelPoint> place(const Frame& frame, const PaneLayout& pane,
+                                                const SpacePoint& point) const {
+    std::optional<PixelPoint> at = project(view(frame, pane), point);
+    if (at) *at = {at->x + pane.x, at->y + pane.y};
+    return at;
+  }
+
+  // What a banner must not cover.
+  [[nodiscard]] std::vector<PixelPoint> main_places(const Frame& frame,
+                                                    const PaneLayout& pane) const {
+    const Stage& stage = *stages[pane.episode];
+    const double height = 0.5 * stage.vehicle.length();
+    std::vector<PixelPoint> places;
+    for (const SpacePoint& point : {SpacePoint{frame.pose.x, frame.pose.y, 0.0},
+                                    SpacePoint{frame.pose.x, frame.pose.y, height},
+                                    SpacePoint{stage.target.x, stage.target.y, 0.0},
+                                    SpacePoint{stage.target.x, stage.target.y, kPostHeight}}) {
+      if (const auto at = place(frame, pane, point)) places.push_back(*at);
+    }
+    return places;
+  }
+
+  void draw_hud(const Frame& frame, const PixelRectangle& area, Image& out) const {
+    switch (layout.place) {
+      case HudPlace::kColumn:
+        hud.draw_column(frame, area, out);
+        break;
+      case HudPlace::kBand:
+        hud.draw_band(frame, area, out);
+        break;
+      case HudPlace::kLine:
+        hud.draw_line(frame, area, out);
+        break;
+    }
+  }
+
+  void draw_panes(const std::vector<const Frame*>& frames, Image& out) {
     out.width = options.width;
     out.height = options.height;
     out.rgb.assign(3 * static_cast<std::size_t>(out.width) * static_cast<std::size_t>(out.height),
@@ -138,10 +181,10 @@ struct Renderer::Parts {
       const auto first = std::find_if(layout.panes.begin(), layout.panes.end(),
                                       [i](const PaneLayout& p) { return p.episode == i; });
       if (!stages[i]->heading.empty()) hud.draw_heading(stages[i]->heading, area_of(*first), out);
-      hud.draw_band(*frames[i], layout.bands[i], out);
-      hud.draw_banner(*frames[i], area_of(*first), out);
+      draw_hud(*frames[i], layout.bands[i], out);
+      hud.draw_banner(*frames[i], area_of(*first), main_places(*frames[i], *first), out);
     }
-    hud.draw_legend_band(*frames.front(), layout.legend, out);
+    if (layout.legend.height > 0.0) hud.draw_legend_band(*frames.front(), layout.legend, out);
   }
 
   void draw(const std::vector<const Frame*>& frames, Image& out) {
@@ -149,13 +192,7 @@ struct Renderer::Parts {
       throw std::invalid_argument("picture of " + std::to_string(stages.size()) +
                                   " episodes: given " + std::to_string(frames.size()) + " frames");
     }
-    if (!layout.bands.empty()) {
-      draw_divided(frames, out);
-      return;
-    }
-    const Frame& frame = *frames.front();
-    stages.front()->draw(frame, view(frame, layout.panes.front()), smoothing, out);
-    hud.draw(frame, out);
+    draw_panes(frames, out);
   }
 };
 
@@ -182,11 +219,7 @@ void Renderer::draw(const std::vector<Frame>& frames, Image& out) {
 
 std::optional<PixelPoint> Renderer::locate(const Frame& frame, const PlanarPoint& point,
                                            double height, std::size_t pane) const {
-  const PaneLayout& layout = parts_->layout.panes.at(pane);
-  std::optional<PixelPoint> place =
-      project(parts_->view(frame, layout), {point.x, point.y, height});
-  if (place) *place = {place->x + layout.x, place->y + layout.y};
-  return place;
+  return parts_->place(frame, parts_->layout.panes.at(pane), {point.x, point.y, height});
 }
 
 }  // namespace qsmpc::render

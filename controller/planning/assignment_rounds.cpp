@@ -23,6 +23,8 @@ constexpr double kShareOfChange = 0.01;
 // What a round must promise of the cost, relatively, to be worth a prediction, warm or cold.
 constexpr double kWarmSettled = 1e-5;
 constexpr double kColdSettled = 1e-6;
+// The same where the risk is limited: a new certificate moves the limit by more than that.
+constexpr double kLimitedSettled = 1e-4;
 // Further rounds where a particle is beyond a bound with new assignments, though none was with the
 // old ones. Each asks for as much more room as was lacking.
 constexpr int kConstraintRounds = 5;
@@ -33,7 +35,7 @@ constexpr int kRiskRounds = 3;
 constexpr int kMultiplierRounds = 6;
 constexpr double kRiskTolerance = 0.02;
 // They need be no more precise than this, relatively, as the multipliers change what is minimised.
-constexpr double kMultiplierTolerance = 1e-6;
+constexpr double kMultiplierTolerance = 1e-5;
 // Rounds that minimise the risk itself, and what the cost counts for beside it: that many units of
 // the logarithm for all of it.
 constexpr int kLeastRiskRounds = 2;
@@ -233,7 +235,8 @@ bool AssignmentRounds::run_solver(Search& search, PlanInProgress& plan) {
   if (plan.late()) return false;
   if (!current.risk.kept && current.risk.severity > 0.0) return true;
   const double gain = current.cost.total() - search.least;
-  const double settled = plan.warm ? kWarmSettled : kColdSettled;
+  const double unlimited = plan.warm ? kWarmSettled : kColdSettled;
+  const double settled = evaluator_.risk() != nullptr ? kLimitedSettled : unlimited;
   return gain > settled * std::abs(current.cost.total()) ||
          current.violation > std::max(kConstraintTolerance, result.violation);
 }

@@ -38,6 +38,10 @@ bool EffortChoice::search(const Plan& plan) {
   return applies() && try_steps(plan, kLowestStep, kHighestStep);
 }
 
+bool EffortChoice::search_nearby(const Plan& plan) {
+  return applies() && try_steps(plan, step_ - 1, step_ + 1);
+}
+
 bool EffortChoice::follow(const Plan& plan) {
   if (!applies()) return false;
   if (plan.risk.kept && plan.risk.severity < std::log(kNearLimit)) return false;

@@ -25,6 +25,9 @@ class EffortChoice {
   /// of all gains from now on. Returns whether it is another one; `plan` keeps its gains.
   bool search(const Plan& plan);
 
+  /// The same with both neighbours of the effort at hand alone.
+  bool search_nearby(const Plan& plan);
+
   /// The same with one neighbour of the effort at hand, the upper and the lower in turn; with none
   /// where the plan, whose gains are of the effort at hand, stays far below its limits.
   bool follow(const Plan& plan);

@@ -61,7 +61,7 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
   evaluator_.take_belief(belief);
   stopwatch.add_to(plan.timing.quantise);
   start_.choose(belief, failed_ ? nullptr : last_, plan);
-  if (!plan.warm && !plan.late() && effort_.search(*plan.current)) {
+  if (!plan.warm && !plan.late() && begin_effort(*plan.current)) {
     evaluator_.set_policy(plan.current->policy.inputs, plan.current->gain_change, *plan.current);
     evaluator_.predict_and_evaluate(*plan.current);
     plan.evaluated = true;
@@ -107,6 +107,13 @@ void Planner::settle(PlanInProgress& plan) {
     // For the next period: this plan stays as it was certified.
     if (usable && !plan.late()) (void)effort_.follow(*plan.current);
   }
+}
+
+/// The effort of the gains for a plan that starts from nothing: of the first, any; of a later one,
+/// which goes another way at the same weights and noise, one that is near. Returns whether it is
+/// another one.
+bool Planner::begin_effort(const Plan& plan) {
+  return last_ == nullptr ? effort_.search(plan) : effort_.search_nearby(plan);
 }
 
 /// Gives the current plan the gains for which its inputs are certified to less.

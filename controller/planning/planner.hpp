@@ -80,6 +80,7 @@ class Planner {
   void set_limits(const PlanRequest& request);
   void fall_back(Plan& plan);
   void settle(PlanInProgress& plan);
+  [[nodiscard]] bool begin_effort(const Plan& plan);
   void choose_effort(PlanInProgress& plan);
   void try_tail(PlanInProgress& plan, bool in_any_case);
 

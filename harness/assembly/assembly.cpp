@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/threads/executor.hpp"
+#include "harness/threads/interruption.hpp"
 
 namespace qsmpc::harness {
 
@@ -40,7 +41,10 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
   settings.compressed_points = controller.quantisation.compressed;
   settings.max_evaluations = controller.max_iterations;
   settings.deadline = controller.deadline;
-  settings.run = executor_of(controller.threads);
+  settings.run = [run = executor_of(controller.threads)](int count, controller::TaskRef task) {
+    check_interrupts();
+    run(count, task);
+  };
   settings.noise_covariance = scenario.disturbance.covariance;
   settings.cost = {.state = controller.cost.state,
                    .input = controller.cost.input,

@@ -27,6 +27,11 @@ std::string in_folder(const std::string& folder, const std::string& file) {
   return folder + "/" + file;
 }
 
+bool file_exists(const std::string& path) {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
+}
+
 std::string row(const std::string& name, const std::string& value) {
   return fmt::format("  {:<28} {}\n", name, value);
 }
@@ -46,14 +51,35 @@ std::string limited_words(const CertifiedRisk& risk, int periods) {
   return fmt::format("{:.3g} at most, limit {:.3g}, {}", risk.certified, risk.limit, exceeded);
 }
 
+/// What is certified, and what that is worth.
+std::string certificate_rows(const Summary& summary) {
+  const bool holds = summary.no_bound.empty();
+  const bool has_plan = !std::isnan(summary.horizon_max);
+  std::string rows = row(holds ? "P(unsafe at next step) <=" : "next step, NO BOUND",
+                         fmt::format("{:.3g} at most, {:.3g} on average", summary.next_step_max,
+                                     summary.next_step_mean));
+  if (has_plan) {
+    rows += row(holds ? "P(unsafe over a plan) <=" : "plan, NO BOUND",
+                fmt::format("{:.3g} at most", summary.horizon_max));
+  }
+  if (!holds) return rows + "  (no bound: " + summary.no_bound + ")\n";
+  return rows + (has_plan ? "  (both hold for the planner's model from its belief; the plant's "
+                            "mismatch is not in them)\n"
+                          : "  (it holds for the model from the observed state; the plant's "
+                            "mismatch is not in it)\n");
+}
+
 /// A row for each limit that is set.
 std::string risk_rows(const Summary& summary) {
   const RiskUse& risk = summary.risk;
+  const std::string no_bound = summary.no_bound.empty() ? "" : ", NO BOUND";
   std::string rows;
-  if (risk.stage.is_limited()) rows += row("stage risk", limited_words(risk.stage, summary.steps));
-  if (risk.plan.is_limited()) rows += row("plan risk", limited_words(risk.plan, summary.steps));
+  if (risk.stage.is_limited())
+    rows += row("stage risk" + no_bound, limited_words(risk.stage, summary.steps));
+  if (risk.plan.is_limited())
+    rows += row("plan risk" + no_bound, limited_words(risk.plan, summary.steps));
   if (risk.mission.is_limited()) {
-    rows += row("mission risk spent",
+    rows += row("mission risk spent" + no_bound,
                 fmt::format("{:.3g} of {:.3g}{}", risk.mission.certified, risk.mission.limit,
                             risk.mission.exceeded > 0 ? ", exceeded" : ""));
   }
@@ -99,22 +125,37 @@ EpisodeVideoOptions video_options(const Scenario& scenario) {
   return options;
 }
 
-void make_video(const EpisodeView& view, const VideoFiles& files,
+bool make_video(const EpisodeView& view, const VideoFiles& files,
                 const EpisodeVideoOptions& options, const VideoTalk& talk) {
-  remove_file(files.numbers);  // those of an earlier video
   const int before = interrupts();
+  const bool is_there = file_exists(files.video);
+  int all = 0;
   VideoTimings timings;
   try {
     Progress progress("rendering", talk.quiet);
     timings = write_episode_video(view, options, files.video, [&](int done, int total) {
+      all = total;
       progress.update(done, total, "frames");
-      return interrupts() == before;
+      const bool stopped = interrupts() != before;
+      if (stopped && is_there && done < total) throw Interrupted();
+      // It is about to get its name: these numbers are of the video before it.
+      if (stopped || done == total) remove_file(files.numbers);
+      return !stopped;
     });
+  } catch (const Interrupted&) {
+    remove_file(partial_path_of(files.video));
+    std::cerr << fmt::format("qsmpc: interrupted: {} is left as it was\n",
+                             printable(files.video, 400));
+    return false;
   } catch (const std::runtime_error& error) {
     throw IoError(error.what());
   }
   write_file(files.numbers, video_json(timings));
   if (talk.verbose) std::cerr << fmt::format("OpenGL: {}\n{}\n", timings.gl, video_line(timings));
+  if (timings.frames == all) return true;
+  std::cerr << fmt::format("qsmpc: interrupted: {} ends early, after {} of {} frames\n",
+                           printable(files.video, 400), timings.frames, all);
+  return false;
 }
 
 void make_still(const EpisodeView& view, const std::string& path,
@@ -135,8 +176,7 @@ void write_summary(const EpisodeView& view, const std::string& folder, bool with
 void write_page(const EpisodeView& view, const std::string& folder, bool with_video) {
   EpisodePageOptions options{.video_file = with_video ? kVideoFile : ""};
   const std::string numbers = in_folder(folder, kVideoNumbersFile);
-  std::error_code ignored;
-  if (with_video && std::filesystem::exists(numbers, ignored)) {
+  if (with_video && file_exists(numbers)) {
     const VideoTimings video = read_video_timings(numbers);
     options.video_from = video.from;
     options.video_speed = video.speed;
@@ -170,18 +210,7 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
     text += row("solve time, median / p99",
                 fmt::format("{:.1f} / {:.1f} ms", summary.ocp_ms.median, summary.ocp_ms.p99));
     text += row("deadline misses", fmt::format("{}", summary.deadline_misses));
-    text += row("P(unsafe at next step) <=",
-                fmt::format("{:.3g} at most, {:.3g} on average", summary.next_step_max,
-                            summary.next_step_mean));
-    if (!std::isnan(summary.horizon_max)) {
-      text += row("P(unsafe over a plan) <=", fmt::format("{:.3g} at most", summary.horizon_max));
-    }
-    text += std::isnan(summary.horizon_max)
-                ? "  (it holds for the model from the observed state; the plant's mismatch is not "
-                  "in it)\n"
-                : "  (both hold for the planner's model from its belief; the plant's mismatch is "
-                  "not in them)\n";
-    text += risk_rows(summary);
+    text += certificate_rows(summary) + risk_rows(summary);
   }
   text += row("numbers", in_folder(folder, kSummaryFile));
   text += row("page", in_folder(folder, kPageFile));

@@ -37,9 +37,10 @@ struct VideoTalk {
   bool verbose = false;  ///< on standard error: what drew, and how fast
 };
 
-/// Renders the video with a progress bar; another Ctrl-C ends it early and keeps what is rendered.
-/// Throws IoError.
-void make_video(const EpisodeView& view, const VideoFiles& files,
+/// Renders the video with a progress bar. An interrupt ends it early: a video that is there stays
+/// as it is, else what is rendered becomes the video; a line on standard error says which. Returns
+/// whether all of it was rendered. Throws IoError.
+bool make_video(const EpisodeView& view, const VideoFiles& files,
                 const EpisodeVideoOptions& options, const VideoTalk& talk);
 
 /// Renders the picture at `time` (s) into the PNG file at `path`. Throws IoError.

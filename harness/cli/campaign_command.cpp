@@ -88,6 +88,7 @@ CampaignProgress drive(const Campaign& campaign, const std::string& folder,
   options.on_progress = [&](const CampaignProgress& now) {
     progress.update(now.done, now.total, progress_note(now));
   };
+  const InterruptPatience patience(2);  // the first lets episodes end
   return run_campaign(campaign, folder, options);
 }
 

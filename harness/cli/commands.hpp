@@ -19,6 +19,9 @@ void add_render_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);
 void add_report_command(CLI::App& app, int& exit_code);
 void add_doctor_command(CLI::App& app, int& exit_code);
+/// `app` must outlive the parsing: its commands are what is explained.
+void add_help_command(CLI::App& app, int& exit_code);
+void add_init_command(CLI::App& app, int& exit_code);
 void add_list_command(CLI::App& app, int& exit_code);
 void add_schema_command(CLI::App& app, int& exit_code);
 void add_validate_command(CLI::App& app, int& exit_code);

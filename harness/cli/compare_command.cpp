@@ -26,8 +26,11 @@
 #include "harness/mismatch/measured_error.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_page.hpp"
+#include "harness/scenario/error_origin.hpp"
 #include "harness/scenario/model_error_reader.hpp"
+#include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/scenario_warnings.hpp"
 #include "harness/text/printable.hpp"
 
 namespace qsmpc::harness {
@@ -81,8 +84,20 @@ TextFile error_file(const Comparison& comparison, const std::string& path) {
       comparison.plants.front().episodes.size(), comparison.paths, comparison.scenario.seed,
       100.0 * (1.0 - kErrorTail));
   return {.path = path,
-          .text = model_error_yaml(*comparison.measured_error, comparison.scenario.model.system,
-                                   origin)};
+          .text = model_error_yaml(
+              {.error = *comparison.measured_error,
+               .origin = error_origin_of(with_plant(comparison.scenario, comparison.error_plant))},
+              comparison.scenario.model.system, origin)};
+}
+
+/// Nothing if interrupted.
+std::optional<Comparison> comparison_of(const Scenario& scenario,
+                                        const ComparisonOptions& options) {
+  try {
+    return compare_plants(scenario, options);
+  } catch (const Interrupted&) {
+    return std::nullopt;
+  }
 }
 
 std::string files_table(const std::string& folder, const std::vector<TextFile>& more) {
@@ -95,6 +110,9 @@ std::string files_table(const std::string& folder, const std::vector<TextFile>& 
 int compare(CompareArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
+  Scenario warned = scenario;
+  warned.error_origin.reset();  // whether the error holds for these plants is what is measured
+  print_warnings(scenario_warnings(warned));
   const std::string folder =
       arguments.out.empty() ? default_folder(scenario.name, "compare") : arguments.out;
 
@@ -114,7 +132,7 @@ int compare(CompareArguments& arguments) {
     make_output_folder(folder);
     if (!arguments.error_file.empty()) make_output_folder(folder_of(arguments.error_file));
   };
-  const std::optional<Comparison> comparison = compare_plants(scenario, options);
+  const std::optional<Comparison> comparison = comparison_of(scenario, options);
   if (!comparison) {
     std::cerr << "qsmpc: interrupted; nothing was written\n";
     return kInterruptedExit;
@@ -153,8 +171,8 @@ void add_compare_command(CLI::App& app, int& exit_code) {
                    "NAME: of which plant; default: the one named last")
       ->needs(error_file);
   add_set_option(*command, arguments->overrides);
-  command->add_option("--seed", arguments->seed,
-                      "of the first episode and of the paths; default: the scenario's");
+  add_seed_option(*command, arguments->seed,
+                  "of the first episode and of the paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-compare");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print comparison.json instead of the table");

@@ -6,6 +6,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/text/printable.hpp"
+#include "harness/threads/interruption.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -27,6 +28,8 @@ int report_exception(const std::exception_ptr& exception) {
     return told(error.what(), kBadInput);
   } catch (const IoError& error) {
     return told(error.what(), kIoTrouble);
+  } catch (const Interrupted& error) {
+    return told(error.what(), kInterruptedExit);
   } catch (const std::bad_alloc&) {
     return told("out of memory", kInternalError);
   } catch (const std::exception& error) {

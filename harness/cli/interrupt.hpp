@@ -1,12 +1,13 @@
-// Ctrl-C: the first asks the running work to end and keep what is done, a second to hurry.
+// Ctrl-C: the first asks the running work to end and keep what is done, a second to hurry, and a
+// third ends the process at once.
 #pragma once
+
+#include "harness/threads/interruption.hpp"
 
 namespace qsmpc::harness {
 
-/// Counts SIGINT and SIGTERM from now on instead of ending the process. To be called once.
+/// Counts SIGINT and SIGTERM from now on (see `interrupts`); the third ends the process with exit
+/// code 130. Files are whole or absent even then. To be called once.
 void catch_interrupts();
-
-/// How often the process was asked to stop.
-[[nodiscard]] int interrupts();
 
 }  // namespace qsmpc::harness

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace qsmpc::harness {
 
@@ -11,5 +12,8 @@ namespace qsmpc::harness {
 /// Writes `text` to standard output. Throws IoError when it does not get there, e.g. on a full
 /// disk.
 void print_result(const std::string& text);
+
+/// A line on standard error for each.
+void print_warnings(const std::vector<std::string>& warnings);
 
 }  // namespace qsmpc::harness

@@ -22,6 +22,7 @@
 #include "harness/prediction/prediction_report.hpp"
 #include "harness/prediction/prediction_table.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/scenario_warnings.hpp"
 #include "harness/scenario/value_checks.hpp"
 
 namespace qsmpc::harness {
@@ -95,6 +96,7 @@ int conclude(const PredictionReport& report) {
 int predict(const PredictArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
+  print_warnings(scenario_warnings(scenario));
   PredictionOptions options{.inputs = take_inputs(arguments, scenario)};
   const std::string folder =
       arguments.out.empty() ? default_folder(scenario.name, "predict") : arguments.out;
@@ -108,6 +110,7 @@ int predict(const PredictArguments& arguments) {
                                progress.update(static_cast<int>(done), static_cast<int>(total),
                                                "paths");
                              }};
+  const InterruptPatience patience(2);  // the first leaves out the simulation
   const PredictionReport report = predict_scenario(scenario, options);
   write_prediction(report, folder);
   print_result(arguments.json ? prediction_json(report)
@@ -133,7 +136,7 @@ void add_predict_command(CLI::App& app, int& exit_code) {
       ->add_option("--monte-carlo", arguments->samples,
                    "simulate so many paths of the model as a check of the certificates")
       ->check(CLI::Range(std::int64_t{1}, kMostSamples));
-  command->add_option("--seed", arguments->seed, "of the simulated paths; default: the scenario's");
+  add_seed_option(*command, arguments->seed, "of the simulated paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-predict");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print predict.json instead of the table");

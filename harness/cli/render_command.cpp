@@ -146,7 +146,10 @@ int render(const RenderArguments& arguments) {
     const bool is_the_episodes = path == arguments.folder + "/" + kVideoFile;
     const std::string numbers =
         is_the_episodes ? arguments.folder + "/" + kVideoNumbersFile : path + ".json";
-    make_video(view, {.video = path, .numbers = numbers}, options, talk);
+    check_interrupts();
+    if (!make_video(view, {.video = path, .numbers = numbers}, options, talk)) {
+      return kInterruptedExit;
+    }
   }
   print_result(path + "\n");
   return interrupts() > 0 ? kInterruptedExit : kDone;

@@ -29,7 +29,8 @@ constexpr std::size_t kMostWorst = 1000;
 struct ReportArguments {
   std::string folder;
   bool figures = false;
-  std::size_t worst = 0;  ///< episodes to make pages and videos of; 0: none
+  FigureStyle style{.titles = false};  ///< of the figures
+  std::size_t worst = 0;               ///< episodes to make pages and videos of; 0: none
   bool quiet = false;
 };
 
@@ -65,7 +66,8 @@ int report(const ReportArguments& arguments) {
   }
   std::string paths = folder + "/" + kPageFile + "\n";
   if (arguments.figures) {
-    for (const std::string& path : write_figures(figures, folder)) paths += path + "\n";
+    for (const std::string& path : write_figures(figures, folder, arguments.style))
+      paths += path + "\n";
   }
   print_result(paths);
   return finished ? kDone : kInterruptedExit;
@@ -85,8 +87,16 @@ void add_report_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("folder", arguments->folder, "folder of an episode, a comparison or a campaign")
       ->required();
-  command->add_flag("--figures", arguments->figures,
-                    "write the charts as SVG and PDF files, too: FOLDER/figures");
+  CLI::Option* figures =
+      command->add_flag("--figures", arguments->figures,
+                        "write the charts as SVG and PDF files, too: FOLDER/figures");
+  command
+      ->add_option("--columns", arguments->style.columns,
+                   "with --figures: as wide as 1 or 2 columns of a paper (3.5 or 7.16 inches)")
+      ->needs(figures)
+      ->check(CLI::Range(1, 2));
+  command->add_flag("--titles", arguments->style.titles, "with --figures: with titles and notes")
+      ->needs(figures);
   command
       ->add_option("--worst", arguments->worst,
                    "N: of a campaign, page and video of its N worst episodes, driven again where "

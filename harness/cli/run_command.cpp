@@ -23,6 +23,7 @@
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/plant/plant_check.hpp"
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/scenario_warnings.hpp"
 #include "harness/text/printable.hpp"
@@ -55,6 +56,7 @@ struct RunArguments {
 Trace drive(const Scenario& scenario, std::uint64_t seed, const std::string& folder, bool quiet) {
   TraceWriter writer(folder + "/" + kTraceFile, trace_header(scenario, seed));
   Progress progress("driving", quiet);
+  const char* certified = why_no_bound(scenario).empty() ? "P(unsafe next) <=" : "next, NO BOUND:";
   EpisodeOptions options;
   options.seed = seed;
   options.writer = &writer;
@@ -62,8 +64,8 @@ Trace drive(const Scenario& scenario, std::uint64_t seed, const std::string& fol
   options.on_step = [&](const Trace& trace) {
     const StepRecord& step = trace.steps.back();
     progress.update(static_cast<int>(trace.steps.size()), scenario.step_limit,
-                    fmt::format("t = {:.1f} s, solved in {:.0f} ms, P(unsafe next) <= {:.2g}",
-                                step.time, step.timing.total, step.certificates.front().value));
+                    fmt::format("t = {:.1f} s, solved in {:.0f} ms, {} {:.2g}", step.time,
+                                step.timing.total, certified, step.certificates.front().value));
   };
   return run_episode(scenario, options);
 }
@@ -81,15 +83,11 @@ int run(const RunArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
-  for (const std::string& warning : scenario_warnings(scenario)) {
-    std::cerr << "qsmpc: warning: " << warning << '\n';
-  }
   if (const auto problem = plant_problem(scenario, arguments.scenario, arguments.overrides)) {
     throw InputError(*problem);
   }
-  for (const std::string& warning : plant_warnings(scenario)) {
-    std::cerr << "qsmpc: warning: " << warning << '\n';
-  }
+  print_warnings(scenario_warnings(scenario));
+  print_warnings(plant_warnings(scenario));
   const std::string folder = arguments.out.empty()
                                  ? default_folder(scenario.name, fmt::format("{}", seed))
                                  : arguments.out;
@@ -118,7 +116,7 @@ int run(const RunArguments& arguments) {
 
   print_result(arguments.json ? summary_json(view, {.video_file = with_video ? kVideoFile : ""})
                               : summary_table(view, folder, with_video));
-  if (trace.outcome == Outcome::kInterrupted) return kInterruptedExit;
+  if (interrupts() > 0) return kInterruptedExit;
   return asked_to_tell(arguments.fail_on, view.summary()) ? kToldFailure : kDone;
 }
 
@@ -130,7 +128,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<RunArguments>();
   add_scenario_argument(*command, arguments->scenario);
   add_set_option(*command, arguments->overrides);
-  command->add_option("--seed", arguments->seed, "of all random numbers; default: the scenario's");
+  add_seed_option(*command, arguments->seed, "of all random numbers; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-SEED");
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
   // An interrupt has an exit code of its own.

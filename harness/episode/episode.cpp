@@ -17,6 +17,7 @@
 #include "harness/plant/plant_registry.hpp"
 #include "harness/random/random_numbers.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/threads/interruption.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/trace_file.hpp"
@@ -93,6 +94,8 @@ class EpisodeDriver::Loop {
       plant_ = make_plant(scenario_, draw_variation(scenario_.disturbance,
                                                     options_.plant_seed.value_or(options_.seed)));
       trace.outcome = drive(trace);
+    } catch (const Interrupted&) {
+      trace.outcome = Outcome::kInterrupted;
     } catch (const SimulatorError& error) {
       trace.outcome = Outcome::kFault;
       trace.fault = error.what();
@@ -133,7 +136,7 @@ class EpisodeDriver::Loop {
     trace.steps.push_back(decide(k));
     StepRecord& record = trace.steps.back();
     const auto start = Clock::now();
-    PlantStep result = plant_->advance(record.input, record.disturbance);
+    PlantStep result = advance(trace);
     record.timing.simulate = milliseconds_since(start);
     record.clearance_between = least_clearance(result.between, unsafe_);
     record.contact = result.contact;
@@ -150,6 +153,16 @@ class EpisodeDriver::Loop {
       return Outcome::kFault;
     }
     return outcome_now();
+  }
+
+  /// Drives the period of the last record, which is dropped where the process is asked to stop.
+  PlantStep advance(Trace& trace) {
+    try {
+      return plant_->advance(trace.steps.back().input, trace.steps.back().disturbance);
+    } catch (const Interrupted&) {
+      trace.steps.pop_back();
+      throw;
+    }
   }
 
   /// Decides and certifies for beliefs like those that will come, and forgets the decisions: what

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "controller/regions/unsafe_set.hpp"
 
@@ -23,21 +24,39 @@ bool has_position(const models::SystemDescription& system) {
   return system.position_x >= 0 && system.position_y >= 0;
 }
 
+std::optional<MapAxes> map_axes(const models::SystemDescription& system) {
+  if (has_position(system)) return MapAxes{.x = system.position_x, .y = system.position_y};
+  const std::vector<models::Coordinate>& states = system.states;
+  const auto index = [&states](const auto& found) {
+    return static_cast<int>(found - states.begin());
+  };
+  const auto position = std::find_if(states.begin(), states.end(),
+                                     [](const models::Coordinate& s) { return s.unit == "m"; });
+  if (position == states.end() || states.size() < 2) return std::nullopt;
+  const auto angle = std::find_if(states.begin(), states.end(),
+                                  [](const models::Coordinate& s) { return s.unit == "rad"; });
+  const int x = index(position);
+  const int other = x == 0 ? 1 : 0;
+  return MapAxes{.x = x, .y = angle == states.end() ? other : index(angle), .is_plane = false};
+}
+
 MapPoint map_point(const Eigen::Ref<const Eigen::VectorXd>& state,
                    const models::SystemDescription& system) {
-  if (state.size() <= std::max(system.position_x, system.position_y)) {
+  const std::optional<MapAxes> axes = map_axes(system);
+  if (!axes || state.size() <= std::max(axes->x, axes->y)) {
     return {.x = std::numeric_limits<double>::quiet_NaN()};
   }
-  return {.x = state[system.position_x], .y = state[system.position_y]};
+  return {.x = state[axes->x], .y = state[axes->y]};
 }
 
 PlaneMap ground_map(const Scenario& scenario, const models::SystemDescription& system) {
   const controller::UnsafeSet unsafe(scenario.safe_set);
+  const MapAxes axes = map_axes(system).value();
   const auto outline_of = [&](const controller::UnsafeRegion& region) {
-    return region.outline(0, system.position_x, system.position_y);
+    return region.outline(0, axes.x, axes.y);
   };
-  PlaneMap map{.x_label = label(system.states[static_cast<std::size_t>(system.position_x)]),
-               .y_label = label(system.states[static_cast<std::size_t>(system.position_y)]),
+  PlaneMap map{.x_label = label(system.states[static_cast<std::size_t>(axes.x)]),
+               .y_label = label(system.states[static_cast<std::size_t>(axes.y)]),
                .bounds = rectangle_of(outline_of(unsafe.walls())),
                .targets = {{.centre = map_point(scenario.target.state, system),
                             .radius = scenario.target.radius}}};

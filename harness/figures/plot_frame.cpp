@@ -60,6 +60,7 @@ PlotFrame frame_of(const Chart& chart) {
       .y = chart.y_scale == Scale::kLog ? log_axis(up, chart.least_shown)
                                         : rounded_axis(up, kTicksUp)};
   if (chart.x_scale == Scale::kLog && chart.x_has_zero) frame.x.zero_share = kZeroShare;
+  if (chart.y_scale == Scale::kLog && chart.y_has_zero) frame.y.zero_share = kZeroShare;
   return frame;
 }
 

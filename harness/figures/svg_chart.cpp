@@ -139,18 +139,39 @@ std::string axis_break(const PlotFrame& frame, double foot) {
   return fmt::format("H{0:.1f}m-2 4l4 -8m4 0l-4 8M{1:.1f} {2:.1f}", x - 2.0, x + 2.0, foot);
 }
 
-/// Upwards about `middle`, in two lines where one would be longer than the drawing is high.
+/// The same of the y axis, from its top on.
+std::string axis_break_up(const PlotFrame& frame) {
+  if (frame.y.zero_share <= 0.0) return {};
+  const double y = 0.5 * (frame.up(0.0) + frame.up(frame.y.lower));
+  return fmt::format("V{0:.1f}m-4 2l8 -4m0 4l-8 4M{1:.1f} {2:.1f}", y - 2.0, kChartLeft, y + 2.0);
+}
+
+/// Upwards about `middle`, in two lines where one would leave the drawing.
 std::string y_label_svg(const std::string& label, double middle) {
-  constexpr double kLabelSize = 12.5;
+  constexpr double kLabelSize = 14.5;  // on a telephone, where letters are largest
   const auto line = [&](int x, const std::string& text) {
     return fmt::format(
         "<text class=\"middle label\" transform=\"translate({} {:.1f}) rotate(-90)\">{}</text>", x,
         middle, escape_html(text));
   };
-  if (estimated_width(label, kLabelSize) <= kHeight) return line(14, label);
+  const double room = 2.0 * std::min(middle, kHeight - middle);
+  if (estimated_width(label, kLabelSize) <= room) return line(14, label);
   const std::size_t half = label.find(' ', label.size() / 2);
   if (half == std::string::npos) return line(14, label);
   return line(11, label.substr(0, half)) + line(25, label.substr(half + 1));
+}
+
+/// Whether two names side by side below the axis would touch: they then stand in two rows.
+bool are_staggered(const Chart& chart, const PlotFrame& frame) {
+  constexpr double kNameSize = 14.5;  // on a telephone, where letters are largest
+  constexpr double kNameGap = 6.0;
+  for (std::size_t n = 0; n + 1 < chart.x_names.size(); ++n) {
+    const double width = 0.5 * (estimated_width(chart.x_names[n], kNameSize) +
+                                estimated_width(chart.x_names[n + 1], kNameSize));
+    const double at = static_cast<double>(n + 1);
+    if (width + kNameGap > frame.across(at + 1.0) - frame.across(at)) return true;
+  }
+  return false;
 }
 
 std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
@@ -164,10 +185,13 @@ std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
     svg += fmt::format("<text class=\"end\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", kChartLeft - 7.0,
                        y + 4.0, escape_html(tick.label));
   }
+  const bool staggered = are_staggered(chart, frame);
+  std::size_t ticks = 0;
   for (const Tick& tick : ticks_across(chart, frame)) {
+    const double drop = staggered && ticks++ % 2 == 1 ? 34.0 : 18.0;
     const double x = frame.across(tick.value);
     svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}v5\"/>", x, foot);
-    svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, foot + 18.0,
+    svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, foot + drop,
                        escape_html(tick.label));
   }
   std::string minor;
@@ -175,10 +199,11 @@ std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
     minor += fmt::format("M{:.1f} {:.1f}v3", frame.across(tick.value), foot);
   }
   if (!minor.empty()) svg += fmt::format("<path class=\"axis\" d=\"{}\"/>", minor);
-  svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}{}H{:.1f}\"/>", kChartLeft,
-                     kChartTop, foot, axis_break(frame, foot), right);
+  svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}{}V{:.1f}{}H{:.1f}\"/>", kChartLeft,
+                     kChartTop, axis_break_up(frame), foot, axis_break(frame, foot), right);
   svg += fmt::format("<text class=\"middle label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
-                     (kChartLeft + right) / 2.0, kHeight - 8.0, escape_html(chart.x_label));
+                     (kChartLeft + right) / 2.0, kHeight - 8.0,
+                     staggered ? "" : escape_html(chart.x_label));
   return svg + y_label_svg(chart.y_label, (kChartTop + foot) / 2.0);
 }
 

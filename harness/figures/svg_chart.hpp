@@ -59,6 +59,7 @@ struct Chart {
   double least_x = 1e-12;      ///< on a logarithmic axis: what is below is drawn at its foot
   bool x_has_zero = false;     ///< on a logarithmic axis: 0 has a place of its own, left of a break
   double least_shown = 1e-12;  ///< the same of y
+  bool y_has_zero = false;     ///< on a logarithmic axis: 0 has a place of its own, at the foot
   std::vector<std::string> x_names{};  ///< what stands at x = 1, 2, … in place of numbers
   std::vector<double> x_includes{};    ///< values that the axes must show
   std::vector<double> y_includes{};

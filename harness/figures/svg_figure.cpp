@@ -18,16 +18,21 @@ constexpr double kMargin = 14.0;
 constexpr double kTitleHeight = 26.0;
 constexpr double kLineHeight = 17.0;  // of a note or an entry of the legend
 constexpr double kGap = 22.0;         // between rows of panels
-constexpr double kLegendTextSize = 12.5;
-constexpr double kSwatchGap = 8.0;  // between a sign of the legend and its name
-constexpr double kEntryGap = 18.0;  // between entries of the legend
+constexpr double kTextSize = 12.5;
+constexpr double kSmallFigureText = 14.5;  // before a figure shrinks to the columns of a paper
+constexpr double kOneColumn = 336.0;       // 3.5 inches
+constexpr double kTwoColumns = 687.0;      // 7.16 inches
+constexpr double kSwatchGap = 8.0;         // between a sign of the legend and its name
+constexpr double kEntryGap = 18.0;         // between entries of the legend
 // A letter on average, of small print and of the legend.
 constexpr double kNoteLetter = 6.15;
 constexpr double kNameLetter = 6.9;
 
+constexpr std::string_view kFontFamily = "'Liberation Sans',Arial,Helvetica,sans-serif";
+
 // Plain colours, those of the page in the light, since few programs but browsers know variables.
 constexpr std::string_view kStyle =
-    "text{font:12.5px 'Liberation Sans',Arial,Helvetica,sans-serif;fill:#16202a}"
+    "text{fill:#16202a}"
     "text.title{font-size:15px;font-weight:600}text.note,text.label{fill:#55636f}"
     "text.note{font-size:11.5px}text.middle{text-anchor:middle}text.end{text-anchor:end}"
     ".line,.rule,.axis,.grid-line,.points{fill:none}"
@@ -104,9 +109,14 @@ std::size_t letters_in(double width, double letter) {
   return static_cast<std::size_t>(width / letter);
 }
 
+double text_size(const FigureStyle& style) {
+  return style.columns == 0 ? kTextSize : kSmallFigureText;
+}
+
 /// Entries one beside the other while they fit `width`; a long name takes several lines.
-Head legend_svg(const std::vector<LegendEntry>& entries, double width) {
-  const std::size_t columns = letters_in(width - kSwatchWidth - kSwatchGap, kNameLetter);
+Head legend_svg(const std::vector<LegendEntry>& entries, double width, double letters) {
+  const std::size_t columns =
+      letters_in(width - kSwatchWidth - kSwatchGap, kNameLetter * letters / kTextSize);
   Head legend;
   double x = 0.0;
   double y = 0.0;  // of the line's foot
@@ -114,7 +124,7 @@ Head legend_svg(const std::vector<LegendEntry>& entries, double width) {
     const std::vector<std::string> lines = wrapped(entry.name, columns);
     double needed = 0.0;
     for (const std::string& line : lines) {
-      needed = std::max(needed, estimated_width(line, kLegendTextSize));
+      needed = std::max(needed, estimated_width(line, letters));
     }
     needed += kSwatchWidth + kSwatchGap;
     if (y == 0.0 || x + needed > width) {
@@ -135,23 +145,24 @@ Head legend_svg(const std::vector<LegendEntry>& entries, double width) {
 }
 
 /// About (0, 0), its top left corner.
-Head head_of(const Part& part) {
+Head head_of(const Part& part, const FigureStyle& style) {
   Head head;
-  double y = kTitleHeight - 10.0;
-  head.svg = text_at("title", 0.0, y, part.title);
+  double y = part.title.empty() ? 0.0 : kTitleHeight - 10.0;
+  if (!part.title.empty()) head.svg = text_at("title", 0.0, y, part.title);
   for (const std::string& line : wrapped(part.note, letters_in(part.width, kNoteLetter))) {
     y += kLineHeight;
     head.svg += text_at("note", 0.0, y, line);
   }
-  const Head legend = legend_svg(part.legend, part.width);
+  const Head legend = legend_svg(part.legend, part.width, text_size(style));
   head.svg += fmt::format("<g transform=\"translate(0 {:.1f})\">{}</g>\n", y, legend.svg);
   head.height = y + legend.height + 10.0;
   return head;
 }
 
-std::string panel_svg(const Panel& panel, const Part& part, MapPoint corner, double head_height) {
+std::string panel_svg(const Panel& panel, const Part& part, const FigureStyle& style,
+                      MapPoint corner, double head_height) {
   std::string svg = fmt::format("<g transform=\"translate({:.1f} {:.1f})\">{}</g>\n", corner.x,
-                                corner.y, head_of(part).svg);
+                                corner.y, head_of(part, style).svg);
   const double y = corner.y + head_height;
   if (part.is_empty) {
     return svg + text_at("note", corner.x, y + kTitleHeight, "No finite values to draw.");
@@ -160,9 +171,9 @@ std::string panel_svg(const Panel& panel, const Part& part, MapPoint corner, dou
 }
 
 /// Where the columns begin, and where the last one ends with a margin.
-std::vector<double> columns_of(const std::vector<Part>& parts) {
+std::vector<double> columns_of(const std::vector<Part>& parts, const FigureStyle& style) {
   std::vector<double> columns = {kMargin};
-  const std::size_t in_row = std::min(parts.size(), kPanelsInRow);
+  const std::size_t in_row = std::min(parts.size(), style.columns == 1 ? 1 : kPanelsInRow);
   for (std::size_t column = 0; column < in_row; ++column) {
     double width = 0.0;
     for (std::size_t n = column; n < parts.size(); n += in_row) {
@@ -173,15 +184,39 @@ std::vector<double> columns_of(const std::vector<Part>& parts) {
   return columns;
 }
 
+/// What is `width` x `height` units large, as wide as `style` says.
+std::string document(double width, double height, const FigureStyle& style,
+                     const std::string& body) {
+  const double shown = style.columns == 0 ? width : style.columns == 1 ? kOneColumn : kTwoColumns;
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
+      "viewBox=\"0 0 {2:.0f} {3:.0f}\">\n<style>text{{font:{4}px {5}}}{6}</style>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{7}</svg>\n",
+      shown, height * shown / width, width, height, text_size(style), kFontFamily, kStyle, body);
+}
+
 }  // namespace
 
-std::string svg_figure(const std::vector<Panel>& panels) {
+std::string panel_letter(std::size_t panel, std::size_t count) {
+  constexpr std::size_t kLetters = 26;
+  if (count < 2) return {};
+  return panel < kLetters ? fmt::format("({})", static_cast<char>('a' + panel))
+                          : fmt::format("({})", panel + 1);
+}
+
+std::string svg_figure(const std::vector<Panel>& panels, const FigureStyle& style) {
   std::vector<Part> parts;
   parts.reserve(panels.size());
   for (const Panel& panel : panels) {
-    parts.push_back(std::visit([](const auto& own) { return part_of(own); }, panel));
+    Part part = std::visit([](const auto& own) { return part_of(own); }, panel);
+    if (!style.titles) {
+      part.title = panel_letter(parts.size(), panels.size());
+      part.note.clear();
+    }
+    parts.push_back(std::move(part));
   }
-  const std::vector<double> columns = columns_of(parts);
+  const std::vector<double> columns = columns_of(parts, style);
   const std::size_t in_row = std::max<std::size_t>(1, columns.size() - 1);
   std::string body;
   double y = kMargin;
@@ -190,20 +225,15 @@ std::string svg_figure(const std::vector<Panel>& panels) {
     double head = 0.0;
     double drawing = 0.0;
     for (std::size_t n = first; n < end; ++n) {
-      head = std::max(head, head_of(parts[n]).height);
+      head = std::max(head, head_of(parts[n], style).height);
       drawing = std::max(drawing, parts[n].height);
     }
     for (std::size_t n = first; n < end; ++n) {
-      body += panel_svg(panels[n], parts[n], {.x = columns[n - first], .y = y}, head);
+      body += panel_svg(panels[n], parts[n], style, {.x = columns[n - first], .y = y}, head);
     }
     y += head + drawing + (end < panels.size() ? kGap : 0.0);
   }
-  return fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {0:.0f} {1:.0f}\">\n<style>{2}</style>\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{3}</svg>\n",
-      columns.back(), y + kMargin, kStyle, body);
+  return document(columns.back(), y + kMargin, style, body);
 }
 
 std::string panel_figure(const Panel& panel) {

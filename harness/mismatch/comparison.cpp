@@ -10,6 +10,7 @@
 #include "harness/assembly/first_decision.hpp"
 #include "harness/errors.hpp"
 #include "harness/mismatch/measured_error.hpp"
+#include "harness/plant/plant_check.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/plant_choice.hpp"
@@ -115,6 +116,7 @@ class Comparing {
     }
     for (Candidate& candidate : candidates_) {
       const Scenario& scenario = candidate.scenario;
+      try_plant(scenario);
       const auto make = [&scenario, seed = scenario_.seed](std::int64_t path) {
         return make_plant(
             scenario, draw_variation(scenario.disturbance, seed, static_cast<std::uint64_t>(path)));
@@ -150,8 +152,10 @@ class Comparing {
   void compare(Candidate& candidate, SharedWork& work) {
     PlantComparison plant{.name = candidate.name};
     std::unique_ptr<Plant> timed = candidate.pool->take(0);
+    const bool drawn = timed != nullptr;
+    if (!drawn) timed = make_plant(candidate.scenario);
     plant.speed = simulation_speed(*timed, *source_, scenario_.time_step, kTimedPaths);
-    candidate.pool->give_back(std::move(timed));
+    if (drawn) candidate.pool->give_back(std::move(timed));
 
     work.begin(candidate.name + ", episodes");
     plant.episodes = run_episodes(candidate.scenario, options_.episodes, run_, work);

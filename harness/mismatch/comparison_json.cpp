@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
@@ -130,6 +131,7 @@ std::string comparison_json(const Comparison& comparison) {
   for (const PlantComparison& plant : comparison.plants) {
     json["plants"][plant.name] = plant_json(comparison, plant);
   }
+  json["certificate"] = scope_json(why_no_bound(comparison.scenario));
   if (comparison.measured_error) json["model_error"] = error_json(comparison);
   return json_text(json);
 }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
@@ -36,6 +37,11 @@ std::string by_state(const std::string& name, const Eigen::VectorXd& values,
   for (const double value : values) row += fmt::format("{:>{}}", number(value), kStateWidth);
   if (with_norm) row += fmt::format("{:>{}}", number(values.norm()), kStateWidth);
   return row + "\n";
+}
+
+/// The head of what is certified.
+const char* certified_head(const Comparison& comparison) {
+  return why_no_bound(comparison.scenario).empty() ? "certified" : "NO BOUND";
 }
 
 std::string drives_section(const Comparison& comparison) {
@@ -118,13 +124,14 @@ std::vector<int> shown_states(const models::SystemDescription& system) {
   return shown;
 }
 
-std::string horizon_head(const models::SystemDescription& system, const std::vector<int>& states) {
+std::string horizon_head(const models::SystemDescription& system, const std::vector<int>& states,
+                         const char* certified) {
   std::vector<models::Coordinate> shown;
   shown.reserve(states.size());
   for (const int state : states) shown.push_back(system.states[static_cast<std::size_t>(state)]);
   std::string head = state_head(shown, kStageWidth, kStageStateWidth,
                                 fmt::format("{:>10}{:>9}{:>16}{:>10}{:>19}", "to model", "W2",
-                                            "floor", "certified", "observed (99 %)"));
+                                            "floor", certified, "observed (99 %)"));
   return head.replace(0, kStageWidth, fmt::format("{:>{}}", "stage", kStageWidth));
 }
 
@@ -151,11 +158,12 @@ std::string horizon_section(const Comparison& comparison, const models::SystemDe
       "paths\n",
       comparison.paths);
   for (const PlantComparison& plant : comparison.plants) {
-    text += fmt::format("  {}{}\n", printable(plant.name, 60),
-                        plant.paths.faults > 0
-                            ? fmt::format(": {} paths on which it broke", plant.paths.faults)
-                            : "");
-    text += horizon_head(system, states);
+    text += fmt::format(
+        "  {}{}\n", printable(plant.name, 60),
+        plant.paths.faults > 0
+            ? fmt::format(": {} paths on which it broke or was refused", plant.paths.faults)
+            : "");
+    text += horizon_head(system, states, certified_head(comparison));
     for (const HorizonStage& stage : plant.horizon) {
       text += stage_row(comparison, stage, states);
     }
@@ -168,7 +176,7 @@ std::string certificate_section(const Comparison& comparison) {
       "\nCertificates {} the scenario's model error, against the plant\n"
       "  {:<{}}{:>16}{:>16}{:>15}{:>10}{:>14}\n",
       comparison.with_error ? "with" : "without", "plant", kNameWidth - 2, "stages exceeded",
-      "unsafe periods", "certified", "p", "x real time");
+      "unsafe periods", certified_head(comparison), "p", "x real time");
   for (const PlantComparison& plant : comparison.plants) {
     const ClosedLoop& loop = plant.closed_loop;
     text += plant_name(plant.name);
@@ -180,6 +188,12 @@ std::string certificate_section(const Comparison& comparison) {
         fmt::format("{:.2g}{}", loop.p_value, loop.p_value < kSurprising ? " !" : ""), plant.speed);
   }
   return text;
+}
+
+std::string scope_note(const Comparison& comparison) {
+  if (why_no_bound(comparison.scenario).empty()) return {};
+  return "NO BOUND: with measurement noise (disturbance.sensor) the feedback acts on what is\n"
+         "seen, of which certificates do not know; along the plan the policy sees the state.\n";
 }
 
 }  // namespace
@@ -196,7 +210,8 @@ std::string comparison_table(const Comparison& comparison) {
          "W2: between the predicted particles and the plant's paths.\n"
          "floor: W2 where the plant is the model, as there are few particles and paths.\n"
          "stages exceeded: the observed rate is certainly (99.5 % each) above the certificate.\n"
-         "p: small where more periods end unsafe than certified for them.\n";
+         "p: small where more periods end unsafe than certified for them.\n" +
+         scope_note(comparison);
 }
 
 }  // namespace qsmpc::harness

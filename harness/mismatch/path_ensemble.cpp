@@ -24,17 +24,19 @@ Eigen::VectorXd model_step(const models::Dynamics& model, const Eigen::VectorXd&
   return next.col(0);
 }
 
-/// Drives `plant` along one path, whose column of `paths` it fills; whether it came through.
-bool drive(Plant& plant, const models::Dynamics& model, const PathSource& source, std::int64_t path,
+/// Drives `plant`, nullptr for one that the simulator refuses, along one path, whose column of
+/// `paths` it fills; whether it came through.
+bool drive(Plant* plant, const models::Dynamics& model, const PathSource& source, std::int64_t path,
            PlantPaths& paths) {
   Eigen::VectorXd state = source.initial_state(path);
   paths.states.front().col(path) = state;
-  plant.reset(state);
+  if (plant == nullptr) return false;
+  plant->reset(state);
   for (Eigen::Index k = 0; k < source.stages(); ++k) {
     const auto stage = static_cast<std::size_t>(k);
     const Eigen::VectorXd input = controller::policy_input(source.policy(), k, state);
     const Eigen::VectorXd disturbance = source.disturbance(path, k);
-    const PlantStep step = plant.advance(input, disturbance);
+    const PlantStep step = plant->advance(input, disturbance);
     if (step.fault) return false;
     paths.residuals[stage].col(path) = step.state - disturbance - model_step(model, state, input);
     paths.states[stage + 1].col(path) = step.state;
@@ -101,7 +103,7 @@ PlantPaths plant_paths(PlantPool& plants, const models::Dynamics& model, const P
     const std::int64_t end = std::min(begin + kPathBatch, count);
     for (std::int64_t path = begin; path < end; ++path) {
       std::unique_ptr<Plant> plant = plants.take(path);
-      if (!drive(*plant, model, source, path, paths)) ++faults;
+      if (!drive(plant.get(), model, source, path, paths)) ++faults;
       plants.give_back(std::move(plant));
     }
     work.advance();

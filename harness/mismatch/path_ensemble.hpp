@@ -63,7 +63,7 @@ struct PlantPaths {
   std::vector<controller::Points> states;  ///< stages 0 … horizon, state_dim x count
   std::vector<controller::Points>
       residuals;            ///< x_{k+1} − w_k − f(x_k, u_k), horizon, state_dim x count
-  std::int64_t faults = 0;  ///< paths whose plant broke
+  std::int64_t faults = 0;  ///< paths whose plant broke, or was refused as it was drawn
 };
 
 /// Paths a unit of `SharedWork`.

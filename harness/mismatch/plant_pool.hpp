@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "harness/errors.hpp"
 #include "harness/plant/plant.hpp"
 
 namespace qsmpc::harness {
@@ -20,12 +21,13 @@ class PlantPool {
   using Maker = std::function<std::unique_ptr<Plant>(std::int64_t)>;
 
   /// make: called by several threads. A first plant is made at once, so that what is wrong with it
-  /// is thrown here. differ: whether paths differ in their plants.
+  /// is thrown here, but where paths differ in their plants (differ): one of them says nothing of
+  /// the others.
   explicit PlantPool(Maker make, bool differ = false) : make_(std::move(make)), differ_(differ) {
-    idle_.push_back(make_(0));
+    if (!differ_) idle_.push_back(make_(0));
   }
 
-  /// The plant of path `path`.
+  /// The plant of path `path`; nullptr where paths differ and the simulator refuses this one.
   [[nodiscard]] std::unique_ptr<Plant> take(std::int64_t path) {
     if (!differ_) {
       const std::lock_guard lock(mutex_);
@@ -35,7 +37,12 @@ class PlantPool {
         return plant;
       }
     }
-    return make_(path);
+    try {
+      return make_(path);
+    } catch (const SimulatorError&) {
+      if (!differ_) throw;
+      return nullptr;
+    }
   }
 
   void give_back(std::unique_ptr<Plant> plant) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "harness/prediction/prediction_file.hpp"
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/json_values.hpp"
 
@@ -66,6 +67,7 @@ std::string prediction_json(const PredictionReport& report) {
     json["horizon"]["monte_carlo"] =
         rate_json(report.monte_carlo->any_stage, report.monte_carlo->samples);
   }
+  json["certificate"] = scope_json(why_no_bound(report.scenario));
   json["particles"] = kPredictionFile;
   return json_text(json);
 }

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
@@ -60,7 +61,8 @@ std::string head(const PredictionReport& report, const models::SystemDescription
     names += fmt::format("{:>{}}", printable(shown.name, kNameLimit), kStateWidth);
     units += fmt::format("{:>{}}", shown.unit, kStateWidth);
   }
-  names += tail("W2 <=", "P(unsafe)<=", "by", "thesis*");
+  const bool holds = why_no_bound(report.scenario).empty();
+  names += tail("W2 <=", holds ? "P(unsafe)<=" : "NO BOUND", "by", "thesis*");
   if (report.monte_carlo) names += simulated_columns("rate", "rate <=");
   return names + "\n" + units + "\n";
 }
@@ -88,6 +90,19 @@ std::string total_row(const PredictionReport& report, std::size_t states) {
   return text + "\n";
 }
 
+/// Of what the certificates speak, if they hold at all.
+std::string scope_note(const Scenario& scenario) {
+  if (!why_no_bound(scenario).empty()) {
+    return "NO BOUND: with measurement noise (disturbance.sensor) the feedback acts on\n"
+           "what is seen. The numbers hold for a policy that sees the state itself.\n";
+  }
+  return scenario.model_error
+             ? "P(unsafe)<= holds for plants within model_error under this plan as planned:\n"
+               "planning anew on the way is not in it.\n"
+             : "P(unsafe)<= holds for the model under this plan as planned: a plant that\n"
+               "differs from it, and planning anew on the way, are not in it.\n";
+}
+
 }  // namespace
 
 std::string prediction_table(const PredictionReport& report) {
@@ -106,11 +121,7 @@ std::string prediction_table(const PredictionReport& report) {
     text += stage_row(report, stage, states);
   }
   text += total_row(report, states.size());
-  text += report.scenario.model_error
-              ? "P(unsafe)<= holds for plants within model_error under this plan as planned:\n"
-                "planning anew on the way is not in it.\n"
-              : "P(unsafe)<= holds for the model under this plan as planned: a plant that\n"
-                "differs from it, and planning anew on the way, are not in it.\n";
+  text += scope_note(report.scenario);
   text += "* the published algorithms' value: NOT a bound\n";
   if (report.monte_carlo) {
     text += fmt::format("rate: of {} simulated paths; rate <=: its limit, wrong once in {:.0e}\n",

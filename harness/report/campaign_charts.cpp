@@ -1,7 +1,6 @@
 #include "harness/report/campaign_charts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/figures/palette.hpp"
+#include "harness/report/campaign_drives.hpp"
 #include "harness/report/tradeoff_charts.hpp"
 #include "harness/text/printable.hpp"
 
@@ -19,32 +19,31 @@ namespace {
 
 constexpr double kLeastCertified = 1e-13;  // left end of the axis: the bin [0, 1e-12) is there
 constexpr std::size_t kMostPanels = 16;    // of variants in reliability.svg
-constexpr std::size_t kMostNumbers = 20;   // that have room below an axis
-constexpr std::size_t kMostPairs = 9;      // the same
+constexpr std::size_t kMostPairs = 9;      // that have room below an axis
 constexpr std::size_t kMostListed = 20;    // variants in a note
 constexpr std::size_t kNameLimit = 90;     // of a variant in a note
 constexpr std::size_t kTitleLimit = 44;    // of a variant in a title
 constexpr double kBeside = 0.12;           // between points of one variant
 constexpr double kRoom = 0.5;              // left and right of the outer variants
 
-/// Of all listed outcomes but the first; those of the bars in web/tables.css.
-constexpr std::array kFailureColours = {kVermilion, kPurple, kBlue, kOrange, kSky};
-
 constexpr const char* kListedBefore = "The numbers are those of the first chart.";
 constexpr const char* kRateLabel = "share of periods that ended unsafe (–)";
 
-/// A bin with events is a point with its interval, another one an upper limit. What is called
-/// exceeded stands out.
+/// A point with its interval for each bin. One without events stands at 0, in a part of the axis
+/// that is never shaded: nothing went wrong there, however few its periods. What is called exceeded
+/// stands out.
 void add_bins(const std::string& name, int colour, const std::vector<CalibrationBin>& bins,
               Chart& chart) {
   Series seen{.name = name, .colour = colour, .mark = Mark::kPoints};
-  Series unseen{.name = name + ": none seen, at most", .colour = colour, .mark = Mark::kLimits};
+  Series unseen{.name = name + ": none unsafe", .colour = colour, .mark = Mark::kPoints};
   Series exceeded{.name = name + ": exceeded", .colour = kVermilion, .mark = Mark::kPoints};
   for (const CalibrationBin& bin : bins) {
     if (bin.periods == 0) continue;
     if (bin.unsafe == 0) {
       unseen.x.push_back(bin.mean_certified);
-      unseen.y.push_back(bin.interval.upper);
+      unseen.y.push_back(0.0);
+      unseen.lower.push_back(0.0);
+      unseen.upper.push_back(bin.interval.upper);
       continue;
     }
     Series& series = bin.exceeded ? exceeded : seen;
@@ -68,7 +67,10 @@ std::vector<CalibrationBin> not_bounds(std::vector<CalibrationBin> bins) {
 double foot_of(const Chart& chart) {
   double least = 0.1;
   for (const Series& series : chart.series) {
-    for (const double y : series.y) least = std::min(least, y);
+    for (const double y : series.y) {
+      if (y > 0.0) least = std::min(least, y);
+    }
+    for (const double upper : series.upper) least = std::min(least, upper);
   }
   return std::pow(10.0, std::floor(std::log10(least) - 0.5));
 }
@@ -88,9 +90,8 @@ double least_certified(const CampaignStatistics& statistics) {
 void add_diagonal(Chart& chart) {
   const double foot = std::max(chart.least_shown, chart.least_x);
   const double left = chart.least_x;
-  chart.areas.push_back({.name = "more than certified",
-                         .x = {left, foot, 1.0, left},
-                         .y = {chart.least_shown, foot, 1.0, 1.0}});
+  chart.areas.push_back(
+      {.name = "more than certified", .x = {left, foot, 1.0, left}, .y = {foot, foot, 1.0, 1.0}});
   chart.series.push_back({.name = "as certified",
                           .colour = kPurple,
                           .dashed = true,
@@ -110,14 +111,15 @@ Chart reliability_chart(const std::string& title, double least,
   Chart chart{.title = title,
               .note = fmt::format(
                   "Periods by what was certified for them, in half decades; 99 % intervals as if "
-                  "periods were independent. Only a point whose whole interval is shaded speaks "
-                  "against its value. {}.",
+                  "periods were independent; at 0, none ended unsafe. Only a point whose whole "
+                  "interval is shaded speaks against its value. {}.",
                   exceeded_text(certified)),
               .x_label = "certified probability, mean of the bin (–)",
               .y_label = kRateLabel,
               .x_scale = Scale::kLog,
               .y_scale = Scale::kLog,
               .least_x = least,
+              .y_has_zero = true,
               .x_includes = {least, 1.0},
               .y_includes = {1.0}};
   add_bins("published value, no bound", kOrange, not_bounds(published), chart);
@@ -167,7 +169,7 @@ std::vector<std::size_t> variants_with_a_chart(const CampaignStatistics& statist
 }
 
 CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
-  CampaignFigure figure{.file = "reliability.svg", .charts = {}};
+  CampaignFigure figure{.file = kReliabilityFile, .charts = {}};
   const double least = least_certified(statistics);
   figure.charts.push_back(reliability_chart("Do the certificates hold?", least,
                                             statistics.calibration, statistics.published));
@@ -182,20 +184,10 @@ CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
   }
   for (const std::size_t n : panels) {
     const VariantStatistics& variant = statistics.variants[n];
-    figure.charts.push_back(
-        reliability_chart(fmt::format("{}: {}", n + 1, printable(variant.name, kTitleLimit)), least,
-                          variant.calibration, variant.published));
+    figure.charts.push_back(reliability_chart(numbered_name(statistics, n, kTitleLimit), least,
+                                              variant.calibration, variant.published));
   }
   return figure;
-}
-
-/// Of `names`, what has room below an axis: every so many, the others empty.
-std::vector<std::string> thinned(std::vector<std::string> names, std::size_t most) {
-  const std::size_t stride = std::max<std::size_t>(1, (names.size() + most - 1) / most);
-  for (std::size_t n = 0; n < names.size(); ++n) {
-    if (n % stride != 0) names[n].clear();
-  }
-  return names;
 }
 
 /// What the numbers of variants mean.
@@ -203,8 +195,7 @@ std::string variant_list(const CampaignStatistics& statistics) {
   std::string list;
   const std::size_t count = statistics.variants.size();
   for (std::size_t n = 0; n < std::min(count, kMostListed); ++n) {
-    list += fmt::format("{}{}: {}", n == 0 ? "" : "; ", n + 1,
-                        printable(statistics.variants[n].name, kNameLimit));
+    list += (n == 0 ? "" : "; ") + numbered_name(statistics, n, kNameLimit);
   }
   return list + (count > kMostListed ? "; …" : ".");
 }
@@ -220,19 +211,11 @@ Chart named_chart(const std::string& title, std::vector<std::string> names) {
           .x_includes = {1.0 - kRoom, count + kRoom}};
 }
 
-std::vector<std::string> variant_numbers(const CampaignStatistics& statistics) {
-  std::vector<std::string> numbers;
-  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
-    numbers.push_back(fmt::format("{}", n + 1));
-  }
-  return thinned(std::move(numbers), kMostNumbers);
-}
-
 std::vector<std::string> pair_numbers(const CampaignStatistics& statistics) {
   std::vector<std::string> numbers;
   for (const VariantDifference& difference : statistics.differences) {
-    numbers.push_back(
-        fmt::format("{} − {}", difference.pair.variant + 1, difference.pair.baseline + 1));
+    numbers.push_back(fmt::format("{} − {}", statistics.variants[difference.pair.variant].id,
+                                  statistics.variants[difference.pair.baseline].id));
   }
   return thinned(std::move(numbers), kMostPairs);
 }
@@ -251,7 +234,30 @@ Series rate_series(const CampaignStatistics& statistics, const std::string& name
   return series;
 }
 
+/// Of a single variant: one point an outcome.
+CampaignFigure outcomes_of_one(const CampaignStatistics& statistics) {
+  const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
+  Chart chart = named_chart("What became of the drives (99 % intervals)", {});
+  chart.note = variant_list(statistics);
+  chart.y_label = "share of drives (–)";
+  chart.x_includes = {1.0 - kRoom, static_cast<double>(outcomes.size()) + kRoom};
+  chart.y_includes = {0.0};
+  for (std::size_t n = 0; n < outcomes.size(); ++n) {
+    const EpisodeRate& rate = statistics.variants.front().*outcomes[n].rate;
+    chart.x_names.push_back(outcomes[n].title);
+    chart.series.push_back({.name = outcomes[n].title,
+                            .colour = outcome_colour(outcomes[n].name),
+                            .mark = Mark::kPoints,
+                            .x = {static_cast<double>(n + 1)},
+                            .y = {rate.rate},
+                            .lower = {rate.interval.lower},
+                            .upper = {rate.interval.upper}});
+  }
+  return {.file = kOutcomesFile, .charts = {std::move(chart)}};
+}
+
 CampaignFigure outcome_figure(const CampaignStatistics& statistics) {
+  if (statistics.variants.size() == 1) return outcomes_of_one(statistics);
   const std::vector<std::string> numbers = variant_numbers(statistics);
   Chart reached = named_chart("Drives that reached the target (99 % intervals)", numbers);
   reached.note = variant_list(statistics);
@@ -266,11 +272,11 @@ CampaignFigure outcome_figure(const CampaignStatistics& statistics) {
   const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
   double beside = -0.5 * kBeside * static_cast<double>(outcomes.size() - 2);
   for (std::size_t n = 1; n < outcomes.size(); ++n) {  // all but those that reached it
-    failed.series.push_back(rate_series(statistics, outcomes[n].title, kFailureColours.at(n - 1),
-                                        outcomes[n].rate, beside));
+    failed.series.push_back(rate_series(
+        statistics, outcomes[n].title, outcome_colour(outcomes[n].name), outcomes[n].rate, beside));
     beside += kBeside;
   }
-  return {.file = "outcomes.svg", .charts = {std::move(reached), std::move(failed)}};
+  return {.file = kOutcomesFile, .charts = {std::move(reached), std::move(failed)}};
 }
 
 /// Title and unit of a quantity of paired_quantities.
@@ -285,7 +291,7 @@ std::pair<std::string, std::string> quantity_texts(const std::string& quantity) 
 
 CampaignFigure difference_figure(const CampaignStatistics& statistics) {
   const std::vector<std::string> numbers = pair_numbers(statistics);
-  CampaignFigure figure{.file = "differences.svg", .charts = {}};
+  CampaignFigure figure{.file = kDifferencesFile, .charts = {}};
   for (std::size_t quantity = 0; quantity < paired_quantities().size(); ++quantity) {
     const auto [title, label] = quantity_texts(paired_quantities()[quantity]);
     Chart chart = named_chart(title + ", seed by seed (99 % intervals)", numbers);
@@ -313,6 +319,10 @@ std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistic
   std::vector<CampaignFigure> figures = {outcome_figure(statistics),
                                          reliability_figure(statistics)};
   if (!statistics.differences.empty()) figures.push_back(difference_figure(statistics));
+  std::vector<Chart> distributions = distribution_charts(statistics);
+  if (!distributions.empty()) {
+    figures.push_back({.file = kDistributionsFile, .charts = std::move(distributions)});
+  }
   std::vector<Chart> tradeoff = tradeoff_charts(statistics);
   if (!tradeoff.empty()) figures.push_back({.file = kTradeoffFile, .charts = std::move(tradeoff)});
   return figures;

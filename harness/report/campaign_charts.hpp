@@ -9,7 +9,10 @@
 
 namespace qsmpc::harness {
 
-/// The figure of risk against cost, which has a section of its own on the page.
+inline constexpr const char* kOutcomesFile = "outcomes.svg";
+inline constexpr const char* kReliabilityFile = "reliability.svg";
+inline constexpr const char* kDifferencesFile = "differences.svg";
+inline constexpr const char* kDistributionsFile = "distributions.svg";
 inline constexpr const char* kTradeoffFile = "tradeoff.svg";
 
 /// A figure: charts that stand together, and the name of its file.
@@ -20,7 +23,8 @@ struct CampaignFigure {
 
 /// outcomes.svg (rates by variant), reliability.svg (what was observed against what was certified,
 /// of all variants together and of each of up to 16 variants) and, where variants are compared,
-/// differences.svg (by pair of variants, one chart a quantity), and where the campaign asks for it,
+/// differences.svg (by pair of variants, one chart a quantity); where drives differ,
+/// distributions.svg (of cost, clearance and time); and where the campaign asks for it,
 /// tradeoff.svg (risk against cost, one chart a scenario and plant).
 [[nodiscard]] std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistics);
 

@@ -48,9 +48,8 @@ std::string worst_variant_text(const CampaignStatistics& statistics) {
     return std::isfinite(variant.unsafe.rate) ? variant.unsafe.rate : -1.0;
   });
   if (worst->unsafe.events == 0) return {};
-  return fmt::format("Most often in variant {}: {} % of its drives ({}).",
-                     worst - variants.begin() + 1, format_percent(worst->unsafe.rate),
-                     printable(worst->name, kWorstNameLimit));
+  return fmt::format("Most often in variant {}: {} % of its drives ({}).", worst->id,
+                     format_percent(worst->unsafe.rate), printable(worst->name, kWorstNameLimit));
 }
 
 /// All of its drives from left to right, by what became of them.
@@ -145,7 +144,7 @@ std::string campaign_outcomes(const CampaignStatistics& statistics) {
   for (const ListedOutcome& outcome : outcomes) table.heads.push_back(outcome.title);
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
-    std::vector<std::string> row = {fmt::format("{}: {}", n + 1, escape_html(variant.name)),
+    std::vector<std::string> row = {fmt::format("{}: {}", variant.id, escape_html(variant.name)),
                                     fmt::format("{}", variant.done), bar_html(variant, outcomes)};
     for (const ListedOutcome& outcome : outcomes) {
       row.push_back(percent_html(variant.*outcome.rate, is_unsafe(outcome)));

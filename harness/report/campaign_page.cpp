@@ -9,6 +9,7 @@
 
 #include "harness/figures/svg_figure.hpp"
 #include "harness/report/campaign_charts.hpp"
+#include "harness/report/campaign_drives.hpp"
 #include "harness/report/campaign_outcomes.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/report/table_page.hpp"
@@ -24,7 +25,8 @@ constexpr std::size_t kNinetyFifth = 5;
 
 /// The head of a variant's row.
 std::string variant_head(const CampaignStatistics& statistics, std::size_t variant) {
-  return fmt::format("{}: {}", variant + 1, escape_html(statistics.variants[variant].name));
+  return fmt::format("{}: {}", statistics.variants[variant].id,
+                     escape_html(statistics.variants[variant].name));
 }
 
 std::int64_t exceeded_bins(const std::vector<CalibrationBin>& bins) {
@@ -89,6 +91,14 @@ std::string spread_table(const CampaignStatistics& statistics) {
          table_html(table);
 }
 
+/// Why some certificates are no bounds; empty where all are.
+std::string no_bound_words(const CampaignStatistics& statistics) {
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (!variant.no_bound.empty()) return " No bound: " + variant.no_bound + ".";
+  }
+  return {};
+}
+
 std::string certificates_table(const CampaignStatistics& statistics) {
   PageTable table{.label = "Certificates of the next step, by variant",
                   .heads = {"variant", "periods", "unsafe", "observed", "certified", "p",
@@ -97,15 +107,18 @@ std::string certificates_table(const CampaignStatistics& statistics) {
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
     const std::int64_t exceeded = exceeded_bins(variant.calibration);
+    const std::string certified = number_html(variant.certified_step_rate()) +
+                                  (variant.no_bound.empty() ? "" : " <strong>no bound</strong>");
     table.rows.push_back({variant_head(statistics, n), fmt::format("{}", variant.periods),
                           fmt::format("{}", variant.unsafe_periods),
-                          number_html(variant.unsafe_step_rate()),
-                          number_html(variant.certified_step_rate()), number_html(variant.p_value),
+                          number_html(variant.unsafe_step_rate()), certified,
+                          number_html(variant.p_value),
                           exceeded > 0 ? fmt::format("<strong>{}</strong>", exceeded) : "0",
                           number_html(variant.ocp_ms.median), number_html(variant.ocp_ms.p99)});
   }
   return section_head("Certificates of the next step, and planning",
-                      "p is small where more periods end unsafe than certified for them.") +
+                      "p is small where more periods end unsafe than certified for them." +
+                          no_bound_words(statistics)) +
          verdict_html(certificate_verdict(statistics)) + table_html(table);
 }
 
@@ -116,8 +129,9 @@ std::string differences_table(const CampaignStatistics& statistics) {
                   .rows = {}};
   for (const std::string& quantity : paired_quantities()) table.heads.push_back(quantity);
   for (const VariantDifference& difference : statistics.differences) {
-    std::vector<std::string> row = {
-        fmt::format("{} less {}", difference.pair.variant + 1, difference.pair.baseline + 1)};
+    std::vector<std::string> row = {fmt::format("{} less {}",
+                                                statistics.variants[difference.pair.variant].id,
+                                                statistics.variants[difference.pair.baseline].id)};
     for (const MeanDifference& mean : difference.quantities) {
       row.push_back(number_html(mean.mean) + "<br/>" + interval_html(mean.interval));
     }
@@ -184,13 +198,47 @@ std::string worst_table(const CampaignStatistics& statistics,
          table_html(table);
 }
 
-std::string figures(const CampaignStatistics& statistics) {
-  std::string html = "<h2>Figures</h2>\n<div class=\"grid\">\n";
-  for (const CampaignFigure& figure : campaign_figures(statistics)) {
-    if (figure.file == kTradeoffFile) continue;
-    for (const Chart& chart : figure.charts) html += panel_figure(chart);
-  }
+/// Panels beside each other, such that no row has a gap if possible; nothing of none.
+std::string grid(const std::vector<Panel>& panels) {
+  if (panels.empty()) return {};
+  std::string html =
+      panels.size() % 3 == 0 ? "<div class=\"grid thirds\">\n" : "<div class=\"grid\">\n";
+  for (const Panel& panel : panels) html += panel_figure(panel);
   return html + "</div>\n";
+}
+
+/// The charts of one figure, without those that would show a single point.
+std::vector<Panel> charts_of(const std::vector<CampaignFigure>& figures, const char* file) {
+  std::vector<Panel> panels;
+  for (const CampaignFigure& figure : figures) {
+    if (figure.file != file) continue;
+    for (const Chart& chart : figure.charts) {
+      if (has_places(chart)) panels.emplace_back(chart);
+    }
+  }
+  return panels;
+}
+
+std::string rates_section(const std::vector<CampaignFigure>& figures) {
+  const std::string charts = grid(charts_of(figures, kOutcomesFile));
+  return charts.empty() ? charts : section_head("Outcomes with their intervals", {}) + charts;
+}
+
+/// The maps, and after them how cost, clearance and time are distributed; beside a single map.
+std::string drives_section(const CampaignStatistics& statistics,
+                           const std::vector<CampaignFigure>& figures) {
+  const DriveMaps drives = drive_maps(statistics);
+  const std::vector<Panel> distributions = charts_of(figures, kDistributionsFile);
+  std::vector<Panel> panels(drives.maps.begin(), drives.maps.end());
+  const bool share_a_grid = panels.size() == 1;
+  if (share_a_grid) panels.insert(panels.end(), distributions.begin(), distributions.end());
+  std::string html;
+  if (!panels.empty() || !drives.notes.empty()) html += section_head("Where they drove", {});
+  for (const std::string& note : drives.notes) {
+    html += "<p class=\"note\">" + escape_html(note) + "</p>\n";
+  }
+  html += grid(panels) + spread_table(statistics);
+  return share_a_grid ? html : html + grid(distributions);
 }
 
 }  // namespace
@@ -198,13 +246,16 @@ std::string figures(const CampaignStatistics& statistics) {
 std::string campaign_page(const CampaignStatistics& statistics,
                           const std::vector<ListedEpisode>& worst) {
   const std::string name = escape_html(statistics.campaign.name);
+  const std::vector<CampaignFigure> figures = campaign_figures(statistics);
   return framed_page(
       {.title = statistics.campaign.name,
        .version = statistics.campaign.version,
        .kind = PageKind::kTables},
       "<h1>" + name + "</h1>\n" + kicker(statistics) + campaign_outcomes(statistics) +
-          tradeoff_section(statistics) + spread_table(statistics) + certificates_table(statistics) +
-          differences_table(statistics) + worst_table(statistics, worst) + figures(statistics));
+          drives_section(statistics, figures) + worst_table(statistics, worst) +
+          tradeoff_section(statistics) + certificates_table(statistics) +
+          grid(charts_of(figures, kReliabilityFile)) + differences_table(statistics) +
+          grid(charts_of(figures, kDifferencesFile)) + rates_section(figures));
 }
 
 }  // namespace qsmpc::harness

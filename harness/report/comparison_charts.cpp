@@ -13,6 +13,7 @@ namespace {
 constexpr const char* kStageLabel = "stage";
 constexpr double kLeastResidual = 1e-9;      // what is below is drawn at the foot of the axis
 constexpr double kLeastProbability = 1e-10;  // the same
+constexpr std::ptrdiff_t kMostWithUnit = 4;  // states whose units have room below the axis
 constexpr double kSpread = 0.24;  // left and right of a state's name, of what is drawn at it
 
 /// Colours of the plants, blue left to what they are compared with.
@@ -44,7 +45,10 @@ ComparisonFigure residual_figure(const Comparison& comparison,
               .y_label = "root mean square (unit of the state)",
               .y_scale = Scale::kLog,
               .least_shown = kLeastResidual};
-  for (const models::Coordinate& state : system.states) chart.x_names.push_back(with_unit(state));
+  for (const models::Coordinate& state : system.states) {
+    const bool has_room = std::ssize(system.states) <= kMostWithUnit;
+    chart.x_names.push_back(has_room ? with_unit(state) : state.name);
+  }
   chart.x_includes = {0.5, static_cast<double>(system.states.size()) + 0.5};
   chart.series.push_back(
       by_coordinate("disturbance, for scale", kBlue,
@@ -122,14 +126,17 @@ ComparisonFigure w2_figure(const Comparison& comparison) {
   return {.file = "w2.svg", .charts = {std::move(chart)}};
 }
 
-/// A stage at which paths are unsafe is a point with its interval, another one an upper limit.
+/// A point with its interval for each stage, at 0 where no path is unsafe.
 void add_observed(const Comparison& comparison, const PlantComparison& plant, Chart& chart) {
   Series seen{.name = "observed, 99 % interval", .colour = kVermilion, .mark = Mark::kPoints};
-  Series unseen{.name = "none observed: at most", .colour = kVermilion, .mark = Mark::kLimits};
+  Series unseen{
+      .name = "none observed, 99 % interval", .colour = kVermilion, .mark = Mark::kPoints};
   for (const HorizonStage& stage : plant.horizon) {
     if (stage.unsafe == 0) {
       unseen.x.push_back(stage.stage);
-      unseen.y.push_back(stage.unsafe_limits.upper);
+      unseen.y.push_back(0.0);
+      unseen.lower.push_back(0.0);
+      unseen.upper.push_back(stage.unsafe_limits.upper);
       continue;
     }
     seen.x.push_back(stage.stage);
@@ -157,6 +164,7 @@ Chart certificate_chart(const Comparison& comparison, const PlantComparison& pla
               .y_label = "probability (–)",
               .y_scale = Scale::kLog,
               .least_shown = kLeastProbability,
+              .y_has_zero = true,
               .x_includes = {0.0},
               .y_includes = {1.0}};
   chart.series.push_back(

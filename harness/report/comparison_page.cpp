@@ -13,11 +13,17 @@
 #include "harness/report/comparison_verdict.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/report/table_page.hpp"
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
 
 namespace qsmpc::harness {
 namespace {
+
+/// The head of what is certified.
+const char* certified_head(const Comparison& comparison) {
+  return why_no_bound(comparison.scenario).empty() ? "certified" : "certified: no bound";
+}
 
 std::string kicker(const Comparison& comparison) {
   const Scenario& scenario = comparison.scenario;
@@ -67,44 +73,70 @@ std::string closed_loop_section(const Comparison& comparison) {
          table_html(table);
 }
 
+std::string state_head(const models::Coordinate& state) {
+  return escape_html(state.unit.empty() ? state.name : state.name + " (" + state.unit + ")");
+}
+
 PageTable residual_table(const Comparison& comparison, const PlantComparison& plant,
                          const models::SystemDescription& system) {
   PageTable table{.label = "One period, by state: " + plant.name,
-                  .heads = {"state", "root mean square", "mean", "disturbance", "rounding",
+                  .heads = {"state", "root mean square", "mean", "disturbance",
                             "correlation with the next", "p, no memory"},
                   .rows = {}};
-  for (const models::Coordinate& state : system.states) {
-    table.heads.push_back("covariance with " + escape_html(state.name));
-  }
   const ResidualStatistics& own = plant.one_step;
   for (Eigen::Index i = 0; i < own.rmse.size(); ++i) {
-    const models::Coordinate& state = system.states[static_cast<std::size_t>(i)];
-    std::vector<std::string> row = {
-        escape_html(state.unit.empty() ? state.name : state.name + " (" + state.unit + ")"),
-        number_html(own.rmse[i]),
-        plus_minus(own.mean[i], own.mean_deviation[i]),
-        number_html(std::sqrt(comparison.scenario.disturbance.covariance(i, i))),
-        number_html(own.rounding[i]),
-        number_html(own.whiteness.lag1[i]),
-        number_html(own.whiteness.p_value[i])};
-    for (Eigen::Index j = 0; j < own.covariance.cols(); ++j) {
-      row.push_back(number_html(own.covariance(i, j)));
-    }
+    table.rows.push_back({state_head(system.states[static_cast<std::size_t>(i)]),
+                          number_html(own.rmse[i]), plus_minus(own.mean[i], own.mean_deviation[i]),
+                          number_html(std::sqrt(comparison.scenario.disturbance.covariance(i, i))),
+                          number_html(own.whiteness.lag1[i]),
+                          number_html(own.whiteness.p_value[i])});
+  }
+  return table;
+}
+
+PageTable covariance_table(const PlantComparison& plant, const models::SystemDescription& system) {
+  PageTable table{.label = "Covariance of the residual: " + plant.name, .heads = {""}, .rows = {}};
+  const Eigen::MatrixXd& covariance = plant.one_step.covariance;
+  for (Eigen::Index i = 0; i < covariance.rows(); ++i) {
+    const std::string& name = system.states[static_cast<std::size_t>(i)].name;
+    table.heads.push_back(escape_html(name));
+    std::vector<std::string> row = {escape_html(name)};
+    for (const double value : covariance.row(i)) row.push_back(number_html(value));
     table.rows.push_back(std::move(row));
   }
   return table;
 }
 
+/// What a plant adds in a period: tables, or one sentence where all of it is rounding.
+std::string residuals_of(const Comparison& comparison, const PlantComparison& plant,
+                         const models::SystemDescription& system) {
+  if (is_the_model(plant)) {
+    return fmt::format(
+        "<p>It is the model: what differs is rounding, of at most {} in any state (root mean "
+        "square).</p>\n",
+        number_html(plant.one_step.rmse.maxCoeff()));
+  }
+  return table_html(residual_table(comparison, plant, system)) +
+         fmt::format(
+             "<details class=\"more\">\n<summary>Covariance of the residual: {}</summary>\n"
+             "{}</details>\n",
+             escape_html(plant.name), table_html(covariance_table(plant, system)));
+}
+
 std::string figures(const ComparisonFigure& figure) {
-  std::string html = "<div class=\"grid\">\n";
+  std::string html =
+      figure.charts.size() % 3 == 0 ? "<div class=\"grid thirds\">\n" : "<div class=\"grid\">\n";
   for (const Chart& chart : figure.charts) html += panel_figure(chart);
   return html + "</div>\n";
 }
 
 std::string name_head(const PlantComparison& plant) {
-  std::string html = "<h3 class=\"name\">" + escape_html(plant.name);
-  if (is_the_model(plant)) html += " <span class=\"soft\">– the model, but for rounding</span>";
-  return html + "</h3>\n";
+  return "<h3 class=\"name\">" + escape_html(plant.name) + "</h3>\n";
+}
+
+/// Whether some plant differs from the model by more than rounding, which charts then show.
+bool has_mismatch(const Comparison& comparison) {
+  return !std::ranges::all_of(comparison.plants, is_the_model);
 }
 
 std::string residual_section(const Comparison& comparison, const models::SystemDescription& system,
@@ -112,12 +144,11 @@ std::string residual_section(const Comparison& comparison, const models::SystemD
   std::string html = section_head(
       "One period: what the plant adds to model and disturbance",
       "Over all periods of all episodes. Mean with its standard error; the disturbance’s standard "
-      "deviation for scale; a root mean square below “rounding” is rounding. p is small where a "
-      "residual says something of the next ones.");
+      "deviation for scale. p is small where a residual says something of the next ones.");
   for (const PlantComparison& plant : comparison.plants) {
-    html += name_head(plant) + table_html(residual_table(comparison, plant, system));
+    html += name_head(plant) + residuals_of(comparison, plant, system);
   }
-  return html + figures(figure);
+  return has_mismatch(comparison) ? html + figures(figure) : html;
 }
 
 /// Whether the certificate in force at the stage at place `k` is exceeded.
@@ -131,27 +162,19 @@ std::string rate_html(const Comparison& comparison, const HorizonStage& stage) {
          " " + interval_html(stage.unsafe_limits);
 }
 
-PageTable stage_table(const Comparison& comparison, const PlantComparison& plant,
-                      const models::SystemDescription& system) {
-  PageTable table{
-      .label = "Along the plan, by stage: " + plant.name, .heads = {"stage"}, .rows = {}};
-  for (const models::Coordinate& state : system.states) {
-    table.heads.push_back("divergence, " + escape_html(state.name));
-  }
-  for (const char* head : {"W₂ to the model, at most", "W₂", "floor of W₂", "certified"}) {
-    table.heads.emplace_back(head);
-  }
+PageTable stage_table(const Comparison& comparison, const PlantComparison& plant) {
+  PageTable table{.label = "Along the plan, by stage: " + plant.name,
+                  .heads = {"stage", "W₂ to the model, at most", "W₂", "floor of W₂",
+                            certified_head(comparison)},
+                  .rows = {}};
   if (comparison.with_error) table.heads.emplace_back("with model error");
   table.heads.emplace_back("observed, 99 % interval");
   for (std::size_t k = 0; k < plant.horizon.size(); ++k) {
     const HorizonStage& stage = plant.horizon[k];
     const W2Floor& floor = comparison.floors[static_cast<std::size_t>(stage.stage)];
-    std::vector<std::string> row = {fmt::format("{}", stage.stage)};
-    for (const double value : stage.divergence_rmse) row.push_back(number_html(value));
-    row.push_back(number_html(stage.w2_to_model()));
-    row.push_back(number_html(stage.w2));
-    row.push_back(plus_minus(floor.mean, floor.deviation));
-    row.push_back(number_html(comparison.certificates[k].value));
+    std::vector<std::string> row = {
+        fmt::format("{}", stage.stage), number_html(stage.w2_to_model()), number_html(stage.w2),
+        plus_minus(floor.mean, floor.deviation), number_html(comparison.certificates[k].value)};
     if (comparison.with_error) row.push_back(number_html((*comparison.with_error)[k].value));
     row.push_back(rate_html(comparison, stage) +
                   (is_exceeded(plant, k) ? " <strong>exceeded</strong>" : ""));
@@ -160,17 +183,45 @@ PageTable stage_table(const Comparison& comparison, const PlantComparison& plant
   return table;
 }
 
+PageTable divergence_table(const PlantComparison& plant, const models::SystemDescription& system) {
+  PageTable table{.label = "Divergence from the model, by stage: " + plant.name,
+                  .heads = {"stage"},
+                  .rows = {}};
+  for (const models::Coordinate& state : system.states) table.heads.push_back(state_head(state));
+  for (const HorizonStage& stage : plant.horizon) {
+    std::vector<std::string> row = {fmt::format("{}", stage.stage)};
+    for (const double value : stage.divergence_rmse) row.push_back(number_html(value));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+std::string stages_html(const Comparison& comparison, const PlantComparison& plant,
+                        const models::SystemDescription& system) {
+  std::string html =
+      fmt::format("<details>\n<summary>Numbers by stage: {}</summary>\n", escape_html(plant.name)) +
+      table_html(stage_table(comparison, plant));
+  if (!is_the_model(plant)) {
+    html += "<p class=\"note\">Divergence from the model, root mean square.</p>\n" +
+            table_html(divergence_table(plant, system));
+  }
+  return html + "</details>\n";
+}
+
 std::string plan_section(const Comparison& comparison, const models::SystemDescription& system,
                          const std::vector<ComparisonFigure>& all) {
   std::string html =
       section_head("Along the plan: divergence, W₂ and its floor",
                    "Paths of each plant under one plan from the initial belief, with the same "
                    "initial states and disturbances as the model’s.");
-  html += figures(all[kDivergenceFigure]) + figures(all[kW2Figure]);
+  ComparisonFigure figure = all[kW2Figure];
+  if (has_mismatch(comparison)) {
+    const std::vector<Chart>& divergence = all[kDivergenceFigure].charts;
+    figure.charts.insert(figure.charts.end(), divergence.begin(), divergence.end());
+  }
+  html += figures(figure);
   for (const PlantComparison& plant : comparison.plants) {
-    html +=
-        fmt::format("<details>\n<summary>Numbers by stage: {}</summary>\n{}</details>\n",
-                    escape_html(plant.name), table_html(stage_table(comparison, plant, system)));
+    html += stages_html(comparison, plant, system);
   }
   return html;
 }
@@ -181,11 +232,12 @@ const HorizonStage& worst_stage(const PlantComparison& plant) {
 }
 
 std::string certificate_section(const Comparison& comparison, const ComparisonFigure& figure) {
-  PageTable table{.label = "Certificates against what was observed, by plant",
-                  .heads = {"plant", "stages exceeded", "worst stage", "certified there",
-                            "observed there, 99 % interval", "paths broken", "periods",
-                            "ended unsafe", "certified", "p", "exceeded in closed loop"},
-                  .rows = {}};
+  PageTable table{
+      .label = "Certificates against what was observed, by plant",
+      .heads = {"plant", "stages exceeded", "worst stage", "certified there",
+                "observed there, 99 % interval", "paths broken", "periods", "ended unsafe",
+                certified_head(comparison), "p", "exceeded in closed loop"},
+      .rows = {}};
   for (const PlantComparison& plant : comparison.plants) {
     const HorizonStage& worst = worst_stage(plant);
     const ClosedLoop& loop = plant.closed_loop;
@@ -224,6 +276,7 @@ std::string comparison_page(const Comparison& comparison) {
       "<h1>" + escape_html(comparison.scenario.name) + ": plants beside the model</h1>\n";
   html += kicker(comparison);
   if (const auto unsafe = unsafe_verdict(comparison)) html += verdict_html(*unsafe);
+  if (const auto no_bound = no_bound_verdict(comparison)) html += verdict_html(*no_bound);
   html += verdict_html(comparison_verdict(comparison));
   html += closed_loop_section(comparison);
   html += certificate_section(comparison, all[kCertificateFigure]);

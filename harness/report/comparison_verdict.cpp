@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 
@@ -96,6 +97,15 @@ std::optional<PageVerdict> unsafe_verdict(const Comparison& comparison) {
   if (unsafe == 0) return std::nullopt;
   verdict.title = fmt::format("{} of {} drives were unsafe", unsafe, drives);
   return verdict;
+}
+
+std::optional<PageVerdict> no_bound_verdict(const Comparison& comparison) {
+  const std::string why = why_no_bound(comparison.scenario);
+  if (why.empty()) return std::nullopt;
+  return PageVerdict{.title = "No certificate is a bound here",
+                     .sentences = {"Certificates hold for a policy that sees the state, as along "
+                                   "the plan; " +
+                                   why + "."}};
 }
 
 PageVerdict comparison_verdict(const Comparison& comparison) {

@@ -30,6 +30,9 @@ inline constexpr double kExceededBelow = 0.01;
 /// plants, and which plant is farthest from the model.
 [[nodiscard]] PageVerdict comparison_verdict(const Comparison& comparison);
 
+/// That no certificate is a bound, and why; none where they are.
+[[nodiscard]] std::optional<PageVerdict> no_bound_verdict(const Comparison& comparison);
+
 /// That drives were unsafe, and on which plants; none where all were safe.
 [[nodiscard]] std::optional<PageVerdict> unsafe_verdict(const Comparison& comparison);
 

@@ -36,6 +36,54 @@ Series series_of(const Trace& trace, const std::string& name, int colour, const 
   return series;
 }
 
+/// What is drawn, limits aside.
+Axis extent_of(const Chart& chart) {
+  std::vector<double> values = chart.y_includes;
+  for (const Series& series : chart.series) {
+    values.insert(values.end(), series.y.begin(), series.y.end());
+  }
+  std::erase_if(values, [](double value) { return !is_drawable(value); });
+  if (values.empty()) return {.lower = 0.0, .upper = 0.0};
+  const auto [lower, upper] = std::ranges::minmax(values);
+  return {.lower = lower, .upper = upper};
+}
+
+/// Whether an axis with `limit` on it would leave less than a quarter of its length to `drawn`.
+bool is_beyond(const Axis& drawn, double limit) {
+  constexpr double kMostStretch = 4.0;
+  const double span = drawn.upper - drawn.lower;
+  const double needed = std::max(drawn.upper, limit) - std::min(drawn.lower, limit);
+  return span > 0.0 && needed > kMostStretch * span;
+}
+
+void add_sentence(const std::string& sentence, std::string& note) {
+  note += (note.empty() ? "" : " ") + sentence;
+}
+
+/// Says limits that are far beyond what is drawn, in `unit`, in place of drawing them.
+void say_limits_beyond_the_scale(const std::string& unit, Chart& chart) {
+  const Axis drawn = extent_of(chart);
+  std::string said;
+  std::vector<Rule> kept;
+  std::string name;
+  bool is_named = false;  // the group's name stands already where it is said, or drawn
+  for (const Rule& rule : chart.rules) {
+    if (!rule.name.empty()) name = rule.name;
+    if (is_drawable(rule.value) && is_beyond(drawn, rule.value)) {
+      const bool goes_on = rule.name.empty() && !said.empty();
+      said +=
+          (said.empty() ? "" : ", ") + (goes_on ? "" : name + " ") + format_short(rule.value, 4);
+    } else {
+      is_named = is_named && rule.name.empty();
+      kept.push_back({.name = is_named ? "" : name, .value = rule.value});
+      is_named = true;
+    }
+  }
+  chart.rules = std::move(kept);
+  if (said.empty()) return;
+  add_sentence("Beyond the scale: " + said + (unit.empty() ? "." : " " + unit + "."), chart.note);
+}
+
 Chart input_chart(const EpisodeView& view, Eigen::Index input) {
   const Trace& trace = view.trace();
   const models::Coordinate& coordinate = view.system().inputs[static_cast<std::size_t>(input)];
@@ -54,6 +102,7 @@ Chart input_chart(const EpisodeView& view, Eigen::Index input) {
               .series = {std::move(series)}};
   if (input < controller.input_lower.size() && input < controller.input_upper.size()) {
     chart.rules = {{"bounds", controller.input_lower[input]}, {"", controller.input_upper[input]}};
+    say_limits_beyond_the_scale(coordinate.unit, chart);
   }
   return chart;
 }
@@ -86,7 +135,9 @@ Chart certificate_chart(const EpisodeView& view) {
     }
     return largest;
   };
-  Chart chart{.title = "Certificates: bounds of the probability of being unsafe",
+  const bool holds = view.summary().no_bound.empty();
+  Chart chart{.title = holds ? "Certificates: bounds of the probability of being unsafe"
+                             : "Certificates, no bounds: see above",
               .note = "What is below the axis, 0 included, is drawn at its foot.",
               .x_label = kTimeLabel,
               .y_label = "probability (–)",
@@ -205,6 +256,7 @@ Chart timing_chart(const Trace& trace) {
         {"deadline of a plan", kMillisecondsPerSecond * trace.scenario.controller.deadline});
   }
   if (!fallbacks.x.empty()) chart.series.push_back(std::move(fallbacks));
+  say_limits_beyond_the_scale("ms", chart);
   return chart;
 }
 
@@ -233,17 +285,24 @@ Chart solve_time_histogram(const Trace& trace) {
     series.y.push_back(counts[bin]);
   }
   const double highest = *std::max_element(counts.begin(), counts.end());
-  Chart chart{
-      .title = "Solve times: how often",
-      .note = fmt::format("{} steps in {} equal bins.", trace.steps.size(), kBins),
-      .x_label = "wall clock (ms)",
-      .y_label = "steps (–)",
-      .x_includes = {0.0},
-      .y_includes = {0.0},
-      .series = {std::move(series), upright("control period", kVermilion, period, highest)}};
-  if (std::isfinite(deadline)) {
-    chart.series.push_back(upright("deadline of a plan", kOrange, deadline, highest));
-  }
+  Chart chart{.title = "Solve times: how often",
+              .note = fmt::format("{} steps in {} equal bins.", trace.steps.size(), kBins),
+              .x_label = "wall clock (ms)",
+              .y_label = "steps (–)",
+              .x_includes = {0.0},
+              .y_includes = {0.0},
+              .series = {std::move(series)}};
+  const auto add_limit = [&](const char* name, int colour, double at) {
+    if (!std::isfinite(at)) return;
+    if (is_beyond({.lower = 0.0, .upper = longest}, at)) {
+      add_sentence(fmt::format("Beyond the scale: {} {} ms.", name, format_short(at, 4)),
+                   chart.note);
+    } else {
+      chart.series.push_back(upright(name, colour, at, highest));
+    }
+  };
+  add_limit("control period", kVermilion, period);
+  add_limit("deadline of a plan", kOrange, deadline);
   return chart;
 }
 

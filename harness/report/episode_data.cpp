@@ -10,9 +10,10 @@
 
 #include "controller/certification/certificate.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/packed_numbers.hpp"
-#include "harness/text/json_text.hpp"
+#include "harness/report/script_json.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -34,6 +35,7 @@ class EpisodeData {
       : view_(view),
         trace_(view.trace()),
         system_(view.system()),
+        axes_(map_axes(view.system()).value_or(MapAxes{.x = -1, .y = -1})),
         parts_(view.parts()),
         horizon_(certified_stages(parts_)) {}
 
@@ -46,6 +48,8 @@ class EpisodeData {
                  {"solved", parts_.status},
                  {"times", of_steps([](const StepRecord& step) { return step.time; })},
                  {"clearance", clearances()},
+                 {"clearanceUnit", view_.clearance_unit()},
+                 {"holds", view_.summary().no_bound.empty()},
                  {"solve", of_steps([](const StepRecord& step) { return step.timing.total; })},
                  {"cost", cost_parts()},
                  {"inputs", inputs()},
@@ -152,9 +156,10 @@ class EpisodeData {
   }
 
   void add_pose(const Eigen::VectorXd& state, std::vector<double>& values) const {
-    values.push_back(entry(state, system_.position_x));
-    values.push_back(entry(state, system_.position_y));
-    values.push_back(system_.heading < 0 ? kNotANumber : entry(state, system_.heading));
+    values.push_back(entry(state, axes_.x));
+    values.push_back(entry(state, axes_.y));
+    values.push_back(system_.heading < 0 || !axes_.is_plane ? kNotANumber
+                                                            : entry(state, system_.heading));
   }
 
   [[nodiscard]] std::string poses() const {
@@ -183,8 +188,8 @@ class EpisodeData {
         const bool known = stage < step.plan_states.cols();
         const Eigen::VectorXd state =
             known ? Eigen::VectorXd(step.plan_states.col(stage)) : Eigen::VectorXd();
-        values.push_back(entry(state, system_.position_x));
-        values.push_back(entry(state, system_.position_y));
+        values.push_back(entry(state, axes_.x));
+        values.push_back(entry(state, axes_.y));
       }
     }
     return packed_floats(values);
@@ -196,8 +201,8 @@ class EpisodeData {
     if (stage.size() == 0 || !(weight > 0.0)) {
       return {kNotANumber, kNotANumber, kNotANumber, kNotANumber, kNotANumber};
     }
-    const Eigen::ArrayXd x = stage.locations.row(system_.position_x).transpose();
-    const Eigen::ArrayXd y = stage.locations.row(system_.position_y).transpose();
+    const Eigen::ArrayXd x = stage.locations.row(axes_.x).transpose();
+    const Eigen::ArrayXd y = stage.locations.row(axes_.y).transpose();
     const Eigen::ArrayXd w = stage.weights.array() / weight;
     const double x_mean = (w * x).sum();
     const double y_mean = (w * y).sum();
@@ -250,8 +255,8 @@ class EpisodeData {
         const double heaviest = measure.weights.maxCoeff();
         for (Eigen::Index i = 0; i < measure.size(); i += every) {
           const Eigen::VectorXd state = measure.locations.col(i);
-          places.push_back(place(state[system_.position_x], area.x_lower, area.x_upper));
-          places.push_back(place(state[system_.position_y], area.y_lower, area.y_upper));
+          places.push_back(place(state[axes_.x], area.x_lower, area.x_upper));
+          places.push_back(place(state[axes_.y], area.y_lower, area.y_upper));
           const double root = std::sqrt(std::max(measure.weights[i] / heaviest, 0.0));
           sizes.push_back(root <= 1.0 ? static_cast<std::uint8_t>(std::lround(255.0 * root)) : 0);
         }
@@ -272,28 +277,10 @@ class EpisodeData {
   const EpisodeView& view_;
   const Trace& trace_;
   const models::SystemDescription& system_;
+  MapAxes axes_;
   controller::DecisionParts parts_;
   int horizon_;  // stages with a certificate
 };
-
-/// Nothing in it can end the element that it stands in.
-std::string for_script(const Json& json) {
-  const std::string text = compact_json_text(json);
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    if (c == '<') {
-      safe += "\\u003c";
-    } else if (c == '>') {
-      safe += "\\u003e";
-    } else if (c == '&') {
-      safe += "\\u0026";
-    } else {
-      safe += c;
-    }
-  }
-  return safe;
-}
 
 }  // namespace
 
@@ -304,7 +291,7 @@ std::string episode_data(const EpisodeView& view, const PageScene& scene) {
   for (const Chart& chart : scene.charts) json["charts"].push_back(chart_data(chart));
   json["video"] = {{"from", scene.video_from}, {"speed", scene.video_speed}};
   if (scene.map != nullptr) json["map"] = data.plane(*scene.map);
-  return for_script(json);
+  return script_json(json);
 }
 
 }  // namespace qsmpc::harness

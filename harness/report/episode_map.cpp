@@ -1,6 +1,8 @@
 #include "harness/report/episode_map.hpp"
 
 #include <algorithm>
+#include <cctype>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -17,6 +19,22 @@ constexpr int kSnapshotPeriod = 10;  // steps from one snapshot to the next, at 
 constexpr int kMostSnapshots = 20;
 constexpr int kBeliefColour = kBlue;
 constexpr int kLastStageColour = kOrange;
+
+std::string words_of(const models::Coordinate& state) {
+  std::string words = state.name;
+  std::replace(words.begin(), words.end(), '_', ' ');
+  return words;
+}
+
+// What the axes are: "Map", or e.g. "Position and pole angle".
+std::string map_words(const models::SystemDescription& system) {
+  const MapAxes axes = map_axes(system).value();
+  if (axes.is_plane) return "Map";
+  std::string words = words_of(system.states[static_cast<std::size_t>(axes.x)]) + " and " +
+                      words_of(system.states[static_cast<std::size_t>(axes.y)]);
+  words[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(words[0])));
+  return words;
+}
 
 class EpisodeMap {
  public:
@@ -67,9 +85,10 @@ class EpisodeMap {
 
   [[nodiscard]] PlaneMap ground() const {
     PlaneMap map = ground_map(trace_.scenario, system_);
+    const std::string name = map_words(system_);
     map.title = trace_.steps.empty()
-                    ? "Map"
-                    : fmt::format("Map: belief and plan every {} steps", snapshot_period());
+                    ? name
+                    : fmt::format("{}: belief and plan every {} steps", name, snapshot_period());
     return map;
   }
 
@@ -137,7 +156,7 @@ class EpisodeMap {
 }  // namespace
 
 std::optional<EpisodeMaps> episode_maps(const EpisodeView& view) {
-  if (!has_position(view.system())) return std::nullopt;
+  if (!map_axes(view.system())) return std::nullopt;
   return EpisodeMap(view).maps();
 }
 

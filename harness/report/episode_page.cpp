@@ -12,6 +12,7 @@
 #include "harness/report/episode_charts.hpp"
 #include "harness/report/episode_data.hpp"
 #include "harness/report/episode_map.hpp"
+#include "harness/report/episode_scene.hpp"
 #include "harness/report/key_figures.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/text/html.hpp"
@@ -35,7 +36,7 @@ constexpr std::string_view kMeaningWithoutPlan =
     "not covered; it is measured below.</p>\n</section>\n";
 
 constexpr std::string_view kMismatchNote =
-    "<h2>Mismatch of the plant against the planner’s model</h2>\n"
+    "<h3>Mismatch of the plant against the planner’s model</h3>\n"
     "<p class=\"note\">What is left of the plant’s next state after the model’s prediction and the "
     "disturbance are taken away, over all steps. An exact model has zeros.</p>\n";
 
@@ -77,7 +78,7 @@ std::string layer_box(std::string_view layer, std::string_view words) {
 std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts) {
   if (map == nullptr) return {};
   std::string html =
-      "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The plane at this moment"
+      "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The map at this moment"
       "</figcaption>\n<p class=\"note\">The way driven, from <span class=\"near\">near</span> the "
       "unsafe set to <span class=\"far\">1 m and more</span> from it";
   html += parts.stages > 0 ? kMapOfPlans : "; the vehicle";
@@ -89,6 +90,35 @@ std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts
   if (parts.stages > 0) html += layer_box("plan", "plan") + layer_box("ghost", "model’s vehicle");
   html += "<label><input type=\"checkbox\" id=\"near-view\"/>near view</label>";
   return html + "</div>\n" + map_drawing(*map) + "</figure>\n";
+}
+
+std::string scene_box(std::string_view layer, std::string_view words) {
+  return fmt::format(
+      "<label><input type=\"checkbox\" checked=\"checked\" data-scene=\"{}\"/>{}</label>", layer,
+      words);
+}
+
+/// The view in three dimensions, which the scene's script fills, or why there is none.
+std::string scene_figure(const EpisodeScene& scene, bool in_plane,
+                         const controller::DecisionParts& parts) {
+  const std::string note =
+      scene.note.empty() ? "" : "<p class=\"note\">" + escape_html(scene.note) + "</p>\n";
+  if (scene.data.empty()) return note;
+  std::string html =
+      "<figure class=\"card\" id=\"scene\" hidden>\n<figcaption>The drive in three dimensions"
+      "</figcaption>\n<p class=\"note how\">Drag to turn it, with the right button or two fingers "
+      "to move it. Once clicked, the wheel and the keys plus and minus bring it nearer and "
+      "farther, "
+      "and the arrow keys turn it.</p>\n"
+      "<div class=\"layers\">" +
+      scene_box("follow", "follow the vehicle");
+  if (in_plane) {
+    if (parts.particles) html += scene_box("particles", "particles");
+    if (parts.stages > 0) html += scene_box("plan", "plan") + scene_box("ghost", "model’s vehicle");
+    html += scene_box("way", "way driven");
+  }
+  return html + "<button type=\"button\" class=\"whole\">Show all of it</button></div>\n" +
+         "<div class=\"scene\"></div>\n" + note + "</figure>\n";
 }
 
 std::string player(const Trace& trace) {
@@ -114,27 +144,48 @@ constexpr std::string_view kWhy =
 
 constexpr std::string_view kStageCharts =
     "<figure class=\"card\" id=\"stage-certificates\" hidden>\n<figcaption>Certificates of this "
-    "plan, stage by stage</figcaption>\n<p class=\"note\">Upper bounds of the probability of being "
+    "plan, stage by stage</figcaption>\n<p class=\"note\">{} of the probability of being "
     "unsafe at each stage; 10⁻⁹ and less at the foot.</p>\n</figure>\n"
     "<figure class=\"card\" id=\"stage-budgets\" hidden>\n<figcaption>Error budget of this plan, "
     "stage by stage</figcaption>\n<p class=\"note\">Bound of the distance between the model’s law "
     "and "
     "its particles, and what each source alone would give.</p>\n</figure>\n";
 
-std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodePageOptions& options) {
-  const Trace& trace = view.trace();
-  const std::string_view meaning = view.parts().stages > 0 ? kMeaning : kMeaningWithoutPlan;
-  if (trace.steps.empty()) return "<h2>The drive</h2>\n" + video(options) + std::string(meaning);
-  const controller::DecisionParts& parts = view.parts();
-  const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
+std::string columns(const std::string& left, const std::string& right) {
   return fmt::format(
-      "<h2>The drive</h2>\n{}<div class=\"grid\">\n<div class=\"stack\">\n{}{}{}</div>\n"
-      "<div class=\"stack\">\n{}{}</div>\n</div>\n",
-      player(trace), video(options), moment, meaning, live_map(map, parts),
-      parts.stages > 0 ? kStageCharts : std::string_view());
+      "<div class=\"grid drive\">\n<div class=\"stack\">\n{}</div>\n<div "
+      "class=\"stack\">\n{}</div>\n</div>\n",
+      left, right);
 }
 
-std::string charts_html(const std::vector<Chart>& charts, const std::string& map) {
+/// What shows the drive stands on top, side by side; what explains it below, in both columns.
+std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeScene& scene,
+                  const EpisodePageOptions& options) {
+  const Trace& trace = view.trace();
+  const controller::DecisionParts& parts = view.parts();
+  const std::string head = "<h2 class=\"drive-head\">The drive</h2>\n";
+  const std::string film = video(options);
+  const std::string meaning(parts.stages > 0 ? kMeaning : kMeaningWithoutPlan);
+  if (trace.steps.empty()) return head + film + meaning;
+  const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
+  const std::string plane = live_map(map, parts);
+  std::string html = head + player(trace);
+  if (!film.empty() && !plane.empty()) {
+    html += columns(film + moment, plane + meaning);
+  } else if (film.empty() && plane.empty()) {
+    html += columns(moment, meaning);
+  } else {
+    html += columns(film + plane, moment + meaning);
+  }
+  if (parts.stages > 0) {
+    const char* const what =
+        view.summary().no_bound.empty() ? "Upper bounds" : "Estimates that are no bounds";
+    html += "<div class=\"grid drive below\">\n" + fmt::format(kStageCharts, what) + "</div>\n";
+  }
+  return html + scene_figure(scene, map != nullptr, parts);
+}
+
+std::string charts_html(const std::vector<Chart>& charts) {
   std::string html = "<h2>Along the drive</h2>\n";
   if (!charts.empty()) {
     html +=
@@ -143,7 +194,7 @@ std::string charts_html(const std::vector<Chart>& charts, const std::string& map
     for (const Chart& chart : charts) html += chart_figure(chart);
     html += "</div>\n";
   }
-  return html + "<div class=\"grid below\">\n" + map + "</div>\n";
+  return html;
 }
 
 std::string ending(const Trace& trace) {
@@ -168,18 +219,25 @@ std::string episode_page(const EpisodeView& view, const EpisodePageOptions& opti
                                                        .video_from = options.video_from,
                                                        .video_speed = options.video_speed})
                                  : std::string();
+  const EpisodeScene scene = episode_scene(view, ground);
 
   std::string html = introduction(trace) + figures.outcome + figures.tiles;
-  html += drive(view, ground, options);
-  html += charts_html(charts, maps ? map_figure(maps->drive) : std::string());
-  html += kMismatchNote;
-  html += figures.mismatch + ending(trace);
+  html += drive(view, ground, scene, options);
+  html += charts_html(charts) + "<div class=\"grid below\">\n";
+  if (maps) html += map_figure(maps->drive);
+  html += "<section class=\"card mismatch\">\n" + std::string(kMismatchNote) + figures.mismatch +
+          "</section>\n</div>\n" + ending(trace);
   if (moves) {
     html += "<script type=\"application/json\" id=\"episode-data\">" + data + "</script>\n";
   }
+  if (!scene.data.empty()) {
+    html += "<script type=\"application/json\" id=\"scene-data\">" + scene.data + "</script>\n";
+  }
   return framed_page({.title = trace.scenario.name + ": episode",
                       .version = trace.version,
-                      .kind = moves ? PageKind::kEpisode : PageKind::kPlain},
+                      .kind = !moves               ? PageKind::kPlain
+                              : scene.data.empty() ? PageKind::kEpisode
+                                                   : PageKind::kEpisodeScene},
                      html);
 }
 

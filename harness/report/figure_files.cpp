@@ -12,6 +12,7 @@
 #include "harness/figures/pdf_figure.hpp"
 #include "harness/files/file_group.hpp"
 #include "harness/report/campaign_charts.hpp"
+#include "harness/report/campaign_drives.hpp"
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/episode_charts.hpp"
 #include "harness/report/episode_map.hpp"
@@ -55,6 +56,27 @@ std::string title_of(const Panel& panel) {
   return std::visit([](const auto& own) { return own.title; }, panel);
 }
 
+std::string note_of(const Panel& panel) {
+  const PlaneMap* map = std::get_if<PlaneMap>(&panel);
+  return map != nullptr ? map_note(*map) : std::get<Chart>(panel).note;
+}
+
+/// A paragraph a figure, with a line for each panel.
+std::string captions(const std::vector<FigureFile>& figures) {
+  std::string text;
+  for (const FigureFile& figure : figures) {
+    text += (text.empty() ? "" : "\n") + figure.name + "\n";
+    for (std::size_t n = 0; n < figure.panels.size(); ++n) {
+      const std::string letter = panel_letter(n, figure.panels.size());
+      const std::string note = note_of(figure.panels[n]);
+      const std::string title = title_of(figure.panels[n]);
+      text += fmt::format("  {}{}{}{}{}{}\n", letter, letter.empty() ? "" : " ", title,
+                          title.ends_with('?') ? "" : ".", note.empty() ? "" : " ", note);
+    }
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string figure_name(const std::string& title) {
@@ -90,20 +112,24 @@ std::vector<FigureFile> figures_of(const Comparison& comparison) {
 }
 
 std::vector<FigureFile> figures_of(const CampaignStatistics& statistics) {
-  return named_by_file(campaign_figures(statistics));
+  std::vector<FigureFile> figures = named_by_file(campaign_figures(statistics));
+  std::vector<PlaneMap> maps = drive_maps(statistics).maps;
+  if (!maps.empty()) figures.push_back({.name = "map", .panels = {maps.begin(), maps.end()}});
+  return figures;
 }
 
 std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
-                                       const std::string& folder) {
+                                       const std::string& folder, const FigureStyle& style) {
   const std::string target = folder + "/" + kFigureFolder;
   make_output_folder(target);
   FileGroup files;
   for (const FigureFile& figure : figures) {
-    const std::string svg = svg_figure(figure.panels);
+    const std::string svg = svg_figure(figure.panels, style);
     const std::string title = figure.panels.empty() ? figure.name : title_of(figure.panels.front());
     files.add(target + "/" + figure.name + ".svg").write(svg);
     files.add(target + "/" + figure.name + ".pdf").write(pdf_figure(svg, title));
   }
+  files.add(target + "/captions.txt").write(captions(figures));
   files.commit();
   return files.paths();
 }

@@ -30,13 +30,15 @@ struct FigureFile {
 /// "residuals", "divergence", "w2", "certificates".
 [[nodiscard]] std::vector<FigureFile> figures_of(const Comparison& comparison);
 
-/// "reliability", "outcomes", and "differences" where variants are compared.
+/// "reliability", "outcomes", "map" of the drives where the store has their paths, "distributions"
+/// where they differ, "differences" where variants are compared.
 [[nodiscard]] std::vector<FigureFile> figures_of(const CampaignStatistics& statistics);
 
-/// Writes each as SVG and PDF into `folder`/figures, which is made if need be; none has its name
-/// before all are written. Returns their paths. Throws IoError.
+/// Writes each as SVG and PDF, set in `style`, into `folder`/figures, which is made if need be, and
+/// captions.txt: the titles and notes of all panels. None has its name before all are written.
+/// Returns their paths. Throws IoError.
 std::vector<std::string> write_figures(const std::vector<FigureFile>& figures,
-                                       const std::string& folder);
+                                       const std::string& folder, const FigureStyle& style = {});
 
 /// The name of a figure with the title `title`: its first words, up to a colon, a comma, a bracket,
 /// "at", "of" or "against" (of "Input: …", all of it), in lower case, with a hyphen for all that is

@@ -113,7 +113,10 @@ Tile bound_tile(const Summary& summary, const std::string& name, double bound,
   Tile tile{.name = name, .value = kNone, .hint = hint};
   if (summary.steps == 0) return tile;
   tile.value = format_bound(bound);
-  if (!(bound < 1.0)) {
+  if (!summary.no_bound.empty()) {
+    tile.hint = "no bound: see above";
+    tile.verdict = Verdict::kWarn;
+  } else if (!(bound < 1.0)) {
     tile.hint += "; 1 or more says nothing";
     tile.verdict = Verdict::kWarn;
   }
@@ -132,6 +135,10 @@ Tile limit_tile(const Summary& summary, const std::string& name, const Certified
                    ? ", never exceeded"
                    : fmt::format(", exceeded in {} of {} periods", risk.exceeded, summary.steps);
   tile.verdict = risk.exceeded == 0 ? Verdict::kGood : Verdict::kBad;
+  if (!summary.no_bound.empty()) {
+    tile.hint += "; no bound: see above";
+    if (tile.verdict == Verdict::kGood) tile.verdict = Verdict::kWarn;
+  }
   return tile;
 }
 
@@ -249,6 +256,10 @@ std::string outcome_html(const EpisodeView& view) {
       fmt::format("<section class=\"outcome{}\">\n<h1><span class=\"badge\">{} {}</span></h1>\n",
                   verdict_class(ending.verdict), sign, escape_html(ending.text));
   html += "<p>" + escape_html(safety_sentence(view)) + "</p>\n";
+  if (!view.summary().no_bound.empty()) {
+    html += "<p id=\"no-bound\"><strong>No certificate is a bound here:</strong> " +
+            escape_html(view.summary().no_bound) + ".</p>\n";
+  }
   if (!trace.fault.empty()) {
     html += "<p>The simulator's words:</p>\n<pre>" + escape_html(trace.fault) + "</pre>\n";
   }

@@ -1,6 +1,6 @@
 // What pages carry with them, from the files in web/: one style sheet, and the scripts of the
-// episode's page with the plotting library that they use (uPlot, pinned in web/package-lock.json).
-// Neither refers to anything outside of the page.
+// episode's page with the libraries that they use (uPlot and three.js, pinned in
+// web/package-lock.json). None refers to anything outside of the page.
 #pragma once
 
 #include <string_view>
@@ -13,9 +13,14 @@ namespace qsmpc::harness {
 /// The scripts, with the plotting library's licence.
 [[nodiscard]] std::string_view page_script();
 
-/// The SHA-256 of either as 64 hexadecimal digits, of the bytes between the tags <style> or
+/// The script of the view in three dimensions, with three.js and its licence. It waits for what
+/// the other scripts tell it, and stands before them.
+[[nodiscard]] std::string_view page_scene_script();
+
+/// The SHA-256 of each as 64 hexadecimal digits, of the bytes between the tags <style> or
 /// <script> and their ends.
 [[nodiscard]] std::string_view page_style_sha256();
 [[nodiscard]] std::string_view page_script_sha256();
+[[nodiscard]] std::string_view page_scene_script_sha256();
 
 }  // namespace qsmpc::harness

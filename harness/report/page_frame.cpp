@@ -1,5 +1,8 @@
 #include "harness/report/page_frame.hpp"
 
+#include <string_view>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "harness/report/page_assets.hpp"
@@ -9,12 +12,31 @@
 namespace qsmpc::harness {
 namespace {
 
+struct Script {
+  std::string_view text;
+  std::string_view sha256;
+};
+
+/// In the order in which they run: the scene's waits for what the other one tells it.
+std::vector<Script> scripts_of(PageKind kind) {
+  std::vector<Script> scripts;
+  if (kind == PageKind::kEpisodeScene) {
+    scripts.push_back({page_scene_script(), page_scene_script_sha256()});
+  }
+  if (kind == PageKind::kEpisode || kind == PageKind::kEpisodeScene) {
+    scripts.push_back({page_script(), page_script_sha256()});
+  }
+  return scripts;
+}
+
 std::string policy(PageKind kind) {
   std::string text =
       "default-src 'none'; style-src 'sha256-" + base64_of_hex(page_style_sha256()) + "'; ";
-  if (kind == PageKind::kEpisode) {
-    text += "script-src 'sha256-" + base64_of_hex(page_script_sha256()) + "'; ";
+  std::string sources;
+  for (const Script& script : scripts_of(kind)) {
+    sources += " 'sha256-" + base64_of_hex(script.sha256) + "'";
   }
+  if (!sources.empty()) text += "script-src" + sources + "; ";
   return text + "media-src 'self' file:; base-uri 'none'; form-action 'none'";
 }
 
@@ -33,7 +55,9 @@ std::string head(const PageFrame& frame) {
 
 std::string framed_page(const PageFrame& frame, const std::string& body) {
   std::string html = head(frame) + body;
-  if (frame.kind == PageKind::kEpisode) html += fmt::format("<script>{}</script>\n", page_script());
+  for (const Script& script : scripts_of(frame.kind)) {
+    html += fmt::format("<script>{}</script>\n", script.text);
+  }
   return html + fmt::format("<footer>Made by qsmpc {}.</footer>\n</body>\n</html>\n",
                             escape_html(frame.version));
 }

@@ -6,9 +6,10 @@
 namespace qsmpc::harness {
 
 enum class PageKind {
-  kPlain,    ///< it runs nothing
-  kTables,   ///< the same, with the style of tables, on paper too
-  kEpisode,  ///< it ends with the scripts of an episode's page
+  kPlain,         ///< it runs nothing
+  kTables,        ///< the same, with the style of tables, on paper too
+  kEpisode,       ///< it ends with the scripts of an episode's page
+  kEpisodeScene,  ///< with these and the one of its view in three dimensions
 };
 
 struct PageFrame {

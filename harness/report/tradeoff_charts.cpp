@@ -138,7 +138,7 @@ Chart panel_chart(const CampaignStatistics& statistics, const TradeoffPanel& pan
 
 std::vector<std::string> row_of(const VariantStatistics& variant, const TradeoffFamily& family,
                                 const TradeoffPoint& point) {
-  return {fmt::format("{}: {}", point.variant + 1, escape_html(variant.name)),
+  return {fmt::format("{}: {}", variant.id, escape_html(variant.name)),
           escape_html(family.name),
           fmt::format("{}", variant.done),
           fmt::format("{}", variant.reached.events),

@@ -89,7 +89,10 @@ ExperimentResult bicycle_with_noise(Laboratory& laboratory) {
     result.rows.push_back({.quantity = "full noise: optimisation time of a problem, " + reading,
                            .unit = "s",
                            .published = published,
-                           .here = median_plan_seconds(sample)});
+                           .here = median_plan_seconds(sample),
+                           .place = TablePlace{.table = "",
+                                               .row = "optimisation time of a problem, " + reading,
+                                               .column = "full noise"}});
   };
   row("1.3 h for one drive (the caption)", kNoisyHours * kSecondsAnHour / periods);
   row("1.3 h for ten drives (the text)", 0.1 * kNoisyHours * kSecondsAnHour / periods);

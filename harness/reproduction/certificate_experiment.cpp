@@ -48,7 +48,10 @@ void add_rows(const Case& turn, ExperimentResult& result) {
     result.rows.push_back(
         {.quantity = fmt::format("P(unsafe), {}, stage {}: {}", turn.name, turn.stage, what),
          .here = value,
-         .note = note});
+         .note = note,
+         .place = TablePlace{.table = "P(unsafe)",
+                             .row = what,
+                             .column = fmt::format("{}, stage {}", turn.name, turn.stage)}});
   };
   row("truth", truth.rate,
       fmt::format("{} samples; at least {:.3g} and at most {:.3g}, each but for a chance of {}",

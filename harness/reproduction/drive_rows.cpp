@@ -80,7 +80,8 @@ void add_drive_rows(const PublishedDrive& column, const Sample& sample, Experime
                            .unit = unit,
                            .published = published,
                            .here = here,
-                           .note = note});
+                           .note = note,
+                           .place = TablePlace{.table = "", .row = what, .column = column.name}});
   };
   row("target reached in", "s", column.reached_s, median_of(arrivals),
       fmt::format("median of the {} drives that reached it", arrivals.size()));

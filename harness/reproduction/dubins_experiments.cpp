@@ -52,13 +52,19 @@ void add_plan_time_rows(const CorridorColumn& entry, const Sample& sample,
                          .unit = "s",
                          .published = entry.printed_plan_s,
                          .here = here,
-                         .note = "seconds a simulated second, by the table’s own totals"});
+                         .note = "seconds a simulated second, by the table’s own totals",
+                         .place = TablePlace{.table = "",
+                                             .row = "optimisation time of a problem, as printed",
+                                             .column = column.name}});
   result.rows.push_back(
       {.quantity = column.name + ": optimisation time of a problem, from the totals",
        .unit = "s",
        .published = *column.optimisation_s / periods,
        .here = here,
-       .note = fmt::format("total over {:.0f} periods of 0.1 s", periods)});
+       .note = fmt::format("total over {:.0f} periods of 0.1 s", periods),
+       .place = TablePlace{.table = "",
+                           .row = "optimisation time of a problem, from the totals",
+                           .column = column.name}});
 }
 
 // ---- Table 5-3
@@ -247,10 +253,12 @@ ExperimentResult corridor_with_unseen_noise(Laboratory& laboratory) {
   const Sample& closed = laboratory.sample({.scenario = kCorridor, .overrides = {kUnseenNoise}});
   for (const Component& component : kComponents) {
     const auto row = [&](const std::string& policy, double published, const Sample& sample) {
-      result.rows.push_back({.quantity = fmt::format("{}: {}", policy, component.name),
-                             .unit = component.unit,
-                             .published = published,
-                             .here = component.scale * median_time(sample, component.time)});
+      result.rows.push_back(
+          {.quantity = fmt::format("{}: {}", policy, component.name),
+           .unit = component.unit,
+           .published = published,
+           .here = component.scale * median_time(sample, component.time),
+           .place = TablePlace{.table = "", .row = component.name, .column = policy}});
     };
     row("open loop", component.open, open);
     row("closed loop", component.closed, closed);

@@ -7,6 +7,7 @@
 #include "harness/errors.hpp"
 #include "harness/reproduction/experiments.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/threads/interruption.hpp"
 #include "harness/version.hpp"
 
 namespace qsmpc::harness {
@@ -115,6 +116,8 @@ Reproduction reproduce(const std::vector<std::string>& names, Laboratory& labora
     try {
       all.experiments.push_back(do_experiment(name, laboratory));
     } catch (const Stopped&) {
+      break;
+    } catch (const Interrupted&) {
       break;
     }
     all.complete = all.experiments.size() == chosen.size();

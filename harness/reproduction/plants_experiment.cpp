@@ -74,7 +74,10 @@ void add_share(const std::string& name, const std::string& plant, const Sample& 
   result.rows.push_back(
       {.quantity = fmt::format("{}, {}: drives that arrive and are never unsafe", name, plant),
        .here = safe_arrivals(sample) / static_cast<double>(total),
-       .note = fmt::format("{}; {} unsafe", share_text(safe_arrivals(sample), total), unsafe)});
+       .note = fmt::format("{}; {} unsafe", share_text(safe_arrivals(sample), total), unsafe),
+       .place = TablePlace{.table = "Share of drives that arrive and are never unsafe",
+                           .row = name,
+                           .column = plant}});
 }
 
 }  // namespace

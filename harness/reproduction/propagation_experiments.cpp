@@ -50,13 +50,19 @@ void add_turn_rows(const PredictionReport& report, const std::vector<controller:
          .unit = "m",
          .here = (points.mean - sampled.mean).norm(),
          .note = fmt::format("the samples’ own error is about {:.1g}",
-                             sampled.deviation() / std::sqrt(kPictureSamples))});
+                             sampled.deviation() / std::sqrt(kPictureSamples)),
+         .place = TablePlace{.table = "",
+                             .row = "distance of the mean positions",
+                             .column = fmt::format("{:.0f} s", time)}});
     result.rows.push_back(
         {.quantity = fmt::format("spread of the points over that of the samples, "
                                  "{:.0f} s",
                                  time),
          .here = points.deviation() / sampled.deviation(),
-         .note = "of the points alone; what is lost within their cells is known"});
+         .note = "of the points alone; what is lost within their cells is known",
+         .place = TablePlace{.table = "",
+                             .row = "spread of the points over that of the samples",
+                             .column = fmt::format("{:.0f} s", time)}});
   }
 }
 
@@ -66,6 +72,7 @@ constexpr int kNoisyStages = 5;
 constexpr int kNoiseParts = 8;  // points that stand for the noise in Fig. 4-2
 constexpr std::int64_t kTruthSamples = 200'000;
 constexpr double kPublishedPoints = 3.28e6;
+constexpr const char* kAfterSteps = "After 5 steps";
 constexpr double kPublishedCompressed = 100.0;
 // The same for all panels of Fig. 4-2, about the 95 % ellipse.
 constexpr MapRectangle kCloudArea{.x_lower = -0.4, .x_upper = 1.9, .y_lower = -0.9, .y_upper = 1.0};
@@ -111,13 +118,17 @@ constexpr std::array<Compressed, 3> kCompressed{{{"soft", "the thesis’s soft c
 /// How much of the true law's variance `measure` has, and how far off its mean is.
 void add_moment_rows(const std::string& what, const controller::DiscreteMeasure& measure,
                      const controller::DiscreteMeasure& truth, ExperimentResult& result) {
+  const auto place = [&what](const char* row) {
+    return TablePlace{.table = kAfterSteps, .row = row, .column = what};
+  };
   result.rows.push_back({.quantity = "variance after 5 steps over the true one, " + what,
                          .here = controller::covariance_of(measure).trace() /
                                  controller::covariance_of(truth).trace(),
-                         .note = "traces; the truth from 200,000 samples"});
-  result.rows.push_back(
-      {.quantity = "distance of the mean from the true one, " + what,
-       .here = (controller::mean_of(measure) - controller::mean_of(truth)).norm()});
+                         .note = "traces; the truth from 200,000 samples",
+                         .place = place("variance over the true one")});
+  result.rows.push_back({.quantity = "distance of the mean from the true one, " + what,
+                         .here = (controller::mean_of(measure) - controller::mean_of(truth)).norm(),
+                         .place = place("distance of the mean from the true one")});
 }
 
 MapCloud cloud_of(const controller::DiscreteMeasure& measure) {
@@ -192,10 +203,12 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
   // Of so many samples the moments are known to a few per mille.
   const controller::DiscreteMeasure truth =
       equally_weighted(samples_of(first, {.count = kTruthSamples}, laboratory.run()).back());
-  result.rows = {{.quantity = "points after 5 steps, nothing compressed",
-                  .published = kPublishedPoints,
-                  .here = static_cast<double>(all.size())},
-                 {.quantity = "time of these 5 steps", .unit = "ms", .here = naive_ms}};
+  result.rows = {
+      {.quantity = "points after 5 steps, nothing compressed",
+       .published = kPublishedPoints,
+       .here = static_cast<double>(all.size()),
+       .place = TablePlace{.table = kAfterSteps, .row = "points", .column = "nothing compressed"}},
+      {.quantity = "time of these 5 steps", .unit = "ms", .here = naive_ms}};
   add_moment_rows("nothing compressed", all, truth, result);
   std::vector<Panel> maps{cloud_map("All points, nothing compressed", all)};
   for (const Compressed& compressed : kCompressed) {
@@ -203,9 +216,11 @@ ExperimentResult propagation_with_noise(Laboratory& laboratory) {
     const PredictionReport report = on_a_turn(
         kNoisyStages, {parts, std::string("controller.propagator=") + compressed.propagator});
     const controller::DiscreteMeasure& last = report.prediction.stages.back();
-    result.rows.push_back({.quantity = fmt::format("points after 5 steps, {}", compressed.what),
-                           .published = kPublishedCompressed,
-                           .here = static_cast<double>(last.size())});
+    result.rows.push_back(
+        {.quantity = fmt::format("points after 5 steps, {}", compressed.what),
+         .published = kPublishedCompressed,
+         .here = static_cast<double>(last.size()),
+         .place = TablePlace{.table = kAfterSteps, .row = "points", .column = compressed.what}});
     add_moment_rows(compressed.what, last, truth, result);
     maps.emplace_back(cloud_map(fmt::format("100 points, {}", compressed.what), last));
   }

@@ -92,7 +92,10 @@ void add_quality_rows(const QualityNoise& noise, const Quality& quality, Experim
           {.quantity = fmt::format("W2², step {}, {}, noise {}", k, what, noise.name),
            .published = published,
            .here = squares.col(k).mean(),
-           .note = note});
+           .note = note,
+           .place = TablePlace{.table = fmt::format("W2², noise {}", noise.name),
+                               .row = what,
+                               .column = fmt::format("step {}", k)}});
     };
     row("100 samples", kPublishedFew[step], quality.few);
     row("100 points", kPublishedPointsDistance[step], quality.thesis);

@@ -11,6 +11,13 @@
 
 namespace qsmpc::harness {
 
+/// Where a quantity stands in a table of the thesis's own shape; its unit is in the row's name.
+struct TablePlace {
+  std::string table;   ///< what is said of the whole table; may be empty
+  std::string row;     ///< e.g. "100 samples"
+  std::string column;  ///< e.g. "step 3"
+};
+
 /// One quantity, as the thesis has it and as it is measured here.
 struct ResultRow {
   std::string quantity;
@@ -18,7 +25,8 @@ struct ResultRow {
   std::optional<double>
       published{};  ///< in the thesis, in the same unit; none: it has no such value
   double here = std::numeric_limits<double>::quiet_NaN();
-  std::string note{};  ///< what has to be known to compare the two; may be empty
+  std::string note{};                 ///< what has to be known to compare the two; may be empty
+  std::optional<TablePlace> place{};  ///< none: it stands in a list
 };
 
 /// here / published; none where nothing is published, or 0, or where the ratio is not finite.

@@ -12,6 +12,11 @@ using Json = nlohmann::ordered_json;
 
 Json number_json(std::optional<double> value) { return value ? Json(*value) : Json(nullptr); }
 
+Json place_json(const std::optional<TablePlace>& place) {
+  if (!place) return nullptr;
+  return {{"table", place->table}, {"row", place->row}, {"column", place->column}};
+}
+
 Json row_json(const std::string& experiment, const ResultRow& row) {
   return {{"experiment", experiment},
           {"quantity", row.quantity},
@@ -19,7 +24,8 @@ Json row_json(const std::string& experiment, const ResultRow& row) {
           {"published", number_json(row.published)},
           {"here", row.here},  // null where it is not finite
           {"ratio", number_json(ratio_of(row))},
-          {"note", row.note}};
+          {"note", row.note},
+          {"place", place_json(row.place)}};
 }
 
 }  // namespace

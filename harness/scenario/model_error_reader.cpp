@@ -12,6 +12,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/files/text_file.hpp"
+#include "harness/scenario/error_origin.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
 #include "harness/scenario/yaml_text.hpp"
@@ -88,7 +89,7 @@ controller::ModelError read_bounds(Section& section, Eigen::Index dim) {
   return error;
 }
 
-controller::ModelError read_mapping(Section& section, const ModelErrorContext& context) {
+StatedModelError read_mapping(Section& section, const ModelErrorContext& context) {
   const std::string system = section.text("system", context.system, kLongestName);
   if (system != context.system) {
     section.note("system", context.system + ", the scenario's system");
@@ -104,8 +105,13 @@ controller::ModelError read_mapping(Section& section, const ModelErrorContext& c
     error.first.push_back(read_bounds(item, context.dim));
     item.refuse_unread();
   }
+  std::optional<Scenario::ErrorOrigin> origin = read_error_origin(section, context);
   section.refuse_unread();
-  return error;
+  return {.error = std::move(error), .origin = std::move(origin)};
+}
+
+StatedModelError blank(Eigen::Index dim) {
+  return {.error = controller::model_error_of_size(Eigen::VectorXd::Zero(dim))};
 }
 
 /// `name`, if it is an absolute path, or else relative to `folder`.
@@ -114,20 +120,19 @@ std::string path_from(const std::string& folder, const std::string& name) {
   return path.is_absolute() ? name : (fs::path(folder) / path).lexically_normal().string();
 }
 
-controller::ModelError read_file(const std::string& path, Problems& problems,
-                                 const ModelErrorContext& context) {
+StatedModelError read_file(const std::string& path, Problems& problems,
+                           const ModelErrorContext& context) {
   try {
     const YamlNode tree = parse_yaml(read_text_file(path), path);
     Problems own(path);
     Section section(tree, own);
-    controller::ModelError error =
-        section.present() ? read_mapping(section, context)
-                          : controller::model_error_of_size(Eigen::VectorXd::Zero(context.dim));
+    StatedModelError stated =
+        section.present() ? read_mapping(section, context) : blank(context.dim);
     for (InputError::Where& where : own.sorted()) problems.add(std::move(where));
-    return error;
+    return stated;
   } catch (const InputError& error) {
     problems.add(error.where());
-    return controller::model_error_of_size(Eigen::VectorXd::Zero(context.dim));
+    return blank(context.dim);
   }
 }
 
@@ -202,11 +207,12 @@ std::vector<KeyDescription> model_error_keys() {
                   .words = "a name from `qsmpc list systems`: the system that it was measured for; "
                            "another one is refused",
                   .fallback_words = "the scenario's"});
+  keys.push_back(error_origin_key());
   return keys;
 }
 
-std::optional<controller::ModelError> read_model_error(Section& root, Problems& problems,
-                                                       const ModelErrorContext& context) {
+std::optional<StatedModelError> read_model_error(Section& root, Problems& problems,
+                                                 const ModelErrorContext& context) {
   if (!root.holds_text(kKey)) {
     Section section = root.section(kKey);
     if (!section.present()) return std::nullopt;
@@ -224,7 +230,8 @@ std::optional<controller::ModelError> read_model_error(Section& root, Problems& 
   return std::nullopt;
 }
 
-std::string model_error_text(const controller::ModelError& error, const std::string& indent) {
+std::string model_error_text(const StatedModelError& stated, const std::string& indent) {
+  const controller::ModelError& error = stated.error;
   std::string out;
   const auto line = [&](const std::string& key, const std::string& value) {
     out += fmt::format("{}{}: {}\n", indent, key, value);
@@ -240,13 +247,13 @@ std::string model_error_text(const controller::ModelError& error, const std::str
       start = "    ";
     }
   }
-  return out;
+  return stated.origin ? out + error_origin_text(*stated.origin, indent) : out;
 }
 
-std::string model_error_yaml(const controller::ModelError& error, const std::string& system,
+std::string model_error_yaml(const StatedModelError& stated, const std::string& system,
                              const std::string& comment) {
   const std::string head = comment.empty() ? "" : "# " + comment + "\n";
-  return head + "system: " + system + "\n" + model_error_text(error, "");
+  return head + "system: " + system + "\n" + model_error_text(stated, "");
 }
 
 }  // namespace qsmpc::harness

@@ -45,6 +45,17 @@ struct Scenario {
     double mass = 0.0;
     double wheelbase = 0.0;
   };
+  /// What a model error was measured of, as far as that is known. It holds for nothing else.
+  struct ErrorOrigin {
+    models::ParameterMap parameters;    ///< of the model; empty: not known
+    std::optional<double> time_step{};  ///< s, the control period
+    Plant plant{};                      ///< its kind empty: not known; of its file the name
+    std::string digest{};               ///< of that file, by plant_digest; empty: not known
+    std::string disturbance_kind{};     ///< empty: not known
+    std::optional<double> friction{};   ///< deviations of logarithms, as in Disturbance
+    std::optional<double> mass{};
+    std::optional<double> wheelbase{};
+  };
   struct Target {
     Eigen::VectorXd state;      ///< state_dim
     double radius = 0.5;        ///< m, in the plane of position (or over all states without one)
@@ -129,6 +140,7 @@ struct Scenario {
   Disturbance disturbance;
   /// How far the plant is from the model, where that is known: certificates then hold for it.
   std::optional<controller::ModelError> model_error;
+  std::optional<ErrorOrigin> error_origin{};  ///< where that says it
   controller::SafeSet safe_set;
   Target target;
   Risk risk;

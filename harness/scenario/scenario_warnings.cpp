@@ -3,27 +3,30 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "controller/certification/initial_risk.hpp"
 #include "controller/regions/unsafe_set.hpp"
+#include "harness/scenario/certificate_scope.hpp"
+#include "harness/scenario/error_origin.hpp"
 #include "models/constants.hpp"
+#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 namespace {
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
 
 bool can_be_unsafe(const controller::SafeSet& safe_set) {
   return !safe_set.obstacles.empty() || !controller::bounded_axes(safe_set.bounds).empty();
 }
 
-}  // namespace
-
-std::vector<std::string> scenario_warnings(const Scenario& scenario) {
+void warn_of_limits(const Scenario& scenario, std::vector<std::string>& warnings) {
   const Scenario::Risk& risk = scenario.risk;
-  std::vector<std::string> warnings;
-  if (!risk.any() || !can_be_unsafe(scenario.safe_set)) return warnings;
+  if (!risk.any() || !can_be_unsafe(scenario.safe_set)) return;
   const std::array<std::pair<const char*, double>, 3> limits = {
       {{"stage", risk.stage}, {"plan", risk.plan}, {"mission", risk.mission}}};
   double least = kInfinity;
@@ -44,6 +47,44 @@ std::vector<std::string> scenario_warnings(const Scenario& scenario) {
         "the start is unsafe with a certified probability up to {:.3g}, above the limit of {:.3g}",
         start, least));
   }
+}
+
+/// A turn and more is no heading that anybody writes in radians.
+void warn_of_degrees(const Scenario& scenario, std::vector<std::string>& warnings) {
+  const auto model =
+      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
+  const std::vector<models::Coordinate>& states = model->description().states;
+  const auto question = [&](const std::string& key, const Eigen::VectorXd& values) {
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+      const models::Coordinate& state = states[static_cast<std::size_t>(i)];
+      if (state.unit != "rad" || !(std::abs(values[i]) > kTurn)) continue;
+      warnings.push_back(fmt::format(
+          "{}: {} = {:.4g} is more than a turn: angles are in radians; {:.4g} degrees are {:.4g}",
+          key, state.name, values[i], values[i], values[i] * std::numbers::pi / 180.0));
+    }
+  };
+  question("initial_state.mean", scenario.initial_state.mean);
+  question("target.state", scenario.target.state);
+}
+
+/// Of a file that says of which plant its error was measured.
+void warn_of_error_plant(const Scenario& scenario, std::vector<std::string>& warnings) {
+  for (const std::string& difference : plant_differences(scenario)) {
+    warnings.push_back(
+        "model_error was measured of another plant, and need not hold for this one: " + difference);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> scenario_warnings(const Scenario& scenario) {
+  std::vector<std::string> warnings;
+  if (const std::string why = why_no_bound(scenario); !why.empty()) {
+    warnings.push_back("no certificate is a bound: " + why);
+  }
+  warn_of_degrees(scenario, warnings);
+  warn_of_error_plant(scenario, warnings);
+  warn_of_limits(scenario, warnings);
   return warnings;
 }
 

@@ -1,9 +1,11 @@
 #include "harness/scenario/yaml_tree.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <unordered_set>
 #include <utility>
+#include <vector>
 
 #include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/exceptions.h>
@@ -18,11 +20,67 @@ namespace {
 
 int line_of(const YAML::Mark& mark) { return mark.line >= 0 ? mark.line + 1 : 0; }
 
+constexpr const char* kColon = "a colon after the key";
+
+/// The lines of a text, to find the one where a colon is missing: the parser itself stumbles over
+/// the next.
+class YamlLines {
+ public:
+  explicit YamlLines(const std::string& text) {
+    std::istringstream stream(text);
+    for (std::string line; std::getline(stream, line);) {
+      const std::size_t comment = line.starts_with('#') ? 0 : line.find(" #");
+      line.resize(std::min(comment, line.size()));
+      line.resize(line.find_last_not_of(" \r") + 1);
+      lines_.push_back(std::move(line));
+    }
+  }
+
+  /// Whether line `number`, from 1, is words that a colon would make a key of.
+  [[nodiscard]] bool lacks_colon(int number) const {
+    if (number < 1 || number > std::ssize(lines_)) return false;
+    const std::string& line = at(number);
+    const std::size_t begin = line.find_first_not_of(' ');
+    constexpr const char* kOther = "-[]{},\"'|>%&*!@`?:";
+    return begin != std::string::npos && line.find_first_of(kOther) == std::string::npos;
+  }
+
+  /// The line that lacks a colon where the parser gave up at line `number`; 0 for none.
+  [[nodiscard]] int culprit(int number) const {
+    if (lacks_colon(number)) return number;
+    const int before = filled_before(number);
+    if (!lacks_colon(before)) return 0;
+    // Not a text that goes on further to the right.
+    const std::size_t indent = indent_of(before);
+    return indent == indent_of(number) || indent == indent_of(filled_before(before)) ? before : 0;
+  }
+
+  [[nodiscard]] std::string words(int number) const {
+    return "\"" + at(number).substr(indent_of(number)) + "\"";
+  }
+
+ private:
+  [[nodiscard]] const std::string& at(int number) const {
+    return lines_[static_cast<std::size_t>(number) - 1];
+  }
+  [[nodiscard]] std::size_t indent_of(int number) const {
+    if (number < 1 || number > std::ssize(lines_)) return std::string::npos;
+    return at(number).find_first_not_of(' ');
+  }
+  [[nodiscard]] int filled_before(int number) const {
+    int before = std::min(number, static_cast<int>(std::ssize(lines_)) + 1) - 1;
+    while (before > 0 && at(before).empty()) --before;
+    return before;
+  }
+
+  std::vector<std::string> lines_;  // without comments and what is blank at their end
+};
+
 // Builds the tree from the parser's events. yaml-cpp's own nodes are not used: they resolve
 // aliases, recurse without a bound of ours and keep no line of a missing value.
 class TreeBuilder : public YAML::EventHandler {
  public:
-  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+  TreeBuilder(std::string file, const YamlLines& lines) : file_(std::move(file)), lines_(lines) {}
 
   void OnDocumentStart(const YAML::Mark& mark) override {
     if (documents_++ > 0) fail(line_of(mark), "", "a second document", "one YAML document");
@@ -31,6 +89,10 @@ class TreeBuilder : public YAML::EventHandler {
 
   void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
     refuse_anchor(mark, anchor);
+    // A last line without a colon is a key without a value to the parser.
+    if (!open_.empty() && lines_.lacks_colon(open_.back().key_line)) {
+      fail(open_.back().key_line, "", lines_.words(open_.back().key_line), kColon);
+    }
     place(YamlNode{.line = line_of(mark)});
   }
 
@@ -148,6 +210,7 @@ class TreeBuilder : public YAML::EventHandler {
   }
 
   std::string file_;
+  const YamlLines& lines_;
   int documents_ = 0;
   bool has_root_ = false;
   YamlNode root_;
@@ -196,13 +259,18 @@ std::string describe(const YamlNode& node) {
 
 YamlNode parse_yaml(const std::string& text, const std::string& file) {
   check_text(text, file);
-  TreeBuilder builder(file);
+  const YamlLines lines(text);
+  TreeBuilder builder(file, lines);
   try {
     std::istringstream stream(text);
     YAML::Parser parser(stream);
     while (parser.HandleNextDocument(builder)) {
     }
   } catch (const YAML::Exception& error) {
+    if (const int line = lines.culprit(line_of(error.mark)); line > 0) {
+      throw InputError(
+          {.file = file, .line = line, .found = lines.words(line), .expected = kColon});
+    }
     throw InputError({.file = file,
                       .line = line_of(error.mark),
                       .found = "text that is not YAML (" + error.msg + ")",

@@ -1,6 +1,7 @@
 // Vectors, matrices and intervals as JSON.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,6 +25,13 @@ namespace qsmpc::harness {
 /// [lower, upper].
 [[nodiscard]] inline nlohmann::ordered_json interval_json(const RateInterval& interval) {
   return {interval.lower, interval.upper};
+}
+
+/// Whether certificates are bounds, and why not: `why` as of why_no_bound.
+[[nodiscard]] inline nlohmann::ordered_json scope_json(const std::string& why) {
+  nlohmann::ordered_json json{{"holds", why.empty()}, {"reason", nullptr}};
+  if (!why.empty()) json["reason"] = why;
+  return json;
 }
 
 }  // namespace qsmpc::harness

@@ -10,6 +10,7 @@
 
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/episode_view.hpp"
@@ -170,6 +171,7 @@ Summary summarise(const EpisodeView& view) {
   summary.outcome = outcome_name(trace.outcome);
   summary.fault = trace.fault;
   summary.steps = static_cast<int>(trace.steps.size());
+  summary.no_bound = why_no_bound(trace.scenario);
   if (ended_at_target(trace)) {
     summary.time_to_target = summary.steps * trace.scenario.time_step;
   }
@@ -212,6 +214,7 @@ std::string summary_json(const EpisodeView& view, const SummaryOptions& options)
                            {"sum", summary.next_step_sum}}},
                          {"horizon", {{"max", summary.horizon_max}}},
                          {"thesis", {{"max", summary.thesis_max}}}};
+  json["certificate"].update(scope_json(summary.no_bound));
   add_risk(summary.risk, json);
   json["mismatch"] = {{"one_step",
                        {{"rmse", vector_json(summary.mismatch_rmse)},

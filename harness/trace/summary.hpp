@@ -38,7 +38,9 @@ struct Summary {
   int deadline_misses = 0;         ///< steps whose wall clock exceeded the control period
   double iterations_median = 0.0;  ///< evaluations of cost and gradient
   int fallbacks = 0;
-  int deadline_stops = 0;      ///< plans that `controller.deadline` cut short
+  int deadline_stops = 0;  ///< plans that `controller.deadline` cut short
+  /// Why certificates are no bounds, see why_no_bound; empty where they are.
+  std::string no_bound;
   double next_step_max = 0.0;  ///< of the certificates of stage 1
   double next_step_mean = 0.0;
   double next_step_sum = 0.0;  ///< along the drive

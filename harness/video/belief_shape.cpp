@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 
 #include "models/linear_algebra.hpp"
 
@@ -23,6 +24,26 @@ Eigen::Vector2d direction_at(const std::vector<PlanarMoments>& stages, std::size
   const std::size_t after = std::min(i + 1, stages.size() - 1);
   const Eigen::Vector2d way = stages[after].mean - stages[before].mean;
   return way.norm() > 0.0 ? Eigen::Vector2d(way.normalized()) : Eigen::Vector2d::UnitX();
+}
+
+// The point of the ellipse of 95 % whose tangent is along `normal` turned by a right angle: the
+// farthest that it reaches towards `normal`, which has the length 1.
+Eigen::Vector2d farthest(const PlanarMoments& stage, const Eigen::Vector2d& normal) {
+  const Eigen::Vector2d pull = stage.covariance * normal;
+  const double deviation = std::sqrt(std::max(normal.dot(pull), 0.0));
+  if (!(deviation > 0.0)) return stage.mean;
+  return stage.mean + planar_quantile(kMost) / deviation * pull;
+}
+
+// The tube where its direction is `along`, and, beyond, towards its round end: `turn` goes from 0
+// at the widest place to a right angle at the tip.
+render::TubeSection section_of(const PlanarMoments& stage, const Eigen::Vector2d& along,
+                               double turn, double bound) {
+  const Eigen::Vector2d left(-along.y(), along.x());
+  const Eigen::Vector2d ahead = std::sin(turn) * along;
+  return {.left = point_of(farthest(stage, ahead + std::cos(turn) * left)),
+          .right = point_of(farthest(stage, ahead - std::cos(turn) * left)),
+          .bound = bound};
 }
 
 }  // namespace
@@ -63,16 +84,19 @@ std::vector<render::BeliefEllipses> belief_ellipses(const std::vector<PlanarMome
 std::vector<render::TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
                                              const std::vector<double>& bounds) {
   std::vector<render::TubeSection> tube;
-  if (bounds.empty() || bounds.size() + 1 < stages.size()) return tube;
+  if (stages.empty() || bounds.empty() || bounds.size() + 1 < stages.size()) return tube;
+  constexpr double kRight = 0.5 * std::numbers::pi;
+  const auto turned = [](int step) { return kRight * step / kTubeEndSections; };
+  for (int step = kTubeEndSections; step > 0; --step) {
+    tube.push_back(section_of(stages.front(), direction_at(stages, 0), -turned(step), bounds[0]));
+  }
   for (std::size_t i = 0; i < stages.size(); ++i) {
-    const Eigen::Vector2d along = direction_at(stages, i);
-    const Eigen::Vector2d left(-along.y(), along.x());
-    // The farthest that the ellipse of 95 % reaches across the way.
-    const double half_width =
-        planar_quantile(kMost) * std::sqrt(std::max(left.dot(stages[i].covariance * left), 0.0));
-    tube.push_back({.left = point_of(stages[i].mean + half_width * left),
-                    .right = point_of(stages[i].mean - half_width * left),
-                    .bound = bounds[i > 0 ? i - 1 : 0]});
+    tube.push_back(section_of(stages[i], direction_at(stages, i), 0.0, bounds[i > 0 ? i - 1 : 0]));
+  }
+  const std::size_t last = stages.size() - 1;
+  for (int step = 1; step <= kTubeEndSections; ++step) {
+    tube.push_back(
+        section_of(stages[last], direction_at(stages, last), turned(step), tube.back().bound));
   }
   return tube;
 }

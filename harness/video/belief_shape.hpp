@@ -27,9 +27,13 @@ struct PlanarMoments {
 [[nodiscard]] std::vector<render::BeliefEllipses> belief_ellipses(
     const std::vector<PlanarMoments>& stages);
 
-/// A tube through the stages' means, as wide across the way as the ellipses of 95 %, with
-/// `bounds[k - 1]` at stage k (and at stage 0 the one of stage 1: there is none for the present).
-/// Empty without a bound for each later stage.
+/// Sections of a tube's round end besides those of the stages, at either end.
+inline constexpr int kTubeEndSections = 8;
+
+/// A tube through the stages, as wide across the way as the ellipses of 95 %, and at its ends as
+/// round as those of the first and the last: it covers both. With `bounds[k - 1]` at stage k (and
+/// at stage 0 the one of stage 1: there is none for the present). Stage k is section
+/// k + kTubeEndSections. Empty without a bound for each later stage.
 [[nodiscard]] std::vector<render::TubeSection> belief_tube(const std::vector<PlanarMoments>& stages,
                                                            const std::vector<double>& bounds);
 

@@ -1,6 +1,7 @@
 #include "harness/video/episode_frames.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,6 +11,8 @@
 
 #include "controller/control/controller.hpp"
 #include "controller/regions/body_outline.hpp"
+#include "harness/scenario/plant_choice.hpp"
+#include "harness/scenario/shipped_files.hpp"
 #include "harness/video/belief_shape.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/thinning.hpp"
@@ -22,10 +25,10 @@ constexpr double kFlatHalfWidth = 0.5;  // m, of an obstacle in a direction that
 // The region's sides along x and y; `missing` stands for half of one that the system lacks.
 render::PlanarRectangle planar_sides(const models::SystemDescription& system,
                                      const controller::UnsafeRegion& region, double missing) {
-  const Eigen::Matrix2Xd corners = region.outline(0, system.position_x, system.position_y).corners;
+  const std::array<int, 2> index = {drawn_x(system), system.position_y};
+  const Eigen::Matrix2Xd corners = region.outline(0, index[0], index[1]).corners;
   Eigen::Vector2d lower = corners.rowwise().minCoeff();
   Eigen::Vector2d upper = corners.rowwise().maxCoeff();
-  const std::array<int, 2> index = {system.position_x, system.position_y};
   for (int side = 0; side < 2; ++side) {
     if (index[side] >= 0) continue;
     lower[side] = -missing;
@@ -75,18 +78,32 @@ controller::SafeSet planar_safe_set(const render::World& world) {
   return safe_set;
 }
 
+constexpr double kRailTime = 1.0;  // m/s: on a rail, y is time
+
 std::string every_nth(std::size_t every) { return fmt::format("1 of {}", every); }
 
 }  // namespace
+
+std::string drawn_vehicle(const EpisodeView& view) {
+  const Scenario& scenario = view.scenario();
+  if (!scenario.plant.mjcf.empty() || !is_on_rail(view.system())) return scenario.plant.mjcf;
+  for (const ShippedPlant& plant : shipped_plants()) {
+    if (plant.system == view.system().name) return find_mjcf(plant.mjcf, "");
+  }
+  return "";
+}
 
 EpisodeFrames::EpisodeFrames(const EpisodeView& view, const Overlays& overlays)
     : view_(view),
       steps_(view.trace().steps),
       overlays_(overlays),
       track_(view),
+      on_rail_(is_on_rail(view.system())),
+      vehicle_(drawn_vehicle(view)),
       planar_unsafe_(planar_safe_set(world())),
       ranges_(chart_ranges(view)) {
   if (overlays_.raw) raw_.emplace(view.scenario());
+  if (on_rail_) joints_ = JointPose::of(view.scenario(), view.system(), vehicle_);
 }
 
 std::string EpisodeFrames::heading() const {
@@ -105,8 +122,9 @@ render::World EpisodeFrames::world() const {
   render::World world;
   const controller::UnsafeSet unsafe(scenario.safe_set);
   world.bounds = planar_sides(system, unsafe.walls(), std::numeric_limits<double>::infinity());
+  const double missing = on_rail_ ? std::numeric_limits<double>::infinity() : kFlatHalfWidth;
   for (const controller::RegionPointer& obstacle : unsafe.obstacles()) {
-    world.obstacles.push_back(planar_sides(system, *obstacle, kFlatHalfWidth));
+    world.obstacles.push_back(planar_sides(system, *obstacle, missing));
   }
   const render::PlanarPose target = planar_pose(system, scenario.target.state);
   world.target = {target.x, target.y};
@@ -130,6 +148,10 @@ double EpisodeFrames::longest_plan() const {
       const render::PlanarPose to = planar_pose(view_.system(), step.plan_states.col(i));
       length += std::hypot(to.x - from.x, to.y - from.y);
     }
+    // A rail's camera looks across: it needs more room for the same length.
+    constexpr double kAcross = 1.35;
+    const auto stages = static_cast<std::size_t>(step.plan_states.cols());
+    if (on_rail_) length = std::max(length, -kAcross * lane(stages));
     longest = std::max(longest, length);
   }
   return longest;
@@ -163,11 +185,12 @@ render::Frame EpisodeFrames::at(double time) const {
     }
   }
   const std::size_t step = step_at(now);
-  frame.hud = hud_rows(view_.trace(), step, now, speed(now));
+  frame.hud = hud_rows(view_.trace(), step, now, track_.driven_speed(now));
   add_plan(steps_[step], frame);
   add_belief(steps_[step], frame);
   if (overlays_.body) frame.body = body_at(frame.pose);
   if (overlays_.ghost) frame.ghost = ghost(step, now);
+  if (on_rail_) put_on_rail(step, now, frame);
   frame.charts = strip_charts(view_, ranges_, step);
   if (time >= duration() - kTimeTolerance) add_banner(view_, duration(), frame);
   return frame;
@@ -177,15 +200,74 @@ void EpisodeFrames::add_plan(const StepRecord& step, render::Frame& frame) const
   const models::SystemDescription& system = view_.system();
   for (Eigen::Index i = 0; i < step.plan_states.cols(); ++i) {
     const render::PlanarPose pose = planar_pose(system, step.plan_states.col(i));
-    frame.planned_path.push_back({pose.x, pose.y});
+    frame.planned_path.push_back({pose.x, pose.y + lane(static_cast<std::size_t>(i))});
   }
 }
 
-render::ParticleStage EpisodeFrames::planar(const controller::DiscreteMeasure& measure) const {
+double EpisodeFrames::lane(std::size_t stage) const {
+  return on_rail_ ? -kRailTime * view_.scenario().time_step * static_cast<double>(stage) : 0.0;
+}
+
+// As EpisodeTrack has the pose: the disturbance is drawn over the first kEaseTime of a period.
+Eigen::VectorXd EpisodeFrames::state_at(std::size_t step, double time) const {
+  const Eigen::MatrixXd& states = view_.states();
+  const auto k = static_cast<Eigen::Index>(step);
+  const Eigen::VectorXd from = states.col(k);
+  if (k + 1 >= states.cols()) return from;
+  const auto before_kick = [this, &states](Eigen::Index at) {
+    const Eigen::VectorXd& kick = steps_[static_cast<std::size_t>(at - 1)].disturbance;
+    const Eigen::VectorXd state = states.col(at);
+    return kick.size() == state.size() ? Eigen::VectorXd(state - kick) : state;
+  };
+  const double period = view_.scenario().time_step;
+  const double share = std::clamp((time - steps_[step].time) / period, 0.0, 1.0);
+  const double ease = std::min(EpisodeTrack::kEaseTime / period, 0.5);
+  const Eigen::VectorXd on_the_way = from + share * (before_kick(k + 1) - from);
+  if (k == 0 || share >= ease) return on_the_way;
+  return on_the_way + (1.0 - share / ease) * (before_kick(k) - from);
+}
+
+// The vehicle's joints, and what was and will be at its time.
+void EpisodeFrames::put_on_rail(std::size_t step, double time, render::Frame& frame) const {
+  const double end = track_.duration();
+  const std::size_t count = frame.driven_path.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double then = i + 1 < count ? std::min(track_.path_time(i), end) : time;
+    frame.driven_path[i].y = kRailTime * (time - then);
+  }
+  // Past and plan move on with time, not in steps of a period.
+  const double since = kRailTime * (time - steps_[step].time);
+  for (render::PlanarPoint& point : frame.planned_path) point.y += since;
+  for (render::ParticleStage& stage : frame.particles) {
+    for (render::PlanarPoint& point : stage.points) point.y += since;
+  }
+  for (render::BeliefEllipses& stage : frame.ellipses) {
+    stage.half.centre.y += since;
+    stage.most.centre.y += since;
+  }
+  for (render::TubeSection& section : frame.tube) {
+    section.left.y += since;
+    section.right.y += since;
+  }
+  frame.followed->y = 0.0;
+  if (!joints_) return;
+  if (frame.qpos.empty()) frame.qpos = joints_->qpos(state_at(step, time));
+  if (!frame.ghost) return;
+  const bool known_before = step > 0 && steps_[step - 1].plan_states.cols() > 2;
+  const Eigen::MatrixXd& plan = steps_[known_before ? step - 1 : step].plan_states;
+  const Eigen::Index stage = known_before ? 1 : 0;
+  const double share =
+      std::clamp((time - steps_[step].time) / view_.scenario().time_step, 0.0, 1.0);
+  frame.ghost_qpos =
+      joints_->qpos(plan.col(stage) + share * (plan.col(stage + 1) - plan.col(stage)));
+}
+
+render::ParticleStage EpisodeFrames::planar(const controller::DiscreteMeasure& measure,
+                                            std::size_t number) const {
   render::ParticleStage stage;
   for (Eigen::Index i = 0; i < measure.size(); ++i) {
     const render::PlanarPose pose = planar_pose(view_.system(), measure.locations.col(i));
-    stage.points.push_back({pose.x, pose.y});
+    stage.points.push_back({pose.x, pose.y + lane(number)});
     stage.weights.push_back(measure.weights[i]);
   }
   return stage;
@@ -196,7 +278,7 @@ void EpisodeFrames::add_belief(const StepRecord& step, render::Frame& frame) con
   std::vector<PlanarMoments> moments;
   std::size_t points = 0;
   for (const StageParticles& stage : step.particles) {
-    stages.push_back(planar(stage));
+    stages.push_back(planar(stage, stages.size()));
     moments.push_back(planar_moments(stages.back()));
     points += stages.back().points.size();
   }
@@ -225,8 +307,9 @@ void EpisodeFrames::add_raw_points(const StepRecord& step, render::Frame& frame)
       std::max(render::kMostOverlayPoints - std::min(drawn, render::kMostOverlayPoints),
                render::kMostOverlayPoints / 4);
   const std::size_t every = render::thinning(raw_->count(step), room);
+  std::size_t number = 0;
   for (const controller::DiscreteMeasure& stage : raw_->stages(step)) {
-    const render::ParticleStage kept = render::thinned(planar(stage), every);
+    const render::ParticleStage kept = render::thinned(planar(stage, ++number), every);
     frame.raw_points.insert(frame.raw_points.end(), kept.points.begin(), kept.points.end());
   }
   frame.hud.push_back({"raw points drawn", every > 1 ? every_nth(every) : "all"});
@@ -260,12 +343,6 @@ std::vector<std::vector<render::PlanarPoint>> EpisodeFrames::body_at(
     }
   }
   return lines;
-}
-
-double EpisodeFrames::speed(double time) const {
-  const models::ParameterMap& parameters = view_.scenario().model.parameters;
-  const auto constant = parameters.find("speed");
-  return constant != parameters.end() ? constant->second : track_.smooth_speed(time);
 }
 
 }  // namespace qsmpc::harness

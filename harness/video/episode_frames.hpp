@@ -10,13 +10,20 @@
 #include "harness/trace/episode_view.hpp"
 #include "harness/video/episode_hud.hpp"
 #include "harness/video/episode_track.hpp"
+#include "harness/video/joint_pose.hpp"
 #include "harness/video/overlays.hpp"
 #include "harness/video/raw_points.hpp"
 #include "render/frame.hpp"
 
 namespace qsmpc::harness {
 
-/// Frames of one episode; const functions may be called from several threads at once.
+/// The vehicle that is drawn: that of the scenario, or the one shipped for a system on a rail;
+/// empty where there is none.
+[[nodiscard]] std::string drawn_vehicle(const EpisodeView& view);
+
+/// Frames of one episode. A system without a place in the plane stands on a rail along x, and y is
+/// time: what is to come lies before it, towards -y, and what has been behind it, 1 m a second.
+/// Const functions may be called from several threads at once.
 class EpisodeFrames {
  public:
   /// `view` must outlive it.
@@ -26,7 +33,10 @@ class EpisodeFrames {
   [[nodiscard]] double duration() const { return track_.duration(); }
 
   /// The vehicle's XML.
-  [[nodiscard]] const std::string& vehicle() const { return view_.scenario().plant.mjcf; }
+  [[nodiscard]] const std::string& vehicle() const { return vehicle_; }
+
+  /// See is_on_rail.
+  [[nodiscard]] bool on_rail() const { return on_rail_; }
 
   /// Scenario, plant and policy in one line.
   [[nodiscard]] std::string heading() const;
@@ -58,13 +68,20 @@ class EpisodeFrames {
   [[nodiscard]] std::vector<std::vector<render::PlanarPoint>> body_at(
       const render::PlanarPose& pose) const;
   [[nodiscard]] std::optional<render::PlanarPose> ghost(std::size_t step, double time) const;
-  [[nodiscard]] double speed(double time) const;
-  [[nodiscard]] render::ParticleStage planar(const controller::DiscreteMeasure& measure) const;
+  [[nodiscard]] render::ParticleStage planar(const controller::DiscreteMeasure& measure,
+                                             std::size_t stage) const;
+  /// m, y of a stage of the plan on a rail, of which it is 0.
+  [[nodiscard]] double lane(std::size_t stage) const;
+  [[nodiscard]] Eigen::VectorXd state_at(std::size_t step, double time) const;
+  void put_on_rail(std::size_t step, double time, render::Frame& frame) const;
 
   const EpisodeView& view_;
   const std::vector<StepRecord>& steps_;
   Overlays overlays_;
   EpisodeTrack track_;
+  bool on_rail_;
+  std::string vehicle_;
+  std::optional<JointPose> joints_;  // on a rail
   controller::UnsafeSet planar_unsafe_;
   std::optional<RawPoints> raw_;  // where they are drawn
   ChartRanges ranges_;

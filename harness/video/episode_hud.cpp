@@ -8,7 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/certificate_scope.hpp"
 #include "harness/trace/risk_use.hpp"
+#include "render/hud/strip_chart.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -22,8 +24,11 @@ double next_certificate(const StepRecord& step) {
                                    : step.certificates.front().value;
 }
 
-std::string bound_text(double bound) {
-  return bound < 1.0 ? fmt::format("≤ {:.1e}", bound) : "≤ 1";
+// "0.00" also for what rounds to it from below.
+std::string signed_text(double value) {
+  const std::string size = fmt::format("{:.2f}", std::abs(value));
+  if (size == "0.00") return size;
+  return (value < 0.0 ? "−" : "+") + size;
 }
 
 double decade_below(double value) { return std::pow(10.0, std::floor(std::log10(value))); }
@@ -57,13 +62,15 @@ class History {
 
 render::StripChart certificate_chart(const History& history, const ChartRanges& ranges,
                                      double limit) {
-  render::StripChart chart = history.chart("next P(unsafe) ≤", next_certificate);
-  chart.value = fmt::format("{:.1e}", chart.values.back());
+  render::StripChart chart = history.chart("risk, next step", next_certificate);
+  chart.value = bound_text(chart.values.back());
   chart.lower = ranges.least_certificate;
+  chart.lower_label = percent_text(chart.lower);
+  chart.upper_label = percent_text(chart.upper);
   chart.logarithmic = true;
   // A limit of 0 has no place on a logarithmic axis.
   if (limit > 0.0 && std::isfinite(limit)) {
-    chart.limit = {.value = limit, .label = fmt::format("limit {:.2g}", limit)};
+    chart.limit = {.value = limit, .label = "limit " + percent_text(limit)};
   }
   return chart;
 }
@@ -74,7 +81,7 @@ render::StripChart input_chart(const History& history, const Scenario::Controlle
   render::StripChart chart =
       history.chart(fmt::format("{} [{}]", input.name, input.unit),
                     [index](const StepRecord& step) { return step.input[index]; });
-  chart.value = fmt::format("{:+.2f}", chart.values.back());
+  chart.value = signed_text(chart.values.back());
   const bool bounded = controller.input_lower.size() > 0 && controller.input_upper.size() > 0;
   chart.lower = bounded ? controller.input_lower[index] : system.input_lower[index];
   chart.upper = bounded ? controller.input_upper[index] : system.input_upper[index];
@@ -84,7 +91,7 @@ render::StripChart input_chart(const History& history, const Scenario::Controlle
 render::StripChart cost_chart(const History& history, const ChartRanges& ranges) {
   render::StripChart chart =
       history.chart("cost of plan", [](const StepRecord& step) { return step.cost.total(); });
-  chart.value = fmt::format("{:.4g}", chart.values.back());
+  chart.value = render::short_number(chart.values.back());
   chart.lower = ranges.least_cost;
   chart.upper = ranges.largest_cost;
   chart.logarithmic = ranges.least_cost > 0.0;
@@ -119,11 +126,27 @@ void add_risk_rows(const Trace& trace, std::size_t step, std::vector<render::Hud
     if (!trace.steps[k].certificates.empty()) spent += next_certificate(trace.steps[k]);
   }
   rows.push_back({.name = "risk spent",
-                  .value = fmt::format("{:.2g} of {:.2g}", spent, limits.mission),
+                  .value = percent_text(spent) + " of " + percent_text(limits.mission),
                   .warning = spent > limits.mission});
 }
 
 }  // namespace
+
+std::string percent_text(double probability) {
+  constexpr double kPercent = 100.0;
+  return render::short_number(kPercent * probability) + " %";
+}
+
+std::string bound_text(double bound) {
+  constexpr double kLeastShown = 1e-5;
+  if (std::isnan(bound)) return "–";
+  if (bound >= 1.0) return "≤ 100 %";
+  if (bound <= kLeastShown) return "≤ " + percent_text(kLeastShown);
+  // Two digits, rounded up: an upper bound stays one. What is a rounding error above is not.
+  constexpr double kRounding = 1e-9;
+  const double unit = std::pow(10.0, std::floor(std::log10(bound)) - 1.0);
+  return "≤ " + percent_text(std::min(std::ceil(bound / unit * (1.0 - kRounding)) * unit, 1.0));
+}
 
 ChartRanges chart_ranges(const EpisodeView& view) {
   constexpr double kLowestFloor = 1e-9;
@@ -168,6 +191,10 @@ std::vector<render::StripChart> strip_charts(const EpisodeView& view, const Char
   std::vector<render::StripChart> charts;
   if (!trace.steps[step].certificates.empty()) {
     charts.push_back(certificate_chart(history, ranges, scenario.risk.stage));
+    if (!view.summary().no_bound.empty()) {
+      charts.back().label = "next step, no bound";
+      charts.back().value = percent_text(charts.back().values.back());
+    }
   }
   if (!system.inputs.empty()) {
     charts.push_back(input_chart(history, scenario.controller, system, 0));
@@ -186,11 +213,13 @@ std::vector<render::HudRow> hud_rows(const Trace& trace, std::size_t index, doub
   std::vector<render::HudRow> rows{{"time", fmt::format("{:.1f} s", time)},
                                    {"speed", fmt::format("{:.2f} m/s", speed)}};
   if (!step.certificates.empty() && step.plan_states.cols() > 1) {
-    rows.push_back(
-        {"P(unsafe) whole plan", bound_text(controller::horizon_bound(step.certificates))});
+    const double bound = controller::horizon_bound(step.certificates);
+    const bool holds = why_no_bound(trace.scenario).empty();
+    rows.push_back(holds ? render::HudRow{"risk of plan", bound_text(bound)}
+                         : render::HudRow{"plan, no bound", percent_text(bound)});
   }
   add_risk_rows(trace, index, rows);
-  if (step.fallback) rows.push_back({"applied", "the plan before, shifted"});
+  if (step.fallback) rows.push_back({"applied", "previous plan"});
   return rows;
 }
 

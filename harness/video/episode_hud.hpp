@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "harness/trace/episode_view.hpp"
@@ -23,6 +24,13 @@ struct ChartRanges {
 
 /// The ranges that hold both: for episodes that are shown side by side.
 [[nodiscard]] ChartRanges united(const ChartRanges& a, const ChartRanges& b);
+
+/// A probability as people read it, e.g. "35 %", "0.02 %", "10⁻⁶ %".
+[[nodiscard]] std::string percent_text(double probability);
+
+/// An upper bound of a probability: "≤ 35 %", two digits, rounded up, and not below 0.001 %; "–"
+/// for what is not a number.
+[[nodiscard]] std::string bound_text(double bound);
 
 /// Histories up to step `step` of the certificate, the first input, the plan's cost, the planning
 /// time against its deadline (without one: the control period), and the second input. They hold up

@@ -6,7 +6,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kPlansInView = 2.8;  // chase camera's distance in lengths of the longest plan
+constexpr double kPlansInView = 1.9;  // chase camera's distance in lengths of the longest plan
 
 const EpisodeView& drawable(const EpisodeView& view) {
   const std::string reason = why_not_drawn(view);
@@ -18,10 +18,10 @@ const EpisodeView& drawable(const EpisodeView& view) {
 
 std::string why_not_drawn(const EpisodeView& view) {
   const models::SystemDescription& system = view.system();
-  if (system.position_x < 0 || system.position_y < 0) {
-    return system.name + " has no position in the plane";
+  if ((system.position_x < 0 || system.position_y < 0) && !is_on_rail(system)) {
+    return system.name + " has no position in the plane or along a line";
   }
-  return view.scenario().plant.mjcf.empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
+  return drawn_vehicle(view).empty() ? "the scenario names no vehicle (plant.mjcf)" : "";
 }
 
 EpisodePictures::EpisodePictures(const EpisodeView& view, const VideoLayout& layout,
@@ -54,6 +54,7 @@ std::vector<render::EpisodeScene> EpisodePictures::scenes() const {
                                 .mjcf_path = frames.vehicle(),
                                 .chase_distance = kPlansInView * frames.longest_plan(),
                                 .region = frames.region(),
+                                .raised = frames.on_rail(),
                                 .heading = beside_ ? frames.heading() : ""};
   };
   std::vector<render::EpisodeScene> scenes{scene(frames_)};

@@ -46,10 +46,21 @@ std::vector<double> between(const std::vector<double>& a, const std::vector<doub
 
 }  // namespace
 
+int drawn_x(const models::SystemDescription& system) {
+  if (system.position_x >= 0 || system.position_y >= 0) return system.position_x;
+  const auto position = std::find_if(system.states.begin(), system.states.end(),
+                                     [](const models::Coordinate& s) { return s.unit == "m"; });
+  return position == system.states.end() ? -1 : static_cast<int>(position - system.states.begin());
+}
+
+bool is_on_rail(const models::SystemDescription& system) {
+  return system.position_x < 0 && system.position_y < 0 && drawn_x(system) >= 0;
+}
+
 render::PlanarPose planar_pose(const models::SystemDescription& system,
                                const Eigen::Ref<const Eigen::VectorXd>& state) {
   const auto value = [&state](int index) { return index >= 0 ? state[index] : 0.0; };
-  return {value(system.position_x), value(system.position_y), value(system.heading)};
+  return {value(drawn_x(system)), value(system.position_y), value(system.heading)};
 }
 
 render::PlanarPose between(const render::PlanarPose& a, const render::PlanarPose& b, double share) {
@@ -92,8 +103,10 @@ void EpisodeTrack::add_poses(const EpisodeView& view) {
       const render::PlanarPose jump = planar_pose(system, trace.steps[k].disturbance);
       end = {end.x - jump.x, end.y - jump.y, end.heading - jump.heading};
     }
+    const double span = instants_[k + 1].time - instants_[k].time;
+    const render::PlanarPose& start = instants_[k].pose;
+    speeds_.push_back(std::hypot(end.x - start.x, end.y - start.y) / span);
     if (k > 0) {
-      const double span = instants_[k + 1].time - instants_[k].time;
       drawn_.push_back(
           {instants_[k].time + ease_share * span, between(instants_[k].pose, end, ease_share)});
     }
@@ -153,7 +166,7 @@ std::vector<render::PlanarPoint> EpisodeTrack::driven_path(double time) const {
 }
 
 // A line fitted to the poses near `time`: unlike a mean it does not lag at the ends.
-EpisodeTrack::LocalLine EpisodeTrack::local_line(double time) const {
+render::PlanarPose EpisodeTrack::smooth_pose(double time) const {
   const double now = std::clamp(time, 0.0, duration_);
   double weights = 0.0;
   double first = 0.0;
@@ -174,19 +187,15 @@ EpisodeTrack::LocalLine EpisodeTrack::local_line(double time) const {
   }
   const double determinant = weights * second - first * first;
   std::array<double, 3> value{};
-  std::array<double, 3> slope{};
   for (std::size_t i = 0; i < 3 && determinant > 0.0; ++i) {
     value[i] = (second * sums[i] - first * moments[i]) / determinant;
-    slope[i] = (weights * moments[i] - first * sums[i]) / determinant;
   }
-  return {{value[0], value[1], value[2]}, {slope[0], slope[1], slope[2]}};
+  return {value[0], value[1], value[2]};
 }
 
-render::PlanarPose EpisodeTrack::smooth_pose(double time) const { return local_line(time).value; }
-
-double EpisodeTrack::smooth_speed(double time) const {
-  const render::PlanarPose slope = local_line(time).slope;
-  return std::hypot(slope.x, slope.y);
+double EpisodeTrack::driven_speed(double time) const {
+  if (speeds_.empty()) return 0.0;
+  return speeds_[std::min(last_not_later(instants_, time), speeds_.size() - 1)];
 }
 
 render::PlanarRectangle EpisodeTrack::extent() const {

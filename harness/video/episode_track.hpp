@@ -14,6 +14,13 @@
 
 namespace qsmpc::harness {
 
+/// Whether a system has no place in the plane, but moves along a line: it is drawn on a rail along
+/// x, and y is time (see EpisodeFrames).
+[[nodiscard]] bool is_on_rail(const models::SystemDescription& system);
+
+/// The state that is drawn along x: the first position (m) of a system on a rail; -1 for none.
+[[nodiscard]] int drawn_x(const models::SystemDescription& system);
+
 /// The coordinates of `state` that are drawn; 0 where a system has none.
 [[nodiscard]] render::PlanarPose planar_pose(const models::SystemDescription& system,
                                              const Eigen::Ref<const Eigen::VectorXd>& state);
@@ -44,11 +51,15 @@ class EpisodeTrack {
   /// The way from the start to `pose(time)`.
   [[nodiscard]] std::vector<render::PlanarPoint> driven_path(double time) const;
 
+  /// s, when the vehicle was at point `index` of the way, which is not its last one.
+  [[nodiscard]] double path_time(std::size_t index) const { return drawn_[index].time; }
+
   /// A pose near the vehicle's that moves smoothly: what a camera follows.
   [[nodiscard]] render::PlanarPose smooth_pose(double time) const;
 
-  /// m/s, of the smooth pose.
-  [[nodiscard]] double smooth_speed(double time) const;
+  /// m/s, how far the plant came by itself in the control period about `time`, before the
+  /// disturbance, over the period; 0 without steps.
+  [[nodiscard]] double driven_speed(double time) const;
 
   /// The smallest rectangle about the way; of no area without steps.
   [[nodiscard]] render::PlanarRectangle extent() const;
@@ -58,17 +69,13 @@ class EpisodeTrack {
     double time = 0.0;
     render::PlanarPose pose;
   };
-  struct LocalLine {
-    render::PlanarPose value;
-    render::PlanarPose slope;
-  };
 
   void add_poses(const EpisodeView& view);
   void add_motion(const Trace& trace);
-  [[nodiscard]] LocalLine local_line(double time) const;
 
   double duration_ = 0.0;
   std::vector<TimedPose> instants_;   // at the control instants, after the jump
+  std::vector<double> speeds_;        // m/s, of each period
   std::vector<TimedPose> drawn_;      // with the jumps eased
   std::vector<MotionSample> motion_;  // with the jumps eased
 };

@@ -31,8 +31,9 @@ struct EpisodeVideoOptions {
 
 /// Writes a video to `path`. If it shows the end of the episode, it ends with a second in which the
 /// outcome is shown, whatever the speed. `progress` (may be empty) is called on this thread after
-/// each frame; when it returns false, the video is finished with the frames so far. At most two
-/// pictures a thread are held in memory. Throws std::invalid_argument on options that are none,
+/// each frame; when it returns false, the video is finished with the frames so far. What it throws
+/// passes through; PATH.partial then keeps the frames. At most two pictures a thread are held in
+/// memory. Throws std::invalid_argument on options that are none,
 /// std::runtime_error when there is nothing to draw (see `why_not_drawn`), the vehicle cannot be
 /// drawn or the file not be written; nothing new is then under `path`.
 VideoTimings write_episode_video(const EpisodeView& view, const EpisodeVideoOptions& options,

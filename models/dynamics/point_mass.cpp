@@ -12,8 +12,8 @@
 namespace qsmpc::models {
 namespace {
 
-constexpr double kDefaultAccelerationBound = 2.0;  // m/s²
-constexpr double kSmallDamping = 1e-4;             // c T below which the series is as exact
+constexpr double kDefaultPush = 2.0;    // m/s²
+constexpr double kSmallDamping = 1e-4;  // c T below which the series is as exact
 constexpr const char* kPointMassName = "point_mass";
 constexpr const char* kPointMassSummary =
     "Point in the plane: position, velocity; driven by its acceleration along x and y";
@@ -33,8 +33,8 @@ SystemDescription PointMass::description() const {
   description.summary = kPointMassSummary;
   description.states = {{"x", "m"}, {"y", "m"}, {"velocity_x", "m/s"}, {"velocity_y", "m/s"}};
   description.inputs = {{"acceleration_x", "m/s^2"}, {"acceleration_y", "m/s^2"}};
-  description.input_lower = Eigen::VectorXd::Constant(kInputDim, -kDefaultAccelerationBound);
-  description.input_upper = Eigen::VectorXd::Constant(kInputDim, kDefaultAccelerationBound);
+  description.input_lower = Eigen::VectorXd::Constant(kInputDim, -kDefaultPush);
+  description.input_upper = Eigen::VectorXd::Constant(kInputDim, kDefaultPush);
   description.position_x = kX;
   description.position_y = kY;
   return description;

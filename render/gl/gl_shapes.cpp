@@ -11,6 +11,8 @@ namespace qsmpc::render {
 namespace {
 
 constexpr int kCircleSides = 64;
+constexpr float kSlopeOffset = 2.0F;
+constexpr float kDepthOffset = 400.0F;  // smallest depth differences: some millimetres
 // m. The rasteriser may draw anything for a smooth line that has no direction.
 constexpr double kLeastSegment = 1e-6;
 
@@ -74,8 +76,8 @@ void draw_rectangle(const PlanarRectangle& area, double height, const Colour& co
 void load_view(const View& view) {
   glMatrixMode(GL_PROJECTION);
   glLoadIdentity();
-  glFrustum(view.centre - view.half_width, view.centre + view.half_width, -view.half_height,
-            view.half_height, view.near_plane, view.far_plane);
+  glFrustum(-view.half_width, view.half_width, -view.half_height, view.half_height, view.near_plane,
+            view.far_plane);
   std::array<double, 16> matrix{};
   const std::array<SpacePoint, 3> axes{
       view.right, view.up, SpacePoint{-view.forward[0], -view.forward[1], -view.forward[2]}};
@@ -234,8 +236,6 @@ void draw_coloured_path(const std::vector<ColouredPoint>& points, double width) 
 void draw_band(const std::vector<ColouredPoint>& edges) { draw_vertices(GL_TRIANGLE_STRIP, edges); }
 
 void draw_translucent(const std::vector<ColouredPoint>& corners) {
-  constexpr float kSlopeOffset = 2.0F;
-  constexpr float kDepthOffset = 400.0F;  // smallest depth differences: some millimetres
   glEnable(GL_POLYGON_OFFSET_FILL);
   glPolygonOffset(kSlopeOffset, kDepthOffset);
   // Depth alone first: then only the front is blended, once.
@@ -246,6 +246,35 @@ void draw_translucent(const std::vector<ColouredPoint>& corners) {
   write_depth(false);
   draw_vertices(GL_TRIANGLES, corners);
   glDisable(GL_POLYGON_OFFSET_FILL);
+}
+
+void begin_beside(const std::vector<ColouredPoint>& corners) {
+  glClearStencil(0);
+  glClear(GL_STENCIL_BUFFER_BIT);
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_ALWAYS, 1, 1);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(-kSlopeOffset, -kDepthOffset);
+  draw_vertices(GL_TRIANGLES, corners);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glStencilFunc(GL_EQUAL, 0, 1);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+}
+
+void end_beside() { glDisable(GL_STENCIL_TEST); }
+
+void draw_hidden(const std::vector<ColouredPoint>& corners) {
+  glStencilOp(GL_KEEP, GL_KEEP, GL_INCR);
+  glDepthFunc(GL_GREATER);
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(-kSlopeOffset, -kDepthOffset);
+  draw_vertices(GL_TRIANGLES, corners);
+  glDisable(GL_POLYGON_OFFSET_FILL);
+  glDepthFunc(GL_LEQUAL);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
 }
 
 }  // namespace qsmpc::render

@@ -66,4 +66,12 @@ void draw_band(const std::vector<ColouredPoint>& edges);
 /// seen through it, and where it touches something drawn before, that is in front.
 void draw_translucent(const std::vector<ColouredPoint>& corners);
 
+/// Between these two calls nothing is drawn where the solid of these triangles is seen.
+void begin_beside(const std::vector<ColouredPoint>& corners);
+void end_beside();
+
+/// What is hidden of the solid that `begin_beside` was given, as if what hides it were glass; of
+/// triangles that overlap, the first. Once between those two calls, and the last thing.
+void draw_hidden(const std::vector<ColouredPoint>& corners);
+
 }  // namespace qsmpc::render

@@ -12,22 +12,17 @@ namespace qsmpc::render {
 namespace {
 
 // Pixels of a picture of 1280x720.
-constexpr double kPanelWidth = 312.0;
-constexpr double kChartHeight = 80.0;
-constexpr double kCorner = 8.0;
+constexpr double kColumnWidth = 228.0;
+constexpr double kLeastChart = 72.0;
+constexpr double kMostChart = 112.0;
 constexpr double kBandHeight = 158.0;
 constexpr double kBandRows = 240.0;
 constexpr double kBandChart = 150.0;
 
-constexpr double kLeastPanel = 19.0;       // letters wide
-constexpr double kLeastBandChart = 11.0;   // letters wide
-constexpr double kMostCovered = 0.42;      // of the width, by a panel
-constexpr double kMostLegendShare = 0.12;  // of the height
+constexpr double kLeastColumn = 14.5;     // letters wide
+constexpr double kLeastBandChart = 11.0;  // letters wide
+constexpr double kKeptAbout = 1.5;        // letters of the banner, about what it must not cover
 constexpr float kBannerOpacity = 0.86F;
-
-bool has_panel(const Frame& frame) {
-  return !frame.title.empty() || !frame.hud.empty() || !frame.charts.empty();
-}
 
 const Colour& chart_colour(std::size_t index) {
   return hud_colour::kCharts[index % hud_colour::kCharts.size()];
@@ -35,15 +30,10 @@ const Colour& chart_colour(std::size_t index) {
 
 }  // namespace
 
-Hud::Hud(int width, int height) : width_(width), height_(height), style_(width, height) {}
+Hud::Hud(int width, int height) : style_(width, height) {}
 
-double Hud::panel_width() const {
-  return std::max(kPanelWidth * style_.scale, kLeastPanel * style_.text.size());
-}
-
-double Hud::covered_share(const Frame& frame) const {
-  const double share = (style_.margin() + panel_width()) / width_;
-  return has_panel(frame) && share <= kMostCovered ? share : 0.0;
+double Hud::column_width() const {
+  return std::round(std::max(kColumnWidth * style_.scale, kLeastColumn * style_.text.size()));
 }
 
 double Hud::band_height() const {
@@ -55,43 +45,33 @@ double Hud::legend_height(std::size_t lines) const {
   return std::round(static_cast<double>(lines) * style_.row_height() + style_.gap());
 }
 
-void Hud::draw(const Frame& frame, Image& image) const {
-  const double covered = covered_share(frame) * width_;
-  if (covered > 0.0) {
-    draw_panel(frame, image);
-    draw_legend(frame, image);
-  } else if (has_panel(frame)) {
-    std::string line = frame.title;
-    for (const HudRow& row : frame.hud) line += "  " + row.name + " " + row.value;
-    draw_heading(line, {0.0, 0.0, static_cast<double>(width_), static_cast<double>(height_)},
-                 image);
+double Hud::heading_height() const { return std::round(style_.row_height() + style_.gap()); }
+
+void Hud::draw_column(const Frame& frame, const PixelRectangle& area, Image& image) const {
+  Canvas canvas(image, area);
+  canvas.fill_rectangle(area, hud_colour::kBand);
+  const double padding = 0.8 * style_.padding();
+  const PixelRectangle inner{area.x + padding, area.y + padding, area.width - 2.0 * padding,
+                             area.height - 2.0 * padding};
+  double top = inner.y + draw_rows(frame, inner, canvas);
+  const double room = inner.y + inner.height - top;
+  const double least = std::max(kLeastChart * style_.scale, least_chart_height(style_));
+  const auto fit = static_cast<std::size_t>(std::max(room / (least + style_.gap()), 0.0));
+  const std::size_t charts = std::min(frame.charts.size(), fit);
+  if (charts == 0) return;
+  const double height = std::min(room / static_cast<double>(charts) - style_.gap(),
+                                 std::max(kMostChart * style_.scale, least));
+  for (std::size_t i = 0; i < charts; ++i) {
+    draw_strip_chart(frame.charts[i], {inner.x, top + style_.gap(), inner.width, height},
+                     chart_colour(i), style_, canvas);
+    top += height + style_.gap();
   }
-  draw_banner(frame, {covered, 0.0, width_ - covered, static_cast<double>(height_)}, image);
 }
 
-void Hud::draw_panel(const Frame& frame, Image& image) const {
-  const double padding = style_.padding();
-  const double left = style_.margin();
-  const double room = height_ - 2.0 * left;
-  const double rows = (frame.title.empty() ? 0.0 : style_.title_height()) +
-                      static_cast<double>(frame.hud.size()) * style_.row_height();
-  const double chart =
-      std::max(kChartHeight * style_.scale, least_chart_height(style_)) + style_.gap();
-  const double fit = std::max(std::floor((room - rows - 2.0 * padding) / chart), 0.0);
-  const std::size_t charts = std::min(frame.charts.size(), static_cast<std::size_t>(fit));
-  const double height = std::min(rows + static_cast<double>(charts) * chart + 2.0 * padding, room);
-  const PixelRectangle panel{left, left, panel_width(), height};
-  Canvas canvas(image, panel);
-  canvas.fill_rectangle(panel, hud_colour::kPanel, kCorner * style_.scale);
-  const PixelRectangle inner{left + padding, left + padding, panel_width() - 2.0 * padding,
-                             height - 2.0 * padding};
-  double top = inner.y + draw_rows(frame, inner, canvas);
-  for (std::size_t i = 0; i < charts; ++i) {
-    draw_strip_chart(frame.charts[i],
-                     {inner.x, top + style_.gap(), inner.width, chart - style_.gap()},
-                     chart_colour(i), style_, canvas);
-    top += chart;
-  }
+void Hud::draw_line(const Frame& frame, const PixelRectangle& area, Image& image) const {
+  std::string line = frame.title;
+  for (const HudRow& row : frame.hud) line += "  " + row.name + " " + row.value;
+  draw_heading(line, area, image);
 }
 
 double Hud::draw_rows(const Frame& frame, const PixelRectangle& area, Canvas& canvas) const {
@@ -152,23 +132,6 @@ void Hud::draw_band(const Frame& frame, const PixelRectangle& area, Image& image
   }
 }
 
-void Hud::draw_legend(const Frame& frame, Image& image) const {
-  const double covered = covered_share(frame) * width_;
-  const double margin = style_.margin();
-  const double padding = style_.padding();
-  const double most = std::floor(kMostLegendShare * height_ / style_.row_height());
-  const Legend legend(frame, style_, width_ - covered - 2.0 * margin - 2.0 * padding,
-                      std::max(static_cast<std::size_t>(most), std::size_t{1}));
-  const double width = legend.width() + 2.0 * padding;
-  const double height = legend.height() + style_.gap();
-  const double left = width_ - margin - width;
-  const double top = height_ - margin - height;
-  const PixelRectangle panel{left, top, width, height};
-  Canvas canvas(image, panel);
-  canvas.fill_rectangle(panel, hud_colour::kPanel, kCorner * style_.scale);
-  legend.draw({left + padding, top + 0.5 * style_.gap()}, canvas);
-}
-
 void Hud::draw_legend_band(const Frame& frame, const PixelRectangle& area, Image& image) const {
   Canvas canvas(image, area);
   canvas.fill_rectangle(area, hud_colour::kBand);
@@ -177,15 +140,27 @@ void Hud::draw_legend_band(const Frame& frame, const PixelRectangle& area, Image
   legend.draw({area.x + style_.padding(), area.y + 0.5 * (area.height - legend.height())}, canvas);
 }
 
-void Hud::draw_banner(const Frame& frame, const PixelRectangle& area, Image& image) const {
+void Hud::draw_banner(const Frame& frame, const PixelRectangle& area,
+                      const std::vector<PixelPoint>& kept, Image& image) const {
   if (frame.banner.empty()) return;
   const double inset = style_.banner.size();
   const double room = area.width - 2.0 * style_.margin() - 2.0 * inset;
   const std::string text = fitting(style_.banner, frame.banner, room);
   const double width = style_.banner.width(text) + 2.0 * inset;
   const double left = area.x + 0.5 * (area.width - width);
-  const double top = area.y + std::max(64.0 * style_.scale, 24.0);
-  const PixelRectangle panel{left, top, width, 2.07 * style_.banner.size()};
+  const double height = 2.07 * style_.banner.size();
+  const double edge = std::max(48.0 * style_.scale, 12.0);
+  const double high = area.y + edge;
+  const double low = area.y + area.height - edge - height;
+  const auto covered = [&](double at) {
+    const double about = kKeptAbout * style_.banner.size();
+    return std::count_if(kept.begin(), kept.end(), [&](const PixelPoint& place) {
+      return place.x > left - about && place.x < left + width + about && place.y > at - about &&
+             place.y < at + height + about;
+    });
+  };
+  const double top = covered(low) < covered(high) ? low : high;
+  const PixelRectangle panel{left, top, width, height};
   Canvas canvas(image, panel);
   const Colour ground =
       frame.alarm ? hud_colour::kAlarm : hud_colour::kPanel.with_alpha(kBannerOpacity);
@@ -197,7 +172,7 @@ void Hud::draw_banner(const Frame& frame, const PixelRectangle& area, Image& ima
 void Hud::draw_heading(const std::string& text, const PixelRectangle& area, Image& image) const {
   const double padding = style_.padding();
   const std::string line = fitting(style_.text, text, area.width - 2.0 * padding);
-  const double height = style_.row_height() + style_.gap();
+  const double height = std::min(heading_height(), area.height);
   const PixelRectangle panel{area.x, area.y, area.width, height};
   Canvas canvas(image, panel);
   canvas.fill_rectangle(panel, hud_colour::kPanel);

@@ -1,5 +1,5 @@
-// The head-up display: title, rows, strip charts, legend and banner over a finished picture, either
-// as a panel on its left or as a band below.
+// The head-up display: title, rows, strip charts and legend beside the scene, as a column or a
+// band, and a banner over it.
 #pragma once
 
 #include "render/frame.hpp"
@@ -13,23 +13,23 @@ class Hud {
   /// For pictures of this size (pixels).
   Hud(int width, int height);
 
-  /// Share of the picture's width, on the left, that the panel covers where `frame` has a title,
-  /// rows or charts; 0 where it has none. In a picture that is too narrow for a panel, what it says
-  /// is one line at the top, and 0 is covered.
-  [[nodiscard]] double covered_share(const Frame& frame) const;
+  /// Draws title, rows and charts into `area`, one below the other. Rows and charts for which there
+  /// is no room are left out, the last ones first.
+  void draw_column(const Frame& frame, const PixelRectangle& area, Image& image) const;
 
-  /// Draws panel, legend and banner over `image`, which has this display's size. Rows and charts
-  /// for which there is no room are left out, the last ones first.
-  void draw(const Frame& frame, Image& image) const;
-
-  /// Draws title, rows and charts into `area`.
+  /// The same side by side.
   void draw_band(const Frame& frame, const PixelRectangle& area, Image& image) const;
 
   /// Draws the legend of `frame` into `area`.
   void draw_legend_band(const Frame& frame, const PixelRectangle& area, Image& image) const;
 
-  /// Draws the banner of `frame` into the upper part of `area`.
-  void draw_banner(const Frame& frame, const PixelRectangle& area, Image& image) const;
+  /// Draws title and rows as one line of text into `area`.
+  void draw_line(const Frame& frame, const PixelRectangle& area, Image& image) const;
+
+  /// Draws the banner of `frame` into the upper part of `area`, or into its lower part where it
+  /// would cover fewer of the places `kept`.
+  void draw_banner(const Frame& frame, const PixelRectangle& area,
+                   const std::vector<PixelPoint>& kept, Image& image) const;
 
   /// Draws one line of text at the top of `area`.
   void draw_heading(const std::string& text, const PixelRectangle& area, Image& image) const;
@@ -38,16 +38,15 @@ class Hud {
   [[nodiscard]] double band_height() const;
   [[nodiscard]] double legend_height(std::size_t lines) const;
 
+  /// Pixels of a column with title, rows and charts, and of one line of text.
+  [[nodiscard]] double column_width() const;
+  [[nodiscard]] double heading_height() const;
+
  private:
-  [[nodiscard]] double panel_width() const;
-  void draw_panel(const Frame& frame, Image& image) const;
-  void draw_legend(const Frame& frame, Image& image) const;
   // Title and rows in `area`; returns the height that they take.
   double draw_rows(const Frame& frame, const PixelRectangle& area, Canvas& canvas) const;
   void draw_row(const HudRow& row, const PixelRectangle& area, Canvas& canvas) const;
 
-  int width_;
-  int height_;
   HudStyle style_;
 };
 

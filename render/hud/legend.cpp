@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "render/hud/strip_chart.hpp"
 #include "render/palette.hpp"
 
 namespace qsmpc::render {
@@ -36,35 +37,38 @@ std::vector<Legend::Entry> Legend::entries_of(const Frame& frame) {
   std::vector<Entry> entries;
   const int stages = static_cast<int>(std::max(frame.particles.size(), frame.ellipses.size()));
   if (stages > 0) {
-    Entry belief{
-        stages > 1 ? fmt::format("belief, stage 0–{}", stages - 1) : "belief", Mark::kDots, {}};
+    Entry belief{stages > 1 ? fmt::format("belief, now to stage {}", stages - 1) : "belief",
+                 Mark::kDots,
+                 {}};
     for (int stage = 0; stage < stages; ++stage) {
       belief.colours.push_back(mix(stage_colour(stage, stages), kWhite, 0.12F));
     }
     entries.push_back(std::move(belief));
   }
   if (!frame.ellipses.empty()) {
-    entries.push_back({"50, 95 % of it", Mark::kRing, {mix(stage_colour(1, 3), kWhite, 0.3F)}});
+    entries.push_back(
+        {"its 50 % and 95 % regions", Mark::kRing, {mix(stage_colour(1, 3), kWhite, 0.3F)}});
   }
   if (!frame.raw_points.empty()) {
     entries.push_back({"before compression", Mark::kDots,
                        std::vector<Colour>(3, mix(palette::kRawPoint, kWhite, 0.25F))});
   }
   if (!frame.tube.empty()) {
-    entries.push_back({"P(unsafe) ≤ 10⁻⁶ … 1", Mark::kRamp, ramp(tube_colour)});
+    entries.push_back({fmt::format("risk at most {} % to 100 %", short_number(100.0 * kLeastRisk)),
+                       Mark::kRamp, ramp(tube_colour)});
   }
   if (!frame.planned_path.empty()) {
-    entries.push_back({"planned mean", Mark::kLine, {kWhite}});
+    entries.push_back({"planned path", Mark::kLine, {kWhite}});
   }
   if (!frame.body.empty()) {
     entries.push_back({"body", Mark::kLine, {palette::kBody}});
   }
   if (frame.ghost) {
-    entries.push_back({"predicted", Mark::kPatch, {palette::kGhost.with_alpha(1.0F)}});
+    entries.push_back({"predicted before", Mark::kPatch, {palette::kGhost.with_alpha(1.0F)}});
   }
   if (!frame.clearances.empty()) {
     entries.push_back(
-        {fmt::format("driven, clearance 0 … {:g} m", kCalmClearance), Mark::kRamp,
+        {fmt::format("driven, clearance 0 to {:g} m", kCalmClearance), Mark::kRamp,
          ramp([](double share) { return clearance_colour(share * kCalmClearance); })});
   } else if (!frame.driven_path.empty()) {
     entries.push_back({"driven path", Mark::kLine, {Colour{0.45F, 0.62F, 0.90F}}});

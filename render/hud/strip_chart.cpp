@@ -1,8 +1,10 @@
 #include "render/hud/strip_chart.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -28,10 +30,10 @@ Plot plot_of(const StripChart& chart, const PixelRectangle& area, const HudStyle
   Plot plot{.ground = {area.x, area.y + title_height(style), area.width,
                        area.height - title_height(style)},
             .curve_width = 0.0,
-            .upper = fmt::format("{:.3g}", chart.upper),
-            .lower = fmt::format("{:.3g}", chart.lower)};
+            .upper = chart.upper_label.empty() ? short_number(chart.upper) : chart.upper_label,
+            .lower = chart.lower_label.empty() ? short_number(chart.lower) : chart.lower_label};
   // The same for all charts, so that their time axes are in line.
-  const double labels = style.small.width("-0.785");
+  const double labels = style.small.width("10⁻⁶ %");
   plot.curve_width = area.width - labels - 3.0 * kInset;
   return plot;
 }
@@ -77,7 +79,35 @@ void draw_limit(const StripChart& chart, const Plot& plot, const HudStyle& style
                    hud_colour::kLimit);
 }
 
+std::string superscript(int exponent) {
+  constexpr std::array<const char*, 10> kDigits{"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string raised = exponent < 0 ? "⁻" : "";
+  for (const char digit : std::to_string(std::abs(exponent))) {
+    raised += kDigits[static_cast<std::size_t>(digit - '0')];
+  }
+  return raised;
+}
+
 }  // namespace
+
+std::string short_number(double value) {
+  constexpr double kLeastPlain = 1e-3;
+  constexpr double kLargestPlain = 1e5;
+  const double size = std::abs(value);
+  if (!std::isfinite(value)) return std::isnan(value) ? "–" : value < 0.0 ? "−∞" : "∞";
+  if (size == 0.0) return "0";
+  const std::string sign = value < 0.0 ? "−" : "";
+  if (size >= kLeastPlain * (1.0 - 1e-9) && size < 0.9995 * kLargestPlain) {
+    // Whole numbers have no exponent.
+    return sign + (size >= 999.5 ? fmt::format("{:.0f}", size) : fmt::format("{:.3g}", size));
+  }
+  const std::string digits = fmt::format("{:.1e}", size);
+  const std::size_t end = digits.find('e');
+  const std::string power = "10" + superscript(std::stoi(digits.substr(end + 1)));
+  std::string mantissa = digits.substr(0, end);
+  if (mantissa.ends_with(".0")) mantissa.resize(mantissa.size() - 2);
+  return sign + (mantissa == "1" ? power : mantissa + " × " + power);
+}
 
 double least_chart_height(const HudStyle& style) {
   return title_height(style) + kLeastGround * style.small.size();

@@ -22,11 +22,13 @@ constexpr double kWholeStageSize = 68.0;  // pixels across, a particle that has 
 constexpr double kLeastSize = 3.6;        // pixels
 constexpr double kLargestSize = 18.0;     // pixels
 constexpr double kRawSize = 1.9;          // pixels
-constexpr double kEllipseWidth = 1.5;     // pixels
+constexpr double kEllipseWidth = 1.7;     // pixels
 constexpr double kTubeEdgeWidth = 3.5;    // pixels
 constexpr std::size_t kMostEllipses = 7;
 constexpr int kEllipseSides = 48;
 constexpr float kParticleOpacity = 0.82F;
+constexpr float kNearOpacity = 0.22F;  // of a particle's, where the vehicle stands
+constexpr double kNearLengths = 1.5;   // of the vehicle, from which on particles are as usual
 constexpr float kRawOpacity = 0.42F;
 constexpr float kHalfOpacity = 0.95F;
 constexpr float kMostOpacity = 0.75F;
@@ -76,26 +78,39 @@ void paint_raw_points(const View& view, const std::vector<PlanarPoint>& raw) {
   draw_points(view, points);
 }
 
+// About the vehicle, whose part of the picture it keeps clear.
+struct Clearing {
+  PlanarPoint centre;
+  double radius;  // m
+
+  [[nodiscard]] float opacity(const PlanarPoint& point) const {
+    const double distance = std::hypot(point.x - centre.x, point.y - centre.y);
+    const auto share = static_cast<float>(radius > 0.0 ? std::min(distance / radius, 1.0) : 1.0);
+    return kNearOpacity + (1.0F - kNearOpacity) * share * share;
+  }
+};
+
 void append_stage(const ParticleStage& stage, const Colour& colour, double scale,
-                  std::vector<GlPoint>& points) {
+                  const Clearing& clearing, std::vector<GlPoint>& points) {
   const std::size_t begin = points.size();
   for (std::size_t i = 0; i < stage.points.size() && i < stage.weights.size(); ++i) {
     // Area proportional to weight.
     const double size = kWholeStageSize * std::sqrt(std::max(stage.weights[i], 0.0));
     points.push_back({on_ground(stage.points[i]),
                       static_cast<float>(scale * std::clamp(size, kLeastSize, kLargestSize)),
-                      colour});
+                      colour.with_alpha(kParticleOpacity * clearing.opacity(stage.points[i]))});
   }
   std::stable_sort(points.begin() + static_cast<std::ptrdiff_t>(begin), points.end(),
                    [](const GlPoint& a, const GlPoint& b) { return a.size > b.size; });
 }
 
 // The last stage first: it spreads widest and would cover the others.
-void paint_particles(const View& view, const std::vector<ParticleStage>& stages, double scale) {
+void paint_particles(const View& view, const std::vector<ParticleStage>& stages, double scale,
+                     const Clearing& clearing) {
   std::vector<GlPoint> points;
   for (std::size_t i = stages.size(); i-- > 0;) {
     const Colour colour = stage_colour(static_cast<int>(i), static_cast<int>(stages.size()));
-    append_stage(stages[i], colour.with_alpha(kParticleOpacity), scale, points);
+    append_stage(stages[i], colour, scale, clearing, points);
   }
   draw_points(view, points);
 }
@@ -144,11 +159,12 @@ PlanarPoint on_ellipse(const PlanarEllipse& ellipse, double angle) {
           ellipse.centre.y + first * ellipse.first_axis.y + second * ellipse.second_axis.y};
 }
 
-void paint_belief(const Frame& frame, const View& view) {
+void paint_belief(const Frame& frame, const View& view, double vehicle_length) {
   const double scale = mark_scale(view);
   paint_tube(frame.tube);
   paint_raw_points(view, frame.raw_points);
-  paint_particles(view, frame.particles, scale);
+  paint_particles(view, frame.particles, scale,
+                  {{frame.pose.x, frame.pose.y}, kNearLengths * vehicle_length});
   paint_tube_edges(frame.tube, scale);
   paint_ellipses(frame.ellipses, scale);
   paint_plan(view, frame.planned_path, scale);

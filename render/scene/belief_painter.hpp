@@ -16,7 +16,8 @@ inline constexpr double kReferenceHeight = 720.0;
 /// The point of `ellipse` at `angle` (rad): 0 is the end of its first axis.
 [[nodiscard]] PlanarPoint on_ellipse(const PlanarEllipse& ellipse, double angle);
 
-/// Draws them within a FlatDrawing with `view`, in the order above.
-void paint_belief(const Frame& frame, const View& view);
+/// Draws them within a FlatDrawing with `view`, in the order above. Particles near the vehicle, at
+/// `frame.pose` and `vehicle_length` m long, are fainter: it is seen through them.
+void paint_belief(const Frame& frame, const View& view, double vehicle_length);
 
 }  // namespace qsmpc::render

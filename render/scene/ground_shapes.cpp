@@ -115,7 +115,7 @@ void draw_fading_segments(const View& view, const std::vector<SpacePoint>& ends,
 void draw_sky(const View& view, double reach, const Colour& top, const Colour& bottom) {
   // Rays that fall by `fall` for each metre along the line of sight meet the ground within reach if
   // they are no longer than that; the picture's corners are the longest.
-  const double across = (view.half_width + std::abs(view.centre)) / view.near_plane;
+  const double across = view.half_width / view.near_plane;
   const double upwards = view.half_height / view.near_plane;
   const double longest = std::hypot(1.0, across, upwards);
   const double fall = view.position[2] * longest / reach;

@@ -22,7 +22,6 @@ constexpr double kWallThickness = 0.06;   // m
 constexpr double kStripeSpacing = 0.35;   // m, of the unsafe set's stripes
 constexpr double kStripedReach = 3.0;     // m beyond the region, where stripes end
 constexpr double kMostStripes = 120.0;    // across the region
-constexpr double kPostHeight = 0.75;      // m, the target's flag
 constexpr double kPostSide = 0.018;       // m
 constexpr double kTubeHeight = 0.35;      // m
 constexpr double kGroundReach = 500.0;    // m beyond the region
@@ -107,6 +106,27 @@ void append_stripes(const PlanarRectangle& area, double height, double spacing,
 double stripe_spacing(const PlanarRectangle& region) {
   const double extent = std::max(region.x_upper - region.x_lower, region.y_upper - region.y_lower);
   return std::max(kStripeSpacing, extent / kMostStripes);
+}
+
+// Triangles of three corners each, by their distance from the camera.
+std::vector<ColouredPoint> nearest_first(const std::vector<ColouredPoint>& corners,
+                                         const View& view) {
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t i = 0; i + 2 < corners.size(); i += 3) {
+    double depth = 0.0;
+    for (std::size_t k = i; k < i + 3; ++k) {
+      depth += camera_coordinates(view, corners[k].position)[2];
+    }
+    order.emplace_back(depth, i);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<ColouredPoint> sorted;
+  sorted.reserve(corners.size());
+  for (const auto& [depth, i] : order) {
+    sorted.insert(sorted.end(), corners.begin() + static_cast<std::ptrdiff_t>(i),
+                  corners.begin() + static_cast<std::ptrdiff_t>(i + 3));
+  }
+  return sorted;
 }
 
 void paint_driven_path(const Frame& frame, double scale) {
@@ -239,9 +259,7 @@ void ScenePainter::paint_target_post() const {
 
 // Marks on the ground are painted in order and without depth of their own, so that none flickers
 // through another; what stands upright has depth and hides them.
-void ScenePainter::paint(const Frame& frame, const View& view,
-                         const std::vector<std::vector<PlanarPoint>>& vehicle_shadows,
-                         const std::vector<ColouredPoint>& ghost) const {
+void ScenePainter::paint(const Frame& frame, const View& view, const VehicleMarks& vehicle) const {
   const FlatDrawing drawing(view);
   const double scale = view.height / kReferenceHeight;
   write_depth(true);
@@ -249,9 +267,9 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   write_depth(false);
   paint_ground(view);
   paint_target_mark();
-  paint_shadows(vehicle_shadows);
+  paint_shadows(vehicle.shadows);
   paint_driven_path(frame, scale);
-  paint_belief(frame, view);
+  paint_belief(frame, view, vehicle.length);
   for (const std::vector<PlanarPoint>& line : frame.body) {
     draw_path(line, kMarkHeight, kBodyCasing * scale, palette::kBodyCasing);
   }
@@ -261,7 +279,11 @@ void ScenePainter::paint(const Frame& frame, const View& view,
   paint_stripes(scale);
   paint_edges(scale);
   paint_target_post();
-  draw_translucent(ghost);
+  // The vehicle is neither tinted by the ghost nor hidden by what stands before it.
+  begin_beside(vehicle.surface);
+  draw_hidden(nearest_first(vehicle.surface, view));
+  draw_translucent(vehicle.ghost);
+  end_beside();
 }
 
 }  // namespace qsmpc::render

@@ -5,9 +5,11 @@
 
 #include "render/camera.hpp"
 #include "render/frame.hpp"
-#include "render/gl/gl_shapes.hpp"
+#include "render/scene/vehicle.hpp"
 
 namespace qsmpc::render {
+
+inline constexpr double kPostHeight = 0.75;  ///< m, of the target's flag
 
 /// The smallest rectangle about what is finite in `world`: bounds, obstacles, target; at least 2 m
 /// wide and high.
@@ -18,12 +20,9 @@ class ScenePainter {
   /// `region`: where there is something to be seen; the ground's grid reaches well beyond it.
   ScenePainter(World world, const PlanarRectangle& region);
 
-  /// Draws into the picture in which the vehicle, and nothing else, has been drawn.
-  /// `vehicle_shadows`: outlines on the ground; `ghost`: triangles as `draw_translucent` takes
-  /// them.
-  void paint(const Frame& frame, const View& view,
-             const std::vector<std::vector<PlanarPoint>>& vehicle_shadows,
-             const std::vector<ColouredPoint>& ghost) const;
+  /// Draws into the picture in which the vehicle, and nothing else, has been drawn. Terrain and
+  /// obstacles do not hide the vehicle: where they stand before it, it shines through.
+  void paint(const Frame& frame, const View& view, const VehicleMarks& vehicle) const;
 
  private:
   void paint_solids() const;

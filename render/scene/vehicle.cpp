@@ -13,6 +13,7 @@
 #include "models/constants.hpp"
 #include "render/gl/shadow.hpp"
 #include "render/gl/solid_mesh.hpp"
+#include "render/palette.hpp"
 #include "render/scene/mujoco_guard.hpp"
 
 namespace qsmpc::render {
@@ -62,6 +63,40 @@ bool is_visible(const mjModel& model, int geom) {
   return model.geom_group[geom] <= kLastVisibleGroup && model.geom_type[geom] != mjGEOM_PLANE;
 }
 
+// Whether it is a part of the vehicle, not of the terrain: what is welded to the world stands.
+bool is_vehicle(const mjModel& model, int geom) {
+  return is_visible(model, geom) && model.body_weldid[model.geom_bodyid[geom]] != 0;
+}
+
+Colour colour_of(const mjModel& model, int geom) {
+  const int material = model.geom_matid[geom];
+  const float* const rgba = material < 0
+                                ? model.geom_rgba + static_cast<std::ptrdiff_t>(4) * geom
+                                : model.mat_rgba + static_cast<std::ptrdiff_t>(4) * material;
+  return {rgba[0], rgba[1], rgba[2], rgba[3]};
+}
+
+// The file's lamps may be any: too bright, none, or about another place. With these a face towards
+// the sun has the colour that the file gives it.
+void light(mjvScene& scene) {
+  constexpr std::array<float, 3> kSun{0.30F, -0.36F, -0.90F};
+  constexpr float kAmbient = 0.52F;
+  constexpr float kSunlight = 0.50F;
+  constexpr float kSparkle = 0.08F;
+  mjvLight sun{};
+  std::copy(kSun.begin(), kSun.end(), sun.dir);
+  sun.attenuation[0] = 1.0F;
+  sun.cutoff = 180.0F;
+  sun.directional = 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    sun.ambient[i] = kAmbient;
+    sun.diffuse[i] = kSunlight;
+    sun.specular[i] = kSparkle;
+  }
+  scene.lights[0] = sun;
+  scene.nlight = 1;
+}
+
 // Half sides of the box about a geom, in its own axes.
 SpacePoint half_sides(const mjModel& model, int geom) {
   const mjtNum* const size = model.geom_size + static_cast<std::ptrdiff_t>(3) * geom;
@@ -98,6 +133,18 @@ SolidPlace solid_place(const mjModel& model, const mjData& data, int geom) {
   return place;
 }
 
+// The surface of all parts of the vehicle where `data` has them, as triangles; meshes as boxes.
+template <typename ColourOf>
+std::vector<ColouredPoint> surface_of(const mjModel& model, const mjData& data,
+                                      const ColourOf& colour) {
+  std::vector<ColouredPoint> corners;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (!is_vehicle(model, geom)) continue;
+    append_solid(solid_shape(model, geom), solid_place(model, data, geom), colour(geom), corners);
+  }
+  return corners;
+}
+
 std::vector<SpacePoint> box_corners(const mjModel& model, const mjData& data, int geom) {
   const SpacePoint half = half_sides(model, geom);
   const mjtNum* const centre = data.geom_xpos + static_cast<std::ptrdiff_t>(3) * geom;
@@ -114,6 +161,29 @@ std::vector<SpacePoint> box_corners(const mjModel& model, const mjData& data, in
     }
   }
   return corners;
+}
+
+// z (m) of the lowest place that a geom reaches while the last hinge that tilts it turns.
+double lowest_place(const mjModel& model, const mjData& data, int geom) {
+  const std::vector<SpacePoint> corners = box_corners(model, data, geom);
+  for (int body = model.geom_bodyid[geom]; body > 0; body = model.body_parentid[body]) {
+    for (int joint = model.body_jntadr[body];
+         joint < model.body_jntadr[body] + model.body_jntnum[body]; ++joint) {
+      const mjtNum* const axis = data.xaxis + static_cast<std::ptrdiff_t>(3) * joint;
+      const mjtNum* const anchor = data.xanchor + static_cast<std::ptrdiff_t>(3) * joint;
+      if (model.jnt_type[joint] != mjJNT_HINGE || std::abs(axis[2]) > 1.0 - kAxisTolerance)
+        continue;
+      double reach = 0.0;
+      for (const SpacePoint& corner : corners) {
+        reach = std::max(
+            reach, std::hypot(corner[0] - anchor[0], corner[1] - anchor[1], corner[2] - anchor[2]));
+      }
+      return anchor[2] - reach;
+    }
+  }
+  double lowest = kInfinity;
+  for (const SpacePoint& corner : corners) lowest = std::min(lowest, corner[2]);
+  return lowest;
 }
 
 // Address in qpos of the first joint of `type` about or along `axis`, or -1.
@@ -163,9 +233,10 @@ struct Vehicle::Simulator {
   mjrContext context{};
   mjrRect viewport{};
   double length = 0.0;
+  double lift = 0.0;                     // m, that everything is drawn higher
   std::vector<unsigned char> bottom_up;  // the picture as OpenGL has it, rows from the bottom
 
-  Simulator(const std::string& path, int width, int height)
+  Simulator(const std::string& path, int width, int height, bool raised)
       : model(load_model(path)), viewport{0, 0, width, height} {
     prepare_model(*model, width, height);
     data.reset(mj_makeData(model.get()));
@@ -179,6 +250,7 @@ struct Vehicle::Simulator {
     mjr_defaultContext(&context);
     update_positions();
     measure_length();
+    if (raised) lift_off();
     try {
       make_drawing_resources(path);
     } catch (...) {
@@ -217,29 +289,44 @@ struct Vehicle::Simulator {
     mj_comPos(model.get(), data.get());
     mj_camlight(model.get(), data.get());
     mj_tendon(model.get(), data.get());
+    raise(*data);
+  }
+
+  void raise(mjData& moved) const {
+    for (int geom = 0; geom < model->ngeom; ++geom) {
+      moved.geom_xpos[static_cast<std::ptrdiff_t>(3) * geom + 2] += lift;
+    }
+  }
+
+  // So that no part reaches the ground however its hinges turn.
+  void lift_off() {
+    constexpr double kGap = 0.05;  // m
+    double lowest = 0.0;
+    for (int geom = 0; geom < model->ngeom; ++geom) {
+      if (is_vehicle(*model, geom)) lowest = std::min(lowest, lowest_place(*model, *data, geom));
+    }
+    if (lowest < 0.0) lift = kGap - lowest;
   }
 
   void measure_length() {
-    std::array<double, 2> lower{kInfinity, kInfinity};
-    std::array<double, 2> upper{-kInfinity, -kInfinity};
+    std::array<double, 3> lower{kInfinity, kInfinity, kInfinity};
+    std::array<double, 3> upper{-kInfinity, -kInfinity, -kInfinity};
     for (int geom = 0; geom < model->ngeom; ++geom) {
-      if (!is_visible(*model, geom)) {
-        continue;
-      }
+      if (!is_vehicle(*model, geom)) continue;
       for (const SpacePoint& corner : box_corners(*model, *data, geom)) {
-        for (std::size_t i = 0; i < 2; ++i) {
+        for (std::size_t i = 0; i < 3; ++i) {
           lower[i] = std::min(lower[i], corner[i]);
           upper[i] = std::max(upper[i], corner[i]);
         }
       }
     }
-    length = std::max({upper[0] - lower[0], upper[1] - lower[1], 0.0});
+    length = std::max({upper[0] - lower[0], upper[1] - lower[1], upper[2] - lower[2], 0.0});
   }
 };
 
-Vehicle::Vehicle(const std::string& mjcf_path, int width, int height) {
+Vehicle::Vehicle(const std::string& mjcf_path, int width, int height, bool raised) {
   install_mujoco_guard();
-  simulator_ = std::make_unique<Simulator>(mjcf_path, width, height);
+  simulator_ = std::make_unique<Simulator>(mjcf_path, width, height, raised);
 }
 
 Vehicle::~Vehicle() = default;
@@ -268,14 +355,15 @@ void Vehicle::draw(const View& view) {
   Simulator& s = *simulator_;
   mjr_setBuffer(mjFB_OFFSCREEN, &s.context);  // another vehicle may have drawn to its own
   mjv_updateScene(s.model.get(), s.data.get(), &s.option, nullptr, &s.camera, mjCAT_ALL, &s.scene);
-  // Our own lens instead of MuJoCo's, whose picture cannot be shifted aside of the head-up display.
+  light(s.scene);
+  // Our own lens instead of MuJoCo's: what is drawn later has the same.
   for (mjvGLCamera& eye : s.scene.camera) {
     for (std::size_t i = 0; i < 3; ++i) {
       eye.pos[i] = static_cast<float>(view.position[i]);
       eye.forward[i] = static_cast<float>(view.forward[i]);
       eye.up[i] = static_cast<float>(view.up[i]);
     }
-    eye.frustum_center = static_cast<float>(view.centre);
+    eye.frustum_center = 0.0F;
     eye.frustum_top = static_cast<float>(view.half_height);
     eye.frustum_bottom = static_cast<float>(-view.half_height);
     eye.frustum_near = static_cast<float>(view.near_plane);
@@ -302,31 +390,50 @@ std::vector<std::vector<PlanarPoint>> Vehicle::shadows() const {
   const mjModel& model = *simulator_->model;
   std::vector<std::vector<PlanarPoint>> outlines;
   for (int geom = 0; geom < model.ngeom; ++geom) {
-    if (is_visible(model, geom) && model.geom_bodyid[geom] != 0) {
+    if (is_vehicle(model, geom)) {
       outlines.push_back(cast_shadow(box_corners(model, *simulator_->data, geom)));
     }
   }
   return outlines;
 }
 
-std::vector<ColouredPoint> Vehicle::ghost(const PlanarPose& pose, const Colour& colour) {
+std::vector<ColouredPoint> Vehicle::ghost(const Frame& frame) {
+  if (!frame.ghost) return {};
+  const PlanarPose& pose = *frame.ghost;
   if (!std::isfinite(pose.x) || !std::isfinite(pose.y) || !std::isfinite(pose.heading)) {
     throw std::invalid_argument("frame: the ghost's pose is not finite");
   }
   const mjModel& model = *simulator_->model;
   mjData& data = *simulator_->ghost_data;
   std::copy_n(simulator_->data->qpos, model.nq, data.qpos);
-  set_pose(model, pose, data.qpos);
-  mj_kinematics(&model, &data);
-  std::vector<ColouredPoint> corners;
-  for (int geom = 0; geom < model.ngeom; ++geom) {
-    if (is_visible(model, geom) && model.geom_bodyid[geom] != 0) {
-      append_solid(solid_shape(model, geom), solid_place(model, data, geom), colour, corners);
-    }
+  if (frame.ghost_qpos.size() == static_cast<std::size_t>(model.nq)) {
+    std::copy(frame.ghost_qpos.begin(), frame.ghost_qpos.end(), data.qpos);
+  } else {
+    set_pose(model, pose, data.qpos);
   }
-  return corners;
+  mj_kinematics(&model, &data);
+  simulator_->raise(data);
+  constexpr float kNearest = 0.35F;  // of its opacity, where it stands in the vehicle
+  const double apart = std::hypot(pose.x - frame.pose.x, pose.y - frame.pose.y);
+  const auto share = static_cast<float>(length() > 0.0 ? std::min(apart / length(), 1.0) : 1.0);
+  const Colour colour =
+      palette::kGhost.with_alpha(palette::kGhost.alpha * (kNearest + (1.0F - kNearest) * share));
+  return surface_of(model, data, [&colour](int) { return colour; });
+}
+
+VehicleMarks Vehicle::marks(const Frame& frame) {
+  constexpr float kHiddenOpacity = 0.55F;
+  const mjModel& model = *simulator_->model;
+  return {.length = length(),
+          .shadows = shadows(),
+          .surface = surface_of(
+              model, *simulator_->data,
+              [&model](int geom) { return colour_of(model, geom).with_alpha(kHiddenOpacity); }),
+          .ghost = ghost(frame)};
 }
 
 double Vehicle::length() const { return simulator_->length; }
+
+double Vehicle::lift() const { return simulator_->lift; }
 
 }  // namespace qsmpc::render

@@ -168,6 +168,7 @@ class PartByPart {
         vehicle_(trace.scenario.plant.mjcf, video.width, video.height),
         painter_(frames.world(), frames.region()),
         hud_(video.width, video.height),
+        column_{0.0, 0.0, hud_.column_width(), static_cast<double>(video.height)},
         writer_(path, {.format = render::known_video_format(path),
                        .width = video.width,
                        .height = video.height,
@@ -177,8 +178,8 @@ class PartByPart {
     const render::Frame frame = frames_.at(static_cast<double>(index) / video_.fps);
     render::Frame bare = frame;
     bare.particles.clear();
-    const render::View view = render::chase_view(
-        *frame.followed, 4.0, {video_.width, video_.height, hud_.covered_share(frame)});
+    const render::View view =
+        render::chase_view(*frame.followed, 4.0, {video_.width, video_.height});
     vehicle_.place(frame);
     parts.vehicle.measure([&] { draw_vehicle(view); });
     parts.scene.measure([&] { paint(bare, view); });
@@ -186,7 +187,7 @@ class PartByPart {
     parts.scene_with_points.measure([&] { paint(frame, view); });
     parts.reading.measure([&] { vehicle_.read_picture(image_); });
     parts.smoothing.measure([&] { render::smooth_edges(image_, workspace_); });
-    parts.hud.measure([&] { hud_.draw(frame, image_); });
+    parts.hud.measure([&] { hud_.draw_column(frame, column_, image_); });
     parts.encoding.measure([&] { writer_.add(image_); });
   }
 
@@ -196,9 +197,7 @@ class PartByPart {
     render::glFinish();
   }
   void paint(const render::Frame& frame, const render::View& view) {
-    std::vector<render::ColouredPoint> ghost;
-    if (frame.ghost) ghost = vehicle_.ghost(*frame.ghost, render::palette::kGhost);
-    painter_.paint(frame, view, vehicle_.shadows(), ghost);
+    painter_.paint(frame, view, vehicle_.marks(frame));
     render::glFinish();
   }
 
@@ -208,6 +207,7 @@ class PartByPart {
   render::Vehicle vehicle_;
   render::ScenePainter painter_;
   render::Hud hud_;
+  render::PixelRectangle column_;
   render::SmoothingWorkspace workspace_;
   render::Image image_;
   VideoFile writer_;

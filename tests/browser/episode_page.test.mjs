@@ -97,6 +97,41 @@ test("the slider moves particles, ellipses, the charts' mark and the table", asy
   await page.close();
 });
 
+test("clearance is the same in the table of the moment and in its chart, at the end too", async () => {
+  // Times of charts are numbers of 32 bits, the moment is not: on a long drive it matters.
+  const long = temporaryFolder();
+  const kLongPeriod = 1.3;  // s
+  qsmpc("run", "double_integrator", "--quiet", "--no-video", "--out", long, "--fail-on", "none",
+        "--set", "plant.kind=analytic", "--set", `time_step=${kLongPeriod}`,
+        "--set", "limit={steps: 40, stop_when_unsafe: false}", "--set", "target.radius=1e-9");
+  const {page} = await openPage(browser, join(long, "report.html"));
+  const charted = () => page.evaluate(() => {
+    const figure = [...document.querySelectorAll("#charts > figure")]
+      .find((one) => one.querySelector("figcaption").textContent.startsWith("Clearance"));
+    return figure.querySelectorAll(".u-legend .u-value")[1].textContent;
+  });
+  const unit = (await now(page, "clearance")).replace(/^\S+ /, "");
+  for (let period = 0; period <= 40; ++period) {
+    await slideTo(page, period * kLongPeriod);
+    await page.waitForTimeout(20);  // legends follow after the task that moved the moment
+    assert.equal(await now(page, "clearance"), `${await charted()} ${unit}`,
+                 `period ${period}`);
+  }
+  await page.close();
+});
+
+test("what is no bound is not called one", async () => {
+  const noisy = temporaryFolder();
+  qsmpc("run", "dubins_corridor", "--quiet", "--no-video", "--out", noisy, "--set", "limit.steps=3",
+        "--set", "disturbance.sensor=[0.01, 0.01, 0.001]");
+  const {page, seen} = await openPage(browser, join(noisy, "report.html"));
+  assert.deepEqual(seen.errors, []);
+  assert.match(await page.locator("#no-bound").textContent(), /No certificate is a bound here/);
+  assert.match(await page.locator("#now").textContent(), /Certified, next step: no bound/);
+  assert.doesNotMatch(await page.locator("#now").textContent(), /P\(unsafe\)/);
+  await page.close();
+});
+
 test("the video seeks with the slider", async () => {
   const {page} = await open();
   await until(page, () => document.querySelector("video").readyState >= 1);
@@ -225,13 +260,15 @@ test("its policy stops a script that is put into it", async () => {
   await page.close();
 });
 
-test("a system without a place in the plane has its charts and no map", async () => {
+test("a system without a place in the plane has its charts, and a map of two states", async () => {
   const out = temporaryFolder();
   qsmpc("run", "double_integrator", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=5");
   const {page, seen} = await openPage(browser, join(out, "report.html"));
   await slideTo(page, 0.2);
   assert.deepEqual(seen.errors, []);
-  assert.equal(await page.locator("#live-map").count(), 0);
+  assert.ok(await page.locator("#live-map").isVisible());
+  assert.match(await page.locator("#live-map svg").first().textContent(), /velocity \(m\/s\)/);
+  assert.ok(await page.locator("#live-map .dots[d]:not([d=''])").count() > 0);
   assert.ok(await page.locator("#charts .plot").count() >= 6);
   await page.close();
 });

@@ -29,12 +29,13 @@ export function qsmpc(...words) {
 
 export const readJson = (path) => JSON.parse(readFileSync(path, "utf8"));
 
-export function startBrowser() {
+// With `more` of Chromium's own options.
+export function startBrowser(more = []) {
   const executablePath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]
     .find(existsSync);
   if (!executablePath) throw new Error("no Chromium; install the package chromium");
   // Tests may run as root, where the sandbox of Chromium cannot.
-  return chromium.launch({executablePath, args: ["--no-sandbox", "--disable-gpu"]});
+  return chromium.launch({executablePath, args: ["--no-sandbox", "--disable-gpu", ...more]});
 }
 
 // Opens a page from its file. `seen` collects what it logs as an error, throws, asks for (but

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -91,6 +92,12 @@ std::vector<std::string> rows_of(const std::string& folder) {
           rows.push_back(fmt::format("{} {} {} {} {}", seed, period, row.certified, row.published,
                                      row.unsafe));
         });
+    store.for_each_path(variant.id, std::numeric_limits<std::int64_t>::max(),
+                        [&](const std::string& outcome, const auto& path) {
+                          std::string points;
+                          for (const auto& [x, y] : path) points += fmt::format(" {} {}", x, y);
+                          rows.push_back(outcome + points);
+                        });
   }
   return rows;
 }

@@ -85,12 +85,16 @@ TEST(Compare, report_makes_the_page_again_from_the_folder) {
   EXPECT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(result.output, page + "\n");
   EXPECT_TRUE(read_text(page) == before);
-  const ProcessResult figures = run_qsmpc({"report", folder.path(), "--figures"});
+  const ProcessResult figures = run_qsmpc({"report", folder.path(), "--figures", "--titles"});
   EXPECT_EQ(figures.exit_code, 0) << figures.errors;
   EXPECT_THAT(files_in(folder.path() + "/figures"),
-              ElementsAre("certificates.pdf", "certificates.svg", "divergence.pdf",
+              ElementsAre("captions.txt", "certificates.pdf", "certificates.svg", "divergence.pdf",
                           "divergence.svg", "residuals.pdf", "residuals.svg", "w2.pdf", "w2.svg"));
   EXPECT_EQ(read_text(folder.path() + "/figures/w2.svg"), read_text(folder.path() + "/w2.svg"));
+  const ProcessResult narrow = run_qsmpc({"report", folder.path(), "--figures", "--columns", "1"});
+  EXPECT_EQ(narrow.exit_code, 0) << narrow.errors;
+  EXPECT_THAT(read_text(folder.path() + "/figures/w2.svg"), HasSubstr("width=\"336\""));
+  EXPECT_EQ(run_qsmpc({"report", folder.path(), "--columns", "1"}).exit_code, 2);
   fs::resize_file(folder.path() + "/comparison.h5", 5000);
   const ProcessResult damaged = run_qsmpc({"report", folder.path()});
   EXPECT_EQ(damaged.exit_code, 2);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -107,6 +108,27 @@ TEST_F(Render, shows_a_part_at_another_speed) {
   EXPECT_EQ(probed("part.mp4", {"--from", "0.1", "--to", "0.4"}), "h264,320,180,3");
   EXPECT_EQ(probed("slow.mp4", {"--from", "0.1", "--to", "0.4", "--speed", "0.5"}),
             "h264,320,180,6");
+}
+
+TEST_F(Render, an_interrupt_leaves_the_video_that_was_there) {
+  ASSERT_EQ(render({}).exit_code, 0);
+  const std::string video = episode() + "/episode.mp4";
+  const std::string bytes = read_text(video);
+  const std::string numbers = read_text(episode() + "/video.json");
+  std::vector<std::string> arguments{"render", episode(), "--size", "1280x720", "--fps", "240"};
+  const ProcessResult result = run_qsmpc(arguments, {.meanwhile = [&](pid_t process) {
+                                           if (!std::filesystem::exists(video + ".partial")) {
+                                             return false;
+                                           }
+                                           kill(process, SIGINT);
+                                           return true;
+                                         }});
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.output, "");
+  EXPECT_THAT(result.errors, HasSubstr("qsmpc: interrupted: " + video + " is left as it was\n"));
+  EXPECT_EQ(read_text(video), bytes);
+  EXPECT_EQ(read_text(episode() + "/video.json"), numbers);
+  EXPECT_FALSE(std::filesystem::exists(video + ".partial"));
 }
 
 TEST_F(Render, a_still_is_a_png_of_the_size_asked_for) {

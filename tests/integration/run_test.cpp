@@ -282,6 +282,52 @@ TEST(Run, an_interrupt_keeps_the_trace_and_a_playable_video) {
   EXPECT_EQ(partial_files(folder.path()), 0);
 }
 
+TEST(Run, an_interrupt_while_the_video_is_drawn_is_told_and_exits_with_130) {
+  const TemporaryFolder folder;
+  const std::string video = folder.path() + "/episode.mp4";
+  // Many frames: drawing takes much longer than it takes the signal to come.
+  const ProcessResult result = run_qsmpc(
+      small_run(folder.path(), {"--set", "video.size=1280x720", "--set", "video.fps=240"}),
+      {.meanwhile = [&](pid_t process) {
+        if (!exists(video + ".partial")) return false;
+        kill(process, SIGINT);
+        return true;
+      }});
+  EXPECT_EQ(result.exit_code, 130) << result.errors;
+  EXPECT_THAT(result.errors, ContainsRegex("interrupted: .*/episode.mp4 ends early, after [0-9]+ "
+                                           "of 384 frames\n"));
+  EXPECT_THAT(probe(video), ::testing::StartsWith("h264,1280,720,"));
+  EXPECT_EQ(read_trace(folder.path() + "/episode.h5").outcome, Outcome::kTimeout);
+  EXPECT_EQ(partial_files(folder.path()), 0);
+}
+
+/// Whether the process has taken over SIGTERM, as it does before anything else.
+bool catches_sigterm(pid_t process) {
+  const std::string status = read_text("/proc/" + std::to_string(process) + "/status");
+  const std::size_t at = status.find("SigCgt:");
+  if (at == std::string::npos) return false;
+  return (std::stoull(status.substr(at + 7), nullptr, 16) >> (SIGTERM - 1) & 1U) == 1U;
+}
+
+TEST(Run, a_plant_that_takes_very_many_steps_hears_that_it_is_to_end) {
+  const TemporaryFolder folder;
+  const std::string out = folder.path() + "/out";
+  // 20 million steps before the first period.
+  const ProcessResult result = run_qsmpc(
+      {"run", "double_integrator", "--out", out, "--set",
+       "plant={kind: mujoco, mjcf: double_integrator_slider.xml, time_step: 1e-5, settling: 200, "
+       "state: {position: {joint: slide}, velocity: {joint: slide, quantity: velocity}}, "
+       "input: {acceleration: [{actuator: push}]}}"},
+      {.meanwhile = [](pid_t process) {
+        if (!catches_sigterm(process)) return false;
+        kill(process, SIGTERM);
+        return true;
+      }});
+  EXPECT_EQ(result.exit_code, 130);
+  EXPECT_EQ(result.errors, "qsmpc: interrupted\n");
+  EXPECT_FALSE(exists(out));  // it has not even begun to drive
+}
+
 TEST(Run, a_killed_episode_can_be_rendered_and_reported_as_far_as_it_came) {
   const TemporaryFolder folder;
   const std::string partial = folder.path() + "/episode.h5.partial";

@@ -243,7 +243,11 @@ void CampaignReader::read_plants(const YamlNode& node) {
 void CampaignReader::read_seeds() {
   const std::string expected = "{first: 0, count: 1000}, or a list of whole numbers";
   const YamlNode* node = take("seeds");
-  if (node == nullptr) {
+  const YamlNode* single = tree_.find("seed");
+  if (node == nullptr && single != nullptr) {
+    (void)take("seed");  // it is what is wrong, and not that another key is missing
+    problems_.add(*single, "seed", "a scenario's key", "seeds: " + expected);
+  } else if (node == nullptr) {
     root_.require("seeds", expected);
   } else if (node->kind == YamlNode::Kind::kList) {
     read_seed_list(*node);

@@ -107,6 +107,7 @@ Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
                {"unsafe_step_rate", variant.unsafe_step_rate()},
                {"certified_step_rate", variant.certified_step_rate()},
                {"exceedance_p_value", variant.p_value},
+               {"certificate", scope_json(variant.no_bound)},
                {"calibration", calibration_json(variant.calibration, variant.published)},
                {"differences", differences_json(statistics, number)},
                {"ocp_ms", times_json(variant)}});

@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t kNameWidth = 28;   // of variants
 constexpr std::size_t kTitleLimit = 76;  // of a variant's name in a line of its own
 constexpr std::size_t kFullName = 100;
+constexpr std::size_t kNoBoundLimit = 94;  // bytes of the reason in its line
 constexpr std::size_t kOutcomeLimit = 16;
 constexpr std::size_t kDoneWidth = 7;   // of the number of drives
 constexpr std::size_t kRateWidth = 14;  // of the limits of a rate in percent
@@ -33,7 +34,8 @@ std::string cut(const std::string& text, std::size_t width) {
 std::string head_name(const char* text) { return fmt::format("     {:<{}}", text, kNameWidth); }
 /// With its number, by which differences name it.
 std::string name_of(const CampaignStatistics& statistics, std::size_t variant) {
-  return fmt::format("{:>4} {}", variant + 1, cut(statistics.variants[variant].name, kNameWidth));
+  return fmt::format("{:>4} {}", statistics.variants[variant].id,
+                     cut(statistics.variants[variant].name, kNameWidth));
 }
 
 /// At most 9 characters.
@@ -78,10 +80,9 @@ std::string head(const CampaignStatistics& statistics) {
 /// The names that are cut elsewhere.
 std::string long_names(const CampaignStatistics& statistics) {
   std::string text;
-  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
-    const std::string& name = statistics.variants[n].name;
-    if (name.size() <= kNameWidth - 2) continue;
-    text += fmt::format("{:>4} {}\n", n + 1, printable(name, kFullName));
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (variant.name.size() <= kNameWidth - 2) continue;
+    text += fmt::format("{:>4} {}\n", variant.id, printable(variant.name, kFullName));
   }
   return text.empty() ? text : "\nVariants with long names\n" + text;
 }
@@ -142,6 +143,9 @@ std::string certificate_section(const CampaignStatistics& statistics) {
                         probability(variant.certified_step_rate()),
                         probability(variant.p_value) + (variant.p_value < kSurprising ? " !" : ""),
                         fmt::format("{} of {}{}", exceeded, filled, exceeded > 0 ? " !" : ""));
+    if (!variant.no_bound.empty()) {
+      text += fmt::format("     NO BOUND: {}\n", printable(variant.no_bound, kNoBoundLimit));
+    }
   }
   return text;
 }
@@ -165,9 +169,10 @@ std::string calibration_section(const CampaignStatistics& statistics) {
 std::string difference_text(const CampaignStatistics& statistics,
                             const VariantDifference& difference) {
   const VariantPair& pair = difference.pair;
-  std::string text = fmt::format("  {} less {} (other {}): {}\n", pair.variant + 1,
-                                 pair.baseline + 1, differs_by_name(pair.by),
-                                 printable(statistics.variants[pair.variant].name, kTitleLimit));
+  const VariantStatistics& variant = statistics.variants[pair.variant];
+  std::string text = fmt::format("  {} less {} (other {}): {}\n", variant.id,
+                                 statistics.variants[pair.baseline].id, differs_by_name(pair.by),
+                                 printable(variant.name, kTitleLimit));
   for (const MeanDifference& quantity : difference.quantities) {
     text += fmt::format("    {:<18}{:>12}{:>26}{:>10}{:>10}{:>10}{:>10}\n", quantity.quantity,
                         number(quantity.mean),

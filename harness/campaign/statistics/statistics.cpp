@@ -2,6 +2,10 @@
 
 #include <functional>
 
+#include "harness/errors.hpp"
+#include "harness/scenario/certificate_scope.hpp"
+#include "harness/scenario/scenario_file.hpp"
+
 namespace qsmpc::harness {
 namespace {
 
@@ -26,6 +30,17 @@ VariantTally tally_of(const StoreReader& store, std::int64_t variant) {
   return tally;
 }
 
+/// As why_no_bound of what was driven, which needs no file any more.
+std::string no_bound_of(const StoredVariant& variant) {
+  try {
+    return why_no_bound(
+        parse_scenario(variant.scenario_text, {.file = variant.name, .files_must_exist = false}));
+  } catch (const InputError& error) {
+    // Of another version, which took what this one refuses.
+    return std::string("whether they hold is not known: ") + error.what();
+  }
+}
+
 VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& variant,
                                 const VariantTally& tally) {
   VariantStatistics statistics = tally.result();
@@ -34,6 +49,8 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   statistics.scenario = variant.scenario;
   statistics.settings = variant.settings;
   statistics.plant = variant.plant;
+  statistics.scenario_text = variant.scenario_text;
+  statistics.no_bound = no_bound_of(variant);
   statistics.episodes = store.campaign().episodes / std::ssize(store.variants());
   statistics.cost = spread_of(store, variant.id, EpisodeNumber::kCost, tally.cost());
   statistics.min_clearance =
@@ -41,6 +58,10 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   statistics.time_to_target =
       spread_of(store, variant.id, EpisodeNumber::kTimeToTarget, tally.time_to_target());
   statistics.ocp_ms = planning_times(store, variant.id, statistics.periods);
+  store.for_each_path(variant.id, kMostDrawnPaths,
+                      [&](const std::string& outcome, const std::vector<PathPoint>& path) {
+                        statistics.paths.push_back({.outcome = outcome, .points = path});
+                      });
   return statistics;
 }
 

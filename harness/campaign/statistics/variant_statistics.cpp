@@ -28,6 +28,16 @@ const std::vector<double>& spread_shares() {
   return shares;
 }
 
+const std::vector<double>& curve_shares() {
+  constexpr int kSteps = 40;
+  static const std::vector<double> shares = [] {
+    std::vector<double> all;
+    for (int n = 0; n <= kSteps; ++n) all.push_back(static_cast<double>(n) / kSteps);
+    return all;
+  }();
+  return shares;
+}
+
 const std::vector<std::string>& spread_names() {
   static const std::vector<std::string> names = {"min", "p5", "p25", "median", "p75", "p95", "max"};
   return names;

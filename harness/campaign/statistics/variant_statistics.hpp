@@ -25,6 +25,9 @@ struct EpisodeRate {
 /// Throws as clopper_pearson, except where trials = 0: nothing is known then.
 [[nodiscard]] EpisodeRate episode_rate(std::int64_t events, std::int64_t trials);
 
+/// Shares of the quantiles that a distribution is drawn by: 0, 1/40, … 1.
+[[nodiscard]] const std::vector<double>& curve_shares();
+
 /// A number of episodes.
 struct Spread {
   std::int64_t count = 0;  ///< episodes that have one: what mean and standard error are of
@@ -34,7 +37,17 @@ struct Spread {
   /// Of `count + worst` episodes by spread_shares; infinite where the worst are, not a number
   /// where there is none.
   std::vector<double> quantiles = std::vector<double>(7, std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> curve{};  ///< the same by curve_shares
 };
+
+/// An episode as a map shows it.
+struct DrivenPath {
+  std::string outcome;
+  std::vector<PathPoint> points;
+};
+
+/// Of a variant on its map; of more, those that failed come first.
+inline constexpr std::int64_t kMostDrawnPaths = 200;
 
 /// 0, 0.05, 0.25, 0.5, 0.75, 0.95, 1, and what these are called: "min", "p5", "p25", "median", …
 [[nodiscard]] const std::vector<double>& spread_shares();
@@ -66,7 +79,9 @@ struct VariantStatistics {
   std::string scenario{};
   std::string settings{};
   std::string plant{};
-  std::int64_t episodes = 0;  ///< asked for
+  std::string scenario_text{};  ///< resolved, as YAML
+  std::string no_bound{};       ///< why its certificates are no bounds; empty where they are
+  std::int64_t episodes = 0;    ///< asked for
   std::int64_t done = 0;
   std::map<std::string, std::int64_t> outcomes{};
   EpisodeRate reached{};
@@ -88,6 +103,7 @@ struct VariantStatistics {
   double p_value = 1.0;             ///< exceedance_p_value of all periods
   std::vector<CalibrationBin> calibration{};
   std::vector<CalibrationBin> published{};  ///< the same of the thesis's value, which is no bound
+  std::vector<DrivenPath> paths{};          ///< at most kMostDrawnPaths, failures first
 
   /// Shares of the periods; not numbers without one.
   [[nodiscard]] double unsafe_step_rate() const;
@@ -142,14 +158,20 @@ template <class EachSorted>
 Spread SpreadTally::result(const EachSorted& each_sorted) const {
   const std::int64_t ranked = worst_is_ == WorstIs::kNotCounted ? 0 : worst_;
   SortedQuantiles quantiles(mean_.count() + ranked, spread_shares());
-  if (worst_is_ == WorstIs::kLowest && ranked > 0) quantiles.add(-kInfinity, ranked);
-  each_sorted([&](double value) { quantiles.add(value); });
-  if (worst_is_ == WorstIs::kHighest && ranked > 0) quantiles.add(kInfinity, ranked);
+  SortedQuantiles curve(mean_.count() + ranked, curve_shares());
+  const auto add = [&](double value, std::int64_t times) {
+    quantiles.add(value, times);
+    curve.add(value, times);
+  };
+  if (worst_is_ == WorstIs::kLowest && ranked > 0) add(-kInfinity, ranked);
+  each_sorted([&](double value) { add(value, 1); });
+  if (worst_is_ == WorstIs::kHighest && ranked > 0) add(kInfinity, ranked);
   return {.count = mean_.count(),
           .worst = ranked,
           .mean = mean_.mean(),
           .standard_error = mean_.standard_error(),
-          .quantiles = quantiles.values()};
+          .quantiles = quantiles.values(),
+          .curve = curve.values()};
 }
 
 }  // namespace qsmpc::harness

@@ -1,6 +1,9 @@
 #include "harness/campaign/store/episode_row.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -20,6 +23,29 @@ std::vector<PeriodRow> period_rows(const EpisodeView& view) {
                     .ocp_ms = step.timing.total});
   }
   return rows;
+}
+
+/// As many digits as the store keeps: those that a drawing can show.
+double stored(double value) { return std::stod(fmt::format("{:.6g}", value)); }
+
+std::vector<PathPoint> path_of(const EpisodeView& view) {
+  const models::SystemDescription& system = view.system();
+  const Eigen::MatrixXd& states = view.states();
+  const Eigen::Index least = std::max(system.position_x, system.position_y);
+  if (std::min(system.position_x, system.position_y) < 0 || states.rows() <= least) return {};
+  const auto count = static_cast<std::size_t>(states.cols());
+  constexpr std::size_t kSteps = kMostPathPoints - 1;  // the end is a point, too
+  const std::size_t stride = std::max<std::size_t>(1, (count + kSteps - 2) / kSteps);
+  std::vector<PathPoint> path;
+  const auto add = [&](std::size_t k) {
+    const auto state = states.col(static_cast<Eigen::Index>(k));
+    const double x = state[system.position_x];
+    const double y = state[system.position_y];
+    if (std::isfinite(x) && std::isfinite(y)) path.push_back({.x = stored(x), .y = stored(y)});
+  };
+  for (std::size_t k = 0; k + 1 < count; k += stride) add(k);
+  if (count > 0) add(count - 1);
+  return path;
 }
 
 }  // namespace
@@ -44,7 +70,8 @@ EpisodeRow episode_row(const EpisodeView& view, std::int64_t variant) {
           .risk_exceeded = summary.risk.exceeded_periods,
           .version = summary.version,
           .timing = {.deadline_misses = summary.deadline_misses},
-          .periods = period_rows(view)};
+          .periods = period_rows(view),
+          .path = path_of(view)};
 }
 
 std::string episode_folder(std::int64_t variant, std::uint64_t seed) {

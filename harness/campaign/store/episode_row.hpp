@@ -1,6 +1,7 @@
 // What the store keeps of an episode.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -20,6 +21,17 @@ struct PeriodRow {
 
   friend bool operator==(const PeriodRow&, const PeriodRow&) = default;
 };
+
+/// A place in the plane.
+struct PathPoint {
+  double x = 0.0;  ///< m
+  double y = 0.0;
+
+  friend bool operator==(const PathPoint&, const PathPoint&) = default;
+};
+
+/// Of an episode's path in the store: enough to draw it.
+inline constexpr std::size_t kMostPathPoints = 48;
 
 /// Wall-clock values; everything else depends on scenario and seed alone.
 struct EpisodeTiming {
@@ -54,6 +66,9 @@ struct EpisodeRow {
   std::string version{};  ///< of the program that drove it
   EpisodeTiming timing{};
   std::vector<PeriodRow> periods{};
+  /// Where the true state was every so many periods and at its end, at most kMostPathPoints,
+  /// without what is not finite; empty of a system without a position in the plane.
+  std::vector<PathPoint> path{};
 
   friend bool operator==(const EpisodeRow&, const EpisodeRow&) = default;
 };

@@ -144,6 +144,20 @@ void StoreReader::for_each_period(std::int64_t variant,
       });
 }
 
+void StoreReader::for_each_path(
+    std::int64_t variant, std::int64_t most,
+    const std::function<void(const std::string& outcome, const std::vector<PathPoint>& path)>&
+        visit) const {
+  implementation_->each(
+      fmt::format("SELECT {}, p.points FROM episode e JOIN path p USING (variant, seed)"
+                  " WHERE e.variant = ? ORDER BY e.outcome = 'reached' AND NOT e.unsafe, e.seed"
+                  " LIMIT ?",
+                  outcome_column("e.")),
+      {variant, most}, [&](SQLite::Statement& row) {
+        visit(row.getColumn(0).getString(), path_of(row.getColumn(1).getString()));
+      });
+}
+
 void StoreReader::for_each_sorted(std::int64_t variant, EpisodeNumber number,
                                   const std::function<void(double)>& visit) const {
   const std::string column = column_of(number);

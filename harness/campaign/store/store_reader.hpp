@@ -78,6 +78,11 @@ class StoreReader {
   void for_each_period(std::int64_t variant,
                        const std::function<void(std::uint64_t seed, std::int64_t period,
                                                 const PeriodRow&)>& visit) const;
+  /// At most `most` of a variant's episodes that have a path: those that are a failure (is_failure)
+  /// before others, each by seed.
+  void for_each_path(std::int64_t variant, std::int64_t most,
+                     const std::function<void(const std::string& outcome,
+                                              const std::vector<PathPoint>& path)>& visit) const;
   /// A number of a variant's episodes, ascending; of those that did not fault and have one.
   void for_each_sorted(std::int64_t variant, EpisodeNumber number,
                        const std::function<void(double)>& visit) const;

@@ -1,11 +1,13 @@
 #include "harness/campaign/store/store_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "harness/trace/ending.hpp"
 
@@ -43,6 +45,24 @@ void insert_periods(SQLite::Database& database, const EpisodeRow& row) {
     run(period);
     run(timing);
   }
+}
+
+/// As JSON, which SQLite reads (json_each).
+std::string path_text(const std::vector<PathPoint>& path) {
+  std::string text = "[";
+  for (const PathPoint& point : path) {
+    text += fmt::format("{}[{:.6g},{:.6g}]", text.size() == 1 ? "" : ",", point.x, point.y);
+  }
+  return text + "]";
+}
+
+void insert_path(SQLite::Database& database, const EpisodeRow& row) {
+  if (row.path.empty()) return;
+  SQLite::Statement path(database, "INSERT INTO path VALUES (?, ?, ?)");
+  path.bind(1, row.variant);
+  path.bind(2, stored_seed(row.seed));
+  path.bind(3, path_text(row.path));
+  run(path);
 }
 
 void insert_families(SQLite::Database& database, const std::vector<VariantFamily>& families) {
@@ -83,6 +103,22 @@ std::string episode_columns(const std::string& e, const std::string& t) {
     columns += fmt::format("{}.{}, ", e, name);
   }
   return columns + fmt::format("{0}.finished_at, {0}.wall_ms, {0}.deadline_misses", t);
+}
+
+std::vector<PathPoint> path_of(const std::string& text) {
+  const nlohmann::json points = nlohmann::json::parse(text, nullptr, false);
+  const auto is_point = [](const nlohmann::json& point) {
+    return point.is_array() && point.size() == 2 && point[0].is_number() && point[1].is_number();
+  };
+  if (!points.is_array() || !std::ranges::all_of(points, is_point)) {
+    throw SQLite::Exception("a path that is no list of points");
+  }
+  std::vector<PathPoint> path;
+  path.reserve(points.size());
+  for (const nlohmann::json& point : points) {
+    path.push_back({.x = point[0].get<double>(), .y = point[1].get<double>()});
+  }
+  return path;
 }
 
 double number_of(const SQLite::Column& column) {
@@ -172,6 +208,7 @@ void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   timing.bind(5, row.timing.deadline_misses);
   run(timing);
   insert_periods(database, row);
+  insert_path(database, row);
 }
 
 void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed) {

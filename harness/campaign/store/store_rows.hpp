@@ -38,7 +38,11 @@ inline constexpr int kEpisodeColumns = 21;
 [[nodiscard]] std::int64_t stored_seed(std::uint64_t seed);
 
 /// The tables whose rows belong to an episode; `variant` is a column of each.
-inline constexpr std::array kEpisodeTables{"episode", "episode_timing", "period", "period_timing"};
+inline constexpr std::array kEpisodeTables{"episode", "episode_timing", "path", "period",
+                                           "period_timing"};
+
+/// What the table of paths holds: JSON, a list of pairs. Throws SQLite::Exception of another text.
+[[nodiscard]] std::vector<PathPoint> path_of(const std::string& text);
 
 /// The outcome of the episode whose columns begin with `prefix` ("" or "e."), in SQL. Rows of
 /// earlier versions have one word for both parts of the unsafe set, and none for a drive that went

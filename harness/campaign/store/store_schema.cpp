@@ -102,10 +102,21 @@ CREATE TABLE risk_against_cost (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+// Drives of earlier versions have no path: their traces may be gone.
+constexpr const char* kPathSchema = R"sql(
+CREATE TABLE path (
+  variant INTEGER NOT NULL,
+  seed INTEGER NOT NULL,
+  points TEXT NOT NULL,
+  PRIMARY KEY (variant, seed)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& store_migrations() {
-  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema, kThirdSchema};
+  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema, kThirdSchema,
+                                                   kPathSchema};
   return migrations;
 }
 

@@ -96,20 +96,32 @@ class MujocoPlant final : public Plant {
       simulation_->set_pull(shooting_->solve(*simulation_, disturbance));
       simulation_->set_solid_standing(true);
     }
-    const int steps = simulation_->period_steps();
-    for (int k = 1; k <= steps; ++k) {
-      const double time = simulation_->time();
-      simulation_->step();
-      note_contact(time, result.contact);
-      result.between.conservativeResize(Eigen::Index(state_dim_), k);
-      result.between.col(k - 1) = simulation_->state();
-      if (k % sample_steps_ == 0 || k == steps) result.motion.push_back(sample());
-    }
+    take_steps(result);
     const bool kicked = !shooting_;
     simulation_->add(kicked ? disturbance
                             : Eigen::VectorXd(Eigen::VectorXd::Zero(disturbance.size())));
     note_contact(simulation_->time(), result.contact);
     result.motion.push_back(sample());
+  }
+
+  /// The simulator's steps of a period. What they brought before one that fails is kept.
+  void take_steps(PlantStep& result) {
+    const int steps = simulation_->period_steps();
+    result.between.resize(Eigen::Index(state_dim_), steps);
+    int taken = 0;
+    try {
+      while (taken < steps) {
+        const double time = simulation_->time();
+        simulation_->step();
+        note_contact(time, result.contact);
+        result.between.col(taken) = simulation_->state();
+        ++taken;
+        if (taken % sample_steps_ == 0 || taken == steps) result.motion.push_back(sample());
+      }
+    } catch (const MujocoError&) {
+      result.between.conservativeResize(Eigen::NoChange, taken);
+      throw;
+    }
   }
 
   /// Adds what the vehicle touches at `time`.

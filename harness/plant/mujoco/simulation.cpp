@@ -12,12 +12,15 @@
 
 #include "harness/errors.hpp"
 #include "harness/mujoco/mujoco_errors.hpp"
+#include "harness/threads/interruption.hpp"
 #include "models/constants.hpp"
 #include "models/linear_algebra.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
+// Tyres and contacts need some thousands at most; more keep a drive from ever ending.
+constexpr int kMostPeriodSteps = 20'000;
 // Of the springs' angular frequency by the time step: explicit springs are stable below 2.
 constexpr double kPullRate = 0.25;
 
@@ -28,9 +31,18 @@ int first_bad(const double* values, int count) {
   return static_cast<int>(std::find_if(values, values + count, is_bad) - values);
 }
 
-/// How often `step` goes into `duration`. Throws InputError unless it does so without a rest.
+/// How often `step` goes into `duration`. Throws InputError unless it does so without a rest, and
+/// not too often.
 int whole_steps(const std::string& file, double step, double duration) {
   const double ratio = std::round(duration / step);
+  if (ratio > kMostPeriodSteps) {
+    throw InputError(
+        {.file = file,
+         .key = "option timestep",
+         .found = fmt::format("{} s, {:.4g} steps in a control period", step, ratio),
+         .expected = fmt::format("at most {} steps in a control period of {} s: at least {:.3g} s",
+                                 kMostPeriodSteps, duration, duration / kMostPeriodSteps)});
+  }
   // Decimal numbers such as 0.1 / 0.002 are off by some rounding errors only.
   constexpr double kRelativeRounding = 1e-9;
   if (ratio >= 1.0 && std::abs(ratio * step - duration) <= kRelativeRounding * duration) {
@@ -231,6 +243,7 @@ void Simulation::control() {
 }
 
 void Simulation::step() {
+  check_interrupts();
   choose_input();
   // MuJoCo's second half of a step knows no Runge-Kutta; forces that depend on the state need the
   // halves, others do not.

@@ -144,13 +144,14 @@ function plotOptions(chart, width, sync) {
   };
 }
 
-// The index of the last x that is not after `value`.
+// The index of the last x that is not after `value`; x come as numbers of 32 bits.
 function indexBefore(row, value) {
+  const last = value + 1e-6 + 1e-7 * Math.abs(value);
   let low = 0;
   let high = row.length - 1;
   while (low < high) {
     const middle = (low + high + 1) >> 1;
-    if (row[middle] <= value + 1e-6) low = middle; else high = middle - 1;
+    if (row[middle] <= last) low = middle; else high = middle - 1;
   }
   return low;
 }

@@ -2,7 +2,8 @@
 //
 //   period, steps, horizon        s; how many periods were driven; stages with a certificate
 //   times, solve                  one a period: s, ms
-//   clearance                     one a control instant (steps + 1)
+//   clearance                     one a control instant (steps + 1), in clearanceUnit
+//   holds                         whether certificates are bounds
 //   cost                          {part: one a period}
 //   inputs                        [{name, unit, values: one a period}]
 //   certificates                  value, thesis: one a period and stage 1 … horizon; plan: a period

@@ -4,8 +4,10 @@
 const kSvg = "http://www.w3.org/2000/svg";
 const kDotSizes = [1.7, 2.7, 4.2];        // pixels, by weight
 const kEllipseLevels = [0.5, 0.95];       // of the probability
+const kPoint = "M-6 0a6 6 0 1 0 12 0a6 6 0 1 0-12 0z";  // of a system without a heading
 const kVehicle = "M-9-5.5H4L9 0 4 5.5H-9z";  // view box units, heading right
 const kNearView = 3.0;                    // how many times larger the near view shows
+const kNearTicks = 6;                     // about so many along its width
 const kCalmClearance = 1.0;               // m, from which on the way has its calm colour
 
 function svgElement(name, attributes, parent) {
@@ -15,11 +17,35 @@ function svgElement(name, attributes, parent) {
   return element;
 }
 
-// Colours of the stages, from the belief to the last: blue to vermilion through the palette.
-function stageColour(stage, horizon) {
-  const share = horizon > 0 ? 100 * stage / horizon : 0;
-  return `color-mix(in oklab, var(--c0), var(--c4) ${share.toFixed(0)}%)`;
+// The video's palettes (render/colour.cpp): of the stages, from the present to the horizon's end, and
+// of the clearance, from 0 to kCalmClearance.
+const kStageColours = ["#0d0887", "#39049a", "#5f01a5", "#8008a5", "#9e1a9b", "#b93389", "#cf4c74",
+  "#e16561", "#f0804e", "#f99d3b", "#fcbe2c"];
+const kClearanceColours = ["#c21429", "#c7ad75", "#058078"];
+
+// The colour at `share` (0 … 1) of a palette, as #rrggbb.
+function paletteAt(colours, share) {
+  const place = Math.min(Math.max(share, 0), 1) * (colours.length - 1);
+  const index = Math.min(Math.floor(place), colours.length - 2);
+  const channels = [1, 3, 5].map((at) => {
+    const [from, to] = [colours[index], colours[index + 1]]
+      .map((colour) => parseInt(colour.slice(at, at + 2), 16));
+    return Math.round(from + (place - index) * (to - from)).toString(16).padStart(2, "0");
+  });
+  return `#${channels.join("")}`;
 }
+
+const stageColour = (stage, horizon) =>
+  paletteAt(kStageColours, horizon > 0 ? stage / horizon : 0);
+
+const clearanceColour = (clearance) => paletteAt(kClearanceColours, clearance / kCalmClearance);
+
+// Lighter where the ground is dark.
+const onGround = (colour) => `color-mix(in oklab, ${colour}, white var(--lift))`;
+
+// Of the way driven, by the clearance (m) at the end of a period.
+const wayColour = (clearance) =>
+  Number.isFinite(clearance) ? onGround(clearanceColour(clearance)) : "var(--soft)";
 
 // Half axes and direction of N(0, S)'s ellipses, for S given by three numbers.
 function principalAxes(xx, xy, yy) {
@@ -32,6 +58,23 @@ function principalAxes(xx, xy, yy) {
   };
 }
 
+// 1, 2 or 5 times a power of ten, so that about `count` of them fill `span`.
+function tickStep(span, count) {
+  const power = 10 ** Math.floor(Math.log10(span / count));
+  const digit = span / count / power;
+  return power * (digit <= 1 ? 1 : digit <= 2 ? 2 : digit <= 5 ? 5 : 10);
+}
+
+// The multiples of `step` from `low` to `high`, with their labels.
+function ticksEvery(low, high, step) {
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  const ticks = [];
+  for (let n = Math.ceil(low / step); n * step <= high; ++n) {
+    ticks.push({value: n * step, label: (n * step).toFixed(decimals).replace(/^-(?=.*[1-9])/, "−").replace(/^-/, "")});
+  }
+  return ticks;
+}
+
 class LiveMap {
   constructor(figure, data) {
     this.data = data;
@@ -41,6 +84,7 @@ class LiveMap {
     this.figure = figure;
     this.view = figure.querySelector("svg.clip");
     this.zoom = 1;
+    this.nearAxes = svgElement("g", {class: "near-axes"}, this.view.parentNode);
     const root = svgElement("g", {id: "moment"}, this.view);
     this.way = svgElement("g", {class: "driven"}, root);
     this.addWay();
@@ -58,9 +102,10 @@ class LiveMap {
     this.planLine = svgElement("path", {class: "planned"}, this.layers.plan);
     this.nodes = this.range().map((stage) =>
       svgElement("circle", {class: "node", r: 3.2}, this.layers.plan));
-    this.nodes.forEach((node, stage) => { node.style.fill = stageColour(stage, data.horizon); });
-    this.ghost = svgElement("path", {class: "ghost", d: kVehicle}, this.layers.ghost);
-    this.vehicle = svgElement("path", {id: "vehicle", class: "vehicle", d: kVehicle}, root);
+    this.nodes.forEach((node, stage) => { node.style.fill = onGround(stageColour(stage, data.horizon)); });
+    const shape = Number.isFinite(this.map.poses[2]) ? kVehicle : kPoint;
+    this.ghost = svgElement("path", {class: "ghost", d: shape}, this.layers.ghost);
+    this.vehicle = svgElement("path", {id: "vehicle", class: "vehicle", d: shape}, root);
     document.getElementById("near-view").addEventListener("change", (event) =>
       this.setZoom(event.target.checked ? kNearView : 1));
     for (const box of figure.querySelectorAll("input[data-layer]")) {
@@ -69,11 +114,14 @@ class LiveMap {
     }
   }
 
-  // The near view follows the vehicle; the axes' numbers would not fit it and are not shown.
+  // The near view follows the vehicle, and so do the numbers of its axes.
   setZoom(zoom) {
     this.zoom = zoom;
     this.figure.classList.toggle("near-view", zoom > 1);
-    if (zoom === 1) this.view.removeAttribute("viewBox");
+    if (zoom === 1) {
+      this.view.removeAttribute("viewBox");
+      this.nearAxes.replaceChildren();
+    }
     this.show(this.period, this.share);
   }
 
@@ -93,10 +141,7 @@ class LiveMap {
       const known = ends.every(Number.isFinite);
       const line = svgElement("path", {d: known ?
         `M${this.at(ends[0], ends[1])}L${this.at(ends[2], ends[3])}` : ""}, this.way);
-      const clearance = this.data.clearance[k + 1];
-      const calm = Math.min(Math.max(clearance / kCalmClearance, 0), 1);
-      line.style.stroke = Number.isFinite(clearance)
-        ? `color-mix(in oklab, var(--bad), var(--c5) ${(100 * calm).toFixed(0)}%)` : "var(--soft)";
+      line.style.stroke = wayColour(this.data.clearance[k + 1]);
       this.lines.push(line);
     }
   }
@@ -106,7 +151,7 @@ class LiveMap {
     this.dots = [];
     this.ellipses = [];
     for (const stage of this.range().reverse()) {
-      const colour = stageColour(stage, this.data.horizon);
+      const colour = onGround(stageColour(stage, this.data.horizon));
       this.dots[stage] = kDotSizes.map((size) => {
         const dots = svgElement("path", {class: "dots", "stroke-width": size},
                                 this.layers.particles);
@@ -196,6 +241,29 @@ class LiveMap {
     const corner = [this.x(x) - width / 2, this.y(y) - height / 2];
     this.view.setAttribute("viewBox",
       [...corner, width, height].map((value) => value.toFixed(1)).join(" "));
+    this.drawAxes(corner, width, height);
+  }
+
+  // Ticks about the part of the plane that begins at `corner` (view box units).
+  drawAxes([left, top], width, height) {
+    const {scale, xLeft, yTop} = this.map;
+    const [x, y] = [this.view.x.baseVal.value, this.view.y.baseVal.value];
+    const foot = y + height * this.zoom;
+    const step = tickStep(width / scale, kNearTicks);
+    this.nearAxes.replaceChildren();
+    const text = (attributes, label) => {
+      svgElement("text", attributes, this.nearAxes).textContent = label;
+    };
+    for (const {value, label} of ticksEvery(xLeft + left / scale, xLeft + (left + width) / scale, step)) {
+      const at = (x + (this.x(value) - left) * this.zoom).toFixed(1);
+      svgElement("path", {class: "axis", d: `M${at} ${foot}v5`}, this.nearAxes);
+      text({class: "middle", x: at, y: foot + 18}, label);
+    }
+    for (const {value, label} of ticksEvery(yTop - (top + height) / scale, yTop - top / scale, step)) {
+      const at = y + (this.y(value) - top) * this.zoom;
+      svgElement("path", {class: "axis", d: `M${x} ${at.toFixed(1)}h-5`}, this.nearAxes);
+      text({class: "end", x: x - 8, y: (at + 4).toFixed(1)}, label);
+    }
   }
 
   // The moment that is `share` of the way through period k; share 1 of the last one is the end.

@@ -83,16 +83,21 @@ class MomentTable {
     this.cells.get(name).textContent = text;
   }
 
-  show(k, time) {
+  // Of period k; `instant` is the last control instant that is not after `time`: the same but at the
+  // end of the drive, where no period begins.
+  show(k, time, instant) {
     const {data} = this;
     const stage = k * data.horizon;
     this.set("Time", `${time.toFixed(2)} s, period ${k + 1} of ${data.steps}`, "time");
     for (const input of data.inputs) {
       this.set(input.name, `${formatNumber(input.values[k])} ${input.unit}`, "input");
     }
-    this.set("P(unsafe) at the next step ≤", formatBound(data.certificates.value[stage]), "next");
-    if (data.planned) this.set("P(unsafe) over the plan ≤", formatBound(data.certificates.plan[k]), "plan");
-    this.set("Clearance", formatNumber(data.clearance[k]), "clearance");
+    // What is no bound is not called one.
+    const [next, plan] = data.holds ? ["P(unsafe) at the next step ≤", "P(unsafe) over the plan ≤"]
+      : ["Certified, next step: no bound", "Certified, plan: no bound"];
+    this.set(next, formatBound(data.certificates.value[stage]), "next");
+    if (data.planned) this.set(plan, formatBound(data.certificates.plan[k]), "plan");
+    this.set("Clearance", `${formatNumber(data.clearance[instant])} ${data.clearanceUnit}`, "clearance");
     this.set("Solve time", `${formatNumber(data.solve[k])} ms`, "solve");
     if (data.solved) this.set("Solver", data.status[k] + (data.fallback[k] ? "; the last plan was kept" : ""), "status");
     this.showCost(k);
@@ -202,12 +207,17 @@ class Player {
     const {data} = this;
     this.time = Math.min(Math.max(time, 0), this.end);
     const periods = this.time / data.period;
-    const k = Math.min(Math.floor(periods + 1e-6), data.steps - 1);
-    if (this.map) this.map.show(k, Math.min(Math.max(periods - k, 0), 1));
+    const instant = Math.floor(periods + 1e-6);
+    const k = Math.min(instant, data.steps - 1);
+    const share = Math.min(Math.max(periods - k, 0), 1);
+    if (this.map) this.map.show(k, share);
+    // For the view in three dimensions, whose script is apart (scene3d.js).
+    document.dispatchEvent(new CustomEvent("qsmpc-moment", {
+      detail: {data, period: k, share, time: this.time, stageColour, wayColour}}));
     if (k !== this.period) for (const chart of this.stages) chart.show(k);
     this.period = k;
     for (const chart of this.charts) chart.show(this.time);
-    this.table.show(k, this.time);
+    this.table.show(k, this.time, instant);
     this.slider.value = this.time;
     this.slider.setAttribute("aria-valuetext", `${this.time.toFixed(1)} s`);
     this.clock.textContent = `${this.time.toFixed(1)} s`;

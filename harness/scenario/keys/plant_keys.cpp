@@ -228,16 +228,22 @@ ScenarioKey model_error_key() {
                 .fallback_words = "none: certificates speak of the model"},
       .read =
           [](ScenarioReading& reading, Section& section, const KeyDescription& /*about*/) {
-            reading.scenario.model_error =
+            std::optional<StatedModelError> stated =
                 read_model_error(section, reading.problems,
                                  {.system = reading.scenario.model.system,
                                   .dim = std::ssize(reading.system().states),
-                                  .folder = reading.lookup.folder});
+                                  .folder = reading.lookup.folder,
+                                  .parameters = reading.scenario.model.parameters,
+                                  .time_step = reading.scenario.time_step});
+            if (!stated) return;
+            reading.scenario.model_error = std::move(stated->error);
+            reading.scenario.error_origin = std::move(stated->origin);
           },
       .write = [](const Scenario& scenario,
                   const models::SystemDescription& /*system*/) -> std::optional<std::string> {
         if (!scenario.model_error) return std::nullopt;
-        std::string text = "\n" + model_error_text(*scenario.model_error, "  ");
+        std::string text =
+            "\n" + model_error_text({*scenario.model_error, scenario.error_origin}, "  ");
         text.pop_back();  // the end of its last line
         return text;
       },

@@ -50,6 +50,7 @@ TEST(BrokenCampaign, keys_of_its_own) {
 TEST(BrokenCampaign, seeds) {
   const std::string head = "scenario: a.yaml\n";
   const std::string whole = "a whole number from 0 to 9223372036854775807";
+  expect_refused({head + "seed: 5\n", 2, "seed", "a scenario's key", "seeds: {first: 0"});
   expect_refused({head + "seeds: 100\n", 2, "seeds", "100", "{first: 0, count: 1000}"});
   expect_refused({head + "seeds: []\n", 2, "seeds", "a list of 0", "1 to 100000"});
   expect_refused({head + "seeds: [1, 2, 1]\n", 2, "seeds.2", "1 a second time", "once"});

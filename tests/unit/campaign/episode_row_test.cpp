@@ -1,5 +1,7 @@
 #include "harness/campaign/store/episode_row.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/example_trace.hpp"
@@ -38,6 +40,18 @@ TEST(EpisodeRow, takes_the_certificate_of_the_next_step) {
     EXPECT_EQ(row.periods[k].published, trace.steps[k].certificates.front().of("thesis"));
     EXPECT_EQ(row.periods[k].ocp_ms, trace.steps[k].timing.total);
   }
+}
+
+TEST(EpisodeRow, keeps_a_path_of_few_points_that_ends_where_the_drive_did) {
+  Trace trace = testing::example_trace({.steps = 500});
+  const EpisodeRow row = episode_row(EpisodeView(trace), 0);
+  EXPECT_LE(row.path.size(), kMostPathPoints);
+  EXPECT_GT(row.path.size(), kMostPathPoints / 2);
+  EXPECT_NEAR(row.path.front().x, trace.steps.front().state[0], 1e-4);
+  EXPECT_NEAR(row.path.back().x, trace.final_state[0], 1e-5 * std::abs(trace.final_state[0]));
+  EXPECT_NEAR(row.path.back().y, trace.final_state[1], 1e-5 * std::abs(trace.final_state[1]));
+  trace.system.position_x = -1;
+  EXPECT_TRUE(episode_row(EpisodeView(trace), 0).path.empty());
 }
 
 TEST(EpisodeRow, is_a_failure_unless_the_target_was_reached_and_no_state_was_unsafe) {

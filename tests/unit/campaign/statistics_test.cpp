@@ -45,6 +45,28 @@ void fill(const std::string& folder, double time = 1.0) {
   }
 }
 
+TEST(CampaignStatistics, say_of_which_variants_no_certificate_is_a_bound) {
+  const testing::TemporaryFolder folder;
+  Campaign campaign = testing::quick_campaign(1);
+  campaign.variants[1].resolved.disturbance.sensor = Eigen::Matrix3d::Identity();
+  campaign.variants[1].resolved.estimator.kind = "last_measurement";
+  {
+    Store store(folder.path(), stored_campaign(campaign, {}), stored_variants(campaign, {"", ""}),
+                campaign.seeds, false);
+    for (const int variant : {0, 1}) store.add(testing::example_row(variant, 5), false);
+  }
+  const CampaignStatistics statistics = campaign_statistics(StoreReader(folder.path()));
+  EXPECT_EQ(statistics.variants[0].no_bound, "");
+  EXPECT_NE(statistics.variants[1].no_bound, "");
+  const auto json = Json::parse(campaign_json(statistics));
+  EXPECT_EQ(json["variants"]["three"]["certificate"]["holds"], true);
+  EXPECT_EQ(json["variants"]["two"]["certificate"]["holds"], false);
+  const std::string table = campaign_table(statistics);
+  const std::size_t said = table.find("NO BOUND: with measurement noise");
+  ASSERT_NE(said, std::string::npos);
+  EXPECT_EQ(table.find("NO BOUND", said + 1), std::string::npos);
+}
+
 CampaignStatistics filled_statistics(double time = 1.0) {
   const testing::TemporaryFolder folder;
   fill(folder.path(), time);

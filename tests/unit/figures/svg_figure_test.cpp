@@ -76,6 +76,25 @@ TEST(SvgFigure, two_charts_stand_in_a_row_and_a_third_below) {
   EXPECT_FALSE(testing::contains(three, two.substr(two.find("height="), 12)));
 }
 
+TEST(SvgFigure, for_a_paper_has_no_titles_but_letters_and_the_width_of_its_columns) {
+  const auto width_of = [](const std::string& svg) {
+    return std::stod(svg.substr(svg.find(" width=\"") + 8));
+  };
+  const std::vector<Panel> panels = {chart_of("First"), chart_of("Second")};
+  const std::string one = svg_figure(panels, {.titles = false, .columns = 1});
+  EXPECT_FALSE(testing::contains(one, ">First<"));
+  EXPECT_FALSE(testing::contains(one, "A note."));
+  EXPECT_TRUE(testing::contains(one, ">(a)<"));
+  EXPECT_TRUE(testing::contains(one, ">(b)<"));
+  EXPECT_EQ(width_of(one), 336.0) << "3.5 inches";
+  EXPECT_TRUE(testing::contains(one, "viewBox=\"0 0 508 ")) << "one panel in a row";
+  const std::string two = svg_figure(panels, {.columns = 2});
+  EXPECT_EQ(width_of(two), 687.0) << "7.16 inches";
+  EXPECT_TRUE(testing::contains(two, "viewBox=\"0 0 1002 ")) << "two panels in a row";
+  EXPECT_TRUE(testing::contains(two, ">First<"));
+  EXPECT_FALSE(testing::contains(svg_figure({panels[0]}, {.titles = false}), "(a)"));
+}
+
 TEST(SvgFigure, a_chart_without_finite_values_says_so) {
   Chart empty = chart_of("Empty");
   empty.series[0].y = std::vector<double>(3, std::numeric_limits<double>::quiet_NaN());

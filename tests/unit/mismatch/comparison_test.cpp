@@ -252,6 +252,18 @@ TEST_F(WrittenComparison, table_fits_a_terminal_and_names_every_plant) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 96U) << line;
 }
 
+TEST_F(WrittenComparison, says_beside_the_numbers_that_none_is_a_bound) {
+  EXPECT_THAT(comparison_table(comparison_), ::testing::Not(HasSubstr("NO BOUND")));
+  EXPECT_EQ(nlohmann::json::parse(comparison_json(comparison_))["certificate"]["holds"], true);
+  comparison_.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(3, 3);
+  const std::string table = comparison_table(comparison_);
+  EXPECT_THAT(table, HasSubstr("NO BOUND: with measurement noise"));
+  EXPECT_THAT(table, ::testing::Not(HasSubstr("certified  ")));
+  std::istringstream lines(table);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 96U) << line;
+  EXPECT_EQ(nlohmann::json::parse(comparison_json(comparison_))["certificate"]["holds"], false);
+}
+
 TEST_F(WrittenComparison, datasets_have_the_promised_shapes_and_units) {
   write_comparison(comparison_, {{.path = folder_ + "/more.svg", .text = "more"}}, folder_);
   const Hdf5File file = Hdf5File::open(folder_ + "/comparison.h5");

@@ -195,6 +195,21 @@ TEST(PlantPaths, one_that_breaks_is_unsafe_from_then_on_and_in_no_average) {
   }
 }
 
+TEST(PlantPaths, a_drawn_vehicle_that_the_simulator_refuses_is_counted_and_ends_nothing) {
+  const Planned planned(testing::short_scenario());
+  const auto make = [&](std::int64_t path) {
+    if (path % 10 == 0) throw SimulatorError({.found = "a vehicle that does not settle"});
+    return make_plant(planned.scenario);
+  };
+  PlantPool drawn(make, /*differ=*/true);
+  const PlantPaths paths = paths_of(drawn, planned);
+  EXPECT_EQ(paths.faults, kPaths / 10);
+  EXPECT_TRUE(std::isnan(paths.states.back()(0, 0)));
+  EXPECT_TRUE(std::isfinite(paths.states.back()(0, 1)));
+  // Where all are alike, it is the file that is wrong.
+  EXPECT_THROW((void)PlantPool(make), SimulatorError);
+}
+
 TEST(PlantPaths, are_given_up_when_asked) {
   const Planned planned(testing::short_scenario());
   PlantPool pool = testing::altered_plants(planned.scenario, Eigen::Vector3d::Zero());

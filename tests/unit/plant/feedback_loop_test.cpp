@@ -16,6 +16,7 @@
 namespace qsmpc::harness {
 namespace feedback_loop_test {
 
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
@@ -67,10 +68,8 @@ Scenario scenario_of(const Vehicle& vehicle, const std::string& more = "",
       {.file = "torque.yaml", .folder = ""});
 }
 
-class FeedbackLoopTest : public ::testing::TestWithParam<Vehicle> {};
-
-TEST_P(FeedbackLoopTest, holds_the_speed_and_follows_a_yaw_rate_with_the_lag_of_its_time_constant) {
-  const Scenario scenario = scenario_of(GetParam());
+TEST(FeedbackLoop, holds_the_speed_and_follows_a_yaw_rate_with_the_lag_of_its_time_constant) {
+  const Scenario scenario = scenario_of(kRobot);
   const auto plant = make_plant(scenario);
   plant->reset(pose(1.0, 2.0, 0.5));
   const PlantStep straight = plant->advance(yaw_rate(0.0), no_disturbance());
@@ -94,8 +93,8 @@ TEST_P(FeedbackLoopTest, holds_the_speed_and_follows_a_yaw_rate_with_the_lag_of_
   EXPECT_NEAR(turned, kTurn * 0.1, 0.02 * kTurn * 0.1);
 }
 
-TEST_P(FeedbackLoopTest, the_same_steps_after_reset_are_equal_bit_for_bit) {
-  const auto plant = make_plant(scenario_of(GetParam()));
+TEST(FeedbackLoop, the_same_steps_after_reset_are_equal_bit_for_bit) {
+  const auto plant = make_plant(scenario_of(kRobot));
   std::vector<Eigen::VectorXd> ends;
   for (int repetition = 0; repetition < 2; ++repetition) {
     plant->reset(pose(1.0, 2.0, 0.5));
@@ -106,14 +105,14 @@ TEST_P(FeedbackLoopTest, the_same_steps_after_reset_are_equal_bit_for_bit) {
   for (std::size_t k = 0; k < 5; ++k) EXPECT_EQ(ends[k], ends[k + 5]);
 }
 
-TEST_P(FeedbackLoopTest, answers_as_the_model_without_a_gain_being_given) {
-  const Scenario scenario = scenario_of(GetParam());
+TEST(FeedbackLoop, answers_as_the_model_without_a_gain_being_given) {
+  const Scenario scenario = scenario_of(kRobot);
   EXPECT_THAT(plant_warnings(scenario), IsEmpty());
 }
 
-TEST_P(FeedbackLoopTest, the_doctor_measures_a_response_that_was_given_wrong) {
+TEST(FeedbackLoop, the_doctor_measures_a_response_that_was_given_wrong) {
   // Fifty times the true one at least: the loop is too weak to follow.
-  Scenario scenario = scenario_of(GetParam());
+  Scenario scenario = scenario_of(kRobot);
   std::get<FeedbackLoop>(scenario.plant.mapping->loops[1]).response = 2000.0;
   const PlantAnswers answers = plant_answers(scenario);
   EXPECT_THAT(answer_warnings(scenario, answers), Not(IsEmpty()));
@@ -122,8 +121,11 @@ TEST_P(FeedbackLoopTest, the_doctor_measures_a_response_that_was_given_wrong) {
   EXPECT_THAT(answer_warnings(scenario, search.answers), IsEmpty());
 }
 
-INSTANTIATE_TEST_SUITE_P(Vehicles, FeedbackLoopTest, ::testing::Values(kRobot, kPusher),
-                         [](const auto& tested) { return body_of(tested.param); });
+// Its heading turns at once, its motion goes on along the old one: no loop of the forward speed can
+// mend that, and the doctor has to say so.
+TEST(FeedbackLoop, a_body_that_slides_sideways_is_warned_of) {
+  EXPECT_THAT(plant_warnings(scenario_of(kPusher)), Contains(HasSubstr("changes x by")));
+}
 
 TEST(FeedbackLoop, a_resolved_scenario_has_it) {
   const std::string text = to_yaml(scenario_of(kPusher, ", response: 4.5"));

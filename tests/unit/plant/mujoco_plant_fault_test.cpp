@@ -1,4 +1,5 @@
 // Faults of the simulator, and models that are refused.
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -10,6 +11,7 @@
 #include "harness/errors.hpp"
 #include "harness/mujoco/mujoco_errors.hpp"
 #include "harness/mujoco/mujoco_model.hpp"
+#include "harness/threads/interruption.hpp"
 #include "models/constants.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
@@ -58,6 +60,34 @@ TEST_F(MujocoPlantFault, input_or_disturbance_that_is_not_finite) {
     car->reset(pose(1.0, 2.0, 3.0));
     EXPECT_TRUE(car->advance(yaw_rate(0.0), pose(0.0, bad, 0.0)).fault.has_value());
   }
+}
+
+TEST_F(MujocoPlantFault, so_many_steps_that_no_period_would_end_are_refused) {
+  std::string text = altered_car("timestep=\"0.002\"", "timestep=\"1e-9\"");
+  const std::string allowed = "time_steps: [0.0005,";
+  text.replace(text.find(allowed), allowed.size(), "time_steps: [1e-9,");
+  const InputError::Where where = refusal(folder_.file("car.xml", text));
+  EXPECT_EQ(where.key, "option timestep");
+  EXPECT_EQ(where.found, "1e-09 s, 1e+08 steps in a control period");
+  EXPECT_THAT(where.expected, HasSubstr("at most 20000 steps in a control period of 0.1 s"));
+}
+
+using MujocoPlantFaultDeathTest = MujocoPlantFault;
+
+TEST_F(MujocoPlantFaultDeathTest, a_period_ends_where_the_process_is_asked_to_stop) {
+  const auto car = make_car();
+  car->reset(pose(0.0, 0.0, 0.0));
+  // In a process of its own: others have not been asked.
+  EXPECT_EXIT(
+      {
+        note_interrupt();
+        try {
+          (void)car->advance(yaw_rate(0.0), no_disturbance());
+        } catch (const Interrupted&) {
+          std::_Exit(17);
+        }
+      },
+      ::testing::ExitedWithCode(17), "");
 }
 
 TEST_F(MujocoPlantFault, lasts_until_reset_and_is_then_forgotten) {

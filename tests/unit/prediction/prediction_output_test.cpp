@@ -44,9 +44,24 @@ std::vector<std::string> keys_of(const nlohmann::ordered_json& object) {
   return keys;
 }
 
+TEST(PredictionOutput, says_beside_the_numbers_that_none_is_a_bound) {
+  PredictionReport report = simulated();
+  EXPECT_THAT(prediction_table(report), HasSubstr("P(unsafe)<="));
+  report.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(3, 3);
+  const std::string table = prediction_table(report);
+  EXPECT_THAT(table, HasSubstr("NO BOUND: with measurement noise"));
+  EXPECT_THAT(table, ::testing::Not(HasSubstr("P(unsafe)<=")));
+  const auto json = nlohmann::json::parse(prediction_json(report));
+  EXPECT_EQ(json["certificate"]["holds"], false);
+  EXPECT_THAT(json["certificate"]["reason"], HasSubstr("disturbance.sensor"));
+}
+
 TEST(PredictionJson, keys_are_the_documented_ones) {
   const auto json = nlohmann::ordered_json::parse(prediction_json(simulated()));
-  EXPECT_THAT(keys_of(json), ElementsAre("inputs", "cost", "stages", "horizon", "particles"));
+  EXPECT_THAT(keys_of(json),
+              ElementsAre("inputs", "cost", "stages", "horizon", "certificate", "particles"));
+  EXPECT_EQ(json["certificate"]["holds"], true);
+  EXPECT_TRUE(json["certificate"]["reason"].is_null());
   const auto& stage = json["stages"][0];
   EXPECT_THAT(keys_of(stage), ElementsAre("stage", "mean", "covariance", "w2_bound", "budget",
                                           "certificate", "monte_carlo"));

@@ -180,7 +180,10 @@ Image hud_picture(int index) {
   frame.charts = {{.label = "curve", .values = {0.1, 0.9, 0.4}, .slots = 5}};
   frame.banner = "two threads";
   Image image = black_image(640, 360);
-  Hud(640, 360).draw(frame, image);
+  const Hud hud(640, 360);
+  hud.draw_column(frame, {0.0, 0.0, 160.0, 360.0}, image);
+  hud.draw_legend_band(frame, {160.0, 320.0, 480.0, 40.0}, image);
+  hud.draw_banner(frame, {160.0, 0.0, 480.0, 320.0}, {}, image);
   return image;
 }
 
@@ -208,7 +211,7 @@ TEST(hud, a_banner_that_is_an_alarm_is_red) {
     frame.banner = "collision";
     frame.alarm = alarm;
     Image image = black_image(640, 360);
-    Hud(640, 360).draw(frame, image);
+    Hud(640, 360).draw_banner(frame, {0.0, 0.0, 640.0, 360.0}, {}, image);
     int surplus = 0;
     for (std::size_t i = 0; i < image.rgb.size(); i += 3) {
       surplus += image.rgb[i] - image.rgb[i + 1] > 100 ? 1 : 0;
@@ -219,12 +222,10 @@ TEST(hud, a_banner_that_is_an_alarm_is_red) {
   EXPECT_GT(redness(true), 1000);
 }
 
-TEST(hud, draws_nothing_for_a_frame_that_says_nothing) {
+TEST(hud, draws_no_banner_for_a_frame_without) {
   Image image = black_image(640, 360);
-  const Hud hud(640, 360);
-  hud.draw(Frame{}, image);
+  Hud(640, 360).draw_banner(Frame{}, {0.0, 0.0, 640.0, 360.0}, {}, image);
   EXPECT_EQ(brightness(image), 0);
-  EXPECT_EQ(hud.covered_share(Frame{}), 0.0);
 }
 
 TEST(hud, survives_long_and_foreign_text_and_values_that_are_not_finite) {
@@ -239,9 +240,11 @@ TEST(hud, survives_long_and_foreign_text_and_values_that_are_not_finite) {
   frame.banner = std::string(300, 'b');
   Image image = black_image(640, 360);
   const Hud hud(640, 360);
-  hud.draw(frame, image);
+  hud.draw_column(frame, {0.0, 0.0, hud.column_width(), 360.0}, image);
+  hud.draw_band(frame, {160.0, 300.0, 480.0, 60.0}, image);
+  hud.draw_banner(frame, {160.0, 0.0, 480.0, 300.0}, {}, image);
+  hud.draw_line(frame, {0.0, 0.0, 640.0, 24.0}, image);
   EXPECT_GT(brightness(image), 0);
-  EXPECT_GT(hud.covered_share(frame), 0.0);
 }
 
 TEST(colour, stages_get_brighter_along_the_horizon) {

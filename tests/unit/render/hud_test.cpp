@@ -4,6 +4,7 @@
 
 #include "render/hud/legend.hpp"
 #include "render/hud/strip_chart.hpp"
+#include "render/picture_layout.hpp"
 #include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc::render {
@@ -82,15 +83,65 @@ TEST(hud, letters_stay_legible_in_small_pictures) {
   }
 }
 
-TEST(hud, panel_covers_less_than_half_of_any_picture) {
+TEST(strip_chart, numbers_are_short_and_as_people_read_them) {
+  EXPECT_EQ(short_number(-0.0), "0");
+  EXPECT_EQ(short_number(-0.785), "−0.785");
+  EXPECT_EQ(short_number(100.0), "100");
+  EXPECT_EQ(short_number(1234.4), "1234");
+  EXPECT_EQ(short_number(1e5), "10⁵");
+  EXPECT_EQ(short_number(3.5e-6), "3.5 × 10⁻⁶");
+  EXPECT_EQ(short_number(1e-3), "0.001");
+}
+
+TEST(hud, leaves_the_scene_most_of_the_picture_and_never_lies_over_it) {
   for (const auto& [width, height] :
        {std::pair{1280, 720}, {640, 360}, {480, 270}, {320, 180}, {200, 100}}) {
     const Hud hud(width, height);
-    Image image = black_image(width, height);
-    hud.draw(talkative_frame(), image);
-    EXPECT_LT(hud.covered_share(talkative_frame()), 0.45);
-    EXPECT_EQ(image.rgb.size(), static_cast<std::size_t>(3 * width * height));
+    const PictureLayout layout = picture_layout(width, height, "chase", 1,
+                                                {.charts = hud.band_height(),
+                                                 .legend = hud.legend_height(2),
+                                                 .column = hud.column_width(),
+                                                 .line = hud.heading_height()});
+    const PaneLayout& pane = layout.panes.at(0);
+    EXPECT_GT(pane.width * pane.height, 0.55 * width * height) << width;
+    const auto apart = [&pane](const PixelRectangle& area) {
+      return area.x + area.width <= pane.x || area.y + area.height <= pane.y ||
+             area.x >= pane.x + pane.width || area.y >= pane.y + pane.height;
+    };
+    EXPECT_TRUE(apart(layout.bands.at(0))) << width;
+    EXPECT_TRUE(layout.legend.height == 0.0 || apart(layout.legend)) << width;
   }
+}
+
+TEST(hud, column_is_drawn_within_its_area) {
+  const Hud hud(640, 360);
+  Image image = black_image(640, 360);
+  hud.draw_column(talkative_frame(), {0.0, 0.0, hud.column_width(), 360.0}, image);
+  int lit = 0;
+  for (int y = 0; y < 360; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      const int light = pixel_at(image, {x + 0.5, y + 0.5}).green;
+      if (x >= hud.column_width()) {
+        ASSERT_EQ(light, 0) << x << ", " << y;
+      } else {
+        lit += light > 100 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(lit, 100);
+}
+
+TEST(hud, banner_keeps_off_what_it_must_not_cover) {
+  const auto light_at = [](const PixelPoint& place) {
+    Frame frame;
+    frame.banner = "target reached";
+    frame.alarm = true;
+    Image image = black_image(640, 360);
+    Hud(640, 360).draw_banner(frame, {0.0, 0.0, 640.0, 360.0}, {place}, image);
+    return pixel_at(image, place).red;
+  };
+  EXPECT_EQ(light_at({320.0, 40.0}), 0);
+  EXPECT_EQ(light_at({320.0, 320.0}), 0);
 }
 
 TEST(legend, keeps_to_its_width_and_lines) {

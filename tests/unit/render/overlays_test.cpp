@@ -1,7 +1,12 @@
 // What a plan believes, in the picture: ellipses, tube, raw points, ghost, clearance; and panes.
+#include <fstream>
+#include <iterator>
 #include <numbers>
+#include <string>
 #include <thread>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "render/palette.hpp"
@@ -210,6 +215,32 @@ TEST(colours, of_risk_get_darker_and_are_the_same_beyond_their_ends) {
   }
   EXPECT_EQ(luma(risk_colour(0.0)), luma(risk_colour(1e-6)));
   EXPECT_EQ(luma(risk_colour(std::nan(""))), luma(risk_colour(1.0)));
+}
+
+// "#rrggbb"
+std::string hex(const Colour& colour) {
+  const auto byte = [](float value) { return static_cast<int>(std::lround(255.0F * value)); };
+  return fmt::format("#{:02x}{:02x}{:02x}", byte(colour.red), byte(colour.green),
+                     byte(colour.blue));
+}
+
+TEST(colours, of_stages_and_clearance_are_the_same_on_pages) {
+  std::ifstream file(std::string(QSMPC_SOURCE_DIR) + "/harness/report/web/map.js");
+  const std::string script{std::istreambuf_iterator<char>(file), {}};
+  const auto palette = [&script](const std::string& name) {
+    const std::size_t begin = script.find(name + " = [");
+    std::string list = script.substr(begin, script.find(']', begin) - begin);
+    std::erase_if(list, [](char c) { return c == '\n' || c == ' ' || c == '"'; });
+    return list.substr(list.find('[') + 1);
+  };
+  std::vector<std::string> stages;
+  for (int stage = 0; stage < 11; ++stage) stages.push_back(hex(stage_colour(stage, 11)));
+  EXPECT_EQ(palette("kStageColours"), fmt::format("{}", fmt::join(stages, ",")));
+  std::vector<std::string> clearances;
+  for (const double share : {0.0, 0.5, 1.0}) {
+    clearances.push_back(hex(clearance_colour(share * kCalmClearance)));
+  }
+  EXPECT_EQ(palette("kClearanceColours"), fmt::format("{}", fmt::join(clearances, ",")));
 }
 
 }  // namespace overlays_test

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/figures/plot_frame.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/report/campaign_outcomes.hpp"
 #include "harness/report/campaign_page.hpp"
@@ -36,6 +37,7 @@ VariantStatistics variant(const std::string& name, int unsafe_every) {
 CampaignStatistics example() {
   CampaignStatistics statistics;
   statistics.variants = {variant("seldom", 2000), variant("often <b>", 10)};
+  statistics.variants[1].id = 1;
   statistics.calibration = statistics.variants[1].calibration;
   statistics.published = statistics.variants[1].published;
   VariantDifference difference{.pair = {.variant = 1, .baseline = 0}};
@@ -78,7 +80,7 @@ TEST(CampaignFigures, of_no_episodes_exist) {
   }
 }
 
-TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_as_limits) {
+TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_at_zero_below_what_is_shaded) {
   const Chart chart = campaign_figures(example())[1].charts[0];
   const Series* exceeded = series_of(chart, "certificate: exceeded");
   ASSERT_NE(exceeded, nullptr) << "one of ten where one of a thousand is certified";
@@ -91,8 +93,15 @@ TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_as_limits) {
   ASSERT_NE(published, nullptr);
   EXPECT_EQ(published->x.size(), 1U);
   EXPECT_EQ(series_of(chart, "published value, no bound: exceeded"), nullptr);
-  const auto limits = std::ranges::count(chart.series, Mark::kLimits, &Series::mark);
-  EXPECT_EQ(limits, 2);
+  for (const char* name : {"certificate: none unsafe", "published value, no bound: none unsafe"}) {
+    const Series* unseen = series_of(chart, name);
+    ASSERT_NE(unseen, nullptr) << name;
+    EXPECT_EQ(unseen->y, std::vector<double>{0.0});
+    EXPECT_GT(unseen->upper[0], 0.0);
+  }
+  const PlotFrame frame = frame_of(chart);
+  const std::vector<double>& edge = chart.areas.at(0).y;
+  EXPECT_GT(frame.up(0.0), frame.up(std::ranges::min(edge)) + 5.0) << "heights grow downwards";
   EXPECT_TRUE(testing::contains(chart.note, "in 1 of 2 bins"));
 }
 
@@ -122,11 +131,12 @@ TEST(ReliabilityFigure, says_which_of_many_variants_have_a_chart) {
   const VariantStatistics exceeded = statistics.variants[1];
   statistics.variants.assign(40, statistics.variants[0]);
   statistics.variants[33] = exceeded;
+  for (std::size_t n = 0; n < 40; ++n) statistics.variants[n].id = static_cast<std::int64_t>(n);
   const std::vector<Chart> charts = campaign_figures(statistics)[1].charts;
   ASSERT_EQ(charts.size(), 2U + 16U);
   EXPECT_TRUE(testing::contains(charts[0].note, "Of 40 variants, 16 have a chart of their own"));
-  EXPECT_TRUE(charts[2].title.starts_with("1: ")) << charts[2].title;
-  EXPECT_TRUE(charts[17].title.starts_with("34: ")) << charts[17].title;
+  EXPECT_TRUE(charts[2].title.starts_with("0: ")) << charts[2].title;
+  EXPECT_TRUE(charts[17].title.starts_with("33: ")) << charts[17].title;
 }
 
 TEST(OutcomeFigure, has_room_for_many_variants) {
@@ -150,15 +160,15 @@ TEST(CampaignFigures, begin_the_certified_axis_where_the_least_value_is) {
 TEST(CampaignPage, has_tables_and_figures_with_texts_that_are_escaped) {
   const std::string page = campaign_page(example());
   EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
-  EXPECT_TRUE(testing::contains(page, "2: often &lt;b&gt;"));
+  EXPECT_TRUE(testing::contains(page, "1: often &lt;b&gt;"));
   EXPECT_FALSE(testing::contains(page, "often <b>"));
-  EXPECT_TRUE(testing::contains(page, "2 less 1"));
-  EXPECT_EQ(testing::occurrences(page, "<figure"), 4 + 2 + 6);
+  EXPECT_TRUE(testing::contains(page, "1 less 0"));
+  EXPECT_EQ(testing::occurrences(page, "<figure"), 4 + 2)
+      << "of one pair of variants there is a table";
 }
 
 TEST(CampaignPage, links_what_there_is_of_the_worst_episodes_and_says_how_to_make_the_rest) {
   CampaignStatistics statistics = example();
-  statistics.variants[1].id = 1;
   EXPECT_FALSE(testing::contains(campaign_page(statistics), "The worst episodes"));
   ListedEpisode made{.page = "episodes/1/7/report.html",
                      .video = "episodes/1/7/episode.mp4",
@@ -176,7 +186,7 @@ TEST(CampaignPage, links_what_there_is_of_the_worst_episodes_and_says_how_to_mak
   EXPECT_TRUE(testing::contains(page, "<a href=\"./episodes/1/7/report.html\">page</a> · "));
   EXPECT_TRUE(testing::contains(page, "<a href=\"./episodes/1/7/episode.mp4\">video</a>"));
   EXPECT_TRUE(testing::contains(page, "<a href=\"./episodes/1/7/a%3Cb.h5\">trace</a>"));
-  EXPECT_TRUE(testing::contains(page, "<th scope=\"row\">2: often &lt;b&gt;</th><td>7</td>"));
+  EXPECT_TRUE(testing::contains(page, "<th scope=\"row\">1: often &lt;b&gt;</th><td>7</td>"));
   EXPECT_TRUE(testing::contains(page, "<td>−0.25</td>"));
   EXPECT_TRUE(testing::contains(page, "--seed 12 --out &lt;x&gt;</code>"));
   EXPECT_FALSE(testing::contains(page, "nan"));
@@ -202,6 +212,7 @@ VariantStatistics crashing_variant() {
 CampaignStatistics crashing_campaign() {
   CampaignStatistics statistics;
   statistics.variants = {variant("sound", 2000), crashing_variant()};
+  statistics.variants[1].id = 1;
   statistics.calibration = statistics.variants[1].calibration;
   statistics.published = statistics.variants[1].published;
   return statistics;
@@ -218,7 +229,7 @@ TEST(CampaignPage, says_first_how_many_drives_were_unsafe_and_certificates_after
   EXPECT_TRUE(testing::contains(page,
                                 "<p>1009 reached the target, 28 collided, 2 left the bounds, 0 ran "
                                 "out of time, 1 faulted.</p>"));
-  EXPECT_TRUE(testing::contains(page, "Most often in variant 2: 75 % of its drives (blind).</p>"));
+  EXPECT_TRUE(testing::contains(page, "Most often in variant 1: 75 % of its drives (blind).</p>"));
   // Its certificates hold, which is no good news of the drives.
   const std::size_t tick = page.find("✓ No certificate is refuted");
   ASSERT_NE(tick, std::string::npos);

@@ -43,10 +43,11 @@ TEST(ComparisonPage, has_all_parts_and_is_well_formed) {
   EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
   for (const char* part :
        {"No certificate is exceeded on any plant", "Farthest from the model: mujoco_car",
-        "<h2>Closed loop</h2>", "Certificates without model error", "covariance with heading",
-        "– the model, but for rounding", "W₂ between the predicted measure and the plant",
-        "Divergence from the model: y", "Numbers by stage: mujoco_car", "× real time",
-        "every default filled in", "horizon: 3"}) {
+        "<h2>Closed loop</h2>", "Certificates without model error",
+        "Covariance of the residual: mujoco_car",
+        "It is the model: what differs is rounding, of at most",
+        "W₂ between the predicted measure and the plant", "Divergence from the model: y",
+        "Numbers by stage: mujoco_car", "× real time", "every default filled in", "horizon: 3"}) {
     EXPECT_TRUE(testing::contains(page, part)) << part;
   }
   EXPECT_FALSE(testing::contains(page, "<script"));
@@ -57,6 +58,20 @@ TEST(ComparisonPage, has_all_parts_and_is_well_formed) {
   EXPECT_EQ(
       testing::occurrences(page, "role=\"region\""),
       testing::occurrences(page, "aria-label=\"") - testing::occurrences(page, "role=\"img\""));
+}
+
+TEST(ComparisonPage, has_no_tables_or_charts_of_rounding_errors) {
+  Comparison comparison = example();
+  const std::string page = comparison_page(comparison);
+  EXPECT_FALSE(testing::contains(page, "aria-label=\"One period, by state: analytic\""));
+  EXPECT_TRUE(testing::contains(page, "aria-label=\"One period, by state: mujoco_car\""));
+  EXPECT_FALSE(
+      testing::contains(page, "aria-label=\"Divergence from the model, by stage: analytic"));
+  EXPECT_TRUE(
+      testing::contains(page, "aria-label=\"Divergence from the model, by stage: mujoco_car"));
+  comparison.plants.pop_back();
+  EXPECT_FALSE(testing::contains(comparison_page(comparison), "Divergence from the model"));
+  EXPECT_FALSE(testing::contains(comparison_page(comparison), "One-step residual"));
 }
 
 TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
@@ -125,7 +140,7 @@ TEST(ComparisonPage, texts_are_escaped) {
   EXPECT_EQ(testing::tag_problem(page.substr(page.find("<html"))), "");
 }
 
-TEST(ComparisonFigures, stages_without_an_unsafe_path_are_upper_limits) {
+TEST(ComparisonFigures, stages_without_an_unsafe_path_stand_at_zero) {
   Comparison comparison = example();
   PlantComparison& car = comparison.plants[1];
   for (HorizonStage& stage : car.horizon) stage.unsafe = 0;
@@ -133,7 +148,8 @@ TEST(ComparisonFigures, stages_without_an_unsafe_path_are_upper_limits) {
   car.horizon[1].unsafe_limits = {.lower = 0.1, .upper = 0.4};
   const Chart chart = comparison_figures(comparison)[kCertificateFigure].charts[1];
   ASSERT_EQ(chart.series.size(), 3U);
-  EXPECT_EQ(chart.series[1].mark, Mark::kLimits);
+  EXPECT_TRUE(chart.y_has_zero);
+  EXPECT_EQ(chart.series[1].y, std::vector<double>(car.horizon.size() - 1, 0.0));
   EXPECT_EQ(chart.series[1].x.size(), car.horizon.size() - 1);
   EXPECT_EQ(chart.series[2].y, (std::vector<double>{0.25}));
   EXPECT_EQ(chart.series[2].lower, (std::vector<double>{0.1}));

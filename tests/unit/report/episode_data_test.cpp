@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
 #include <string>
 #include <vector>
@@ -13,43 +12,42 @@
 
 #include "harness/report/episode_charts.hpp"
 #include "harness/report/episode_map.hpp"
+#include "harness/scenario/scenario_file.hpp"
 #include "models/dynamics/dynamics.hpp"
+#include "tests/support/described_trace.hpp"
 #include "tests/support/example_trace.hpp"
+#include "tests/unit/report/packed_data.hpp"
 
 namespace qsmpc::harness {
 namespace episode_data_test {
 
 using testing::example_trace;
-
-std::vector<std::uint8_t> bytes_of(const std::string& text) {
-  const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::vector<std::uint8_t> bytes;
-  std::uint32_t group = 0;
-  int bits = 0;
-  for (const char c : text) {
-    if (c == '=') break;
-    group = group << 6U | static_cast<std::uint32_t>(digits.find(c));
-    bits += 6;
-    if (bits < 8) continue;
-    bits -= 8;
-    bytes.push_back(static_cast<std::uint8_t>(group >> static_cast<unsigned>(bits)));
-  }
-  return bytes;
-}
-
-template <class Number>
-std::vector<Number> numbers_of(const nlohmann::json& text) {
-  const std::vector<std::uint8_t> bytes = bytes_of(text.get<std::string>());
-  std::vector<Number> numbers(bytes.size() / sizeof(Number));
-  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
-  return numbers;
-}
+using testing::numbers_of;
 
 nlohmann::json data_of(const Trace& trace) {
   const EpisodeView view(trace);
   const std::vector<Chart> charts = episode_charts(view);
   const PlaneMap map = episode_maps(view)->ground;
   return nlohmann::json::parse(episode_data(view, {.charts = charts, .map = &map}));
+}
+
+TEST(EpisodeMap, without_a_plane_shows_position_and_angle_or_velocity) {
+  const auto map_of = [](const char* name) {
+    Trace trace;
+    trace.scenario = load_scenario(name);
+    trace = testing::described(std::move(trace));
+    return episode_maps(EpisodeView(trace)).value().drive;
+  };
+  const PlaneMap cart_pole = map_of("cart_pole");
+  EXPECT_EQ(cart_pole.title, "Position and pole angle");
+  EXPECT_EQ(cart_pole.x_label, "position (m)");
+  EXPECT_EQ(cart_pole.y_label, "pole_angle (rad)");
+  EXPECT_EQ(cart_pole.bounds.x_upper, 2.5);
+  EXPECT_EQ(cart_pole.bounds.y_upper, 0.5);
+  const PlaneMap line = map_of("double_integrator");
+  EXPECT_EQ(line.y_label, "velocity (m/s)");
+  EXPECT_EQ(line.targets.at(0).centre.x, 2.0);
+  EXPECT_EQ(map_of("dubins_obstacles").title, "Map");
 }
 
 TEST(EpisodeData, particles_are_where_the_trace_has_them) {

@@ -58,6 +58,21 @@ TEST(EpisodePage, its_tags_are_balanced) {
             "");
 }
 
+TEST(EpisodePage, says_beside_every_certificate_that_it_is_no_bound) {
+  Trace trace = testing::example_trace();
+  EXPECT_FALSE(contains(markup_of(episode_page(EpisodeView(trace), {})), "o bound"));
+  const auto states = static_cast<Eigen::Index>(trace.system.states.size());
+  trace.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(states, states);
+  const std::string whole = episode_page(EpisodeView(trace), {});
+  const std::string page = markup_of(whole);
+  EXPECT_TRUE(contains(page, "No certificate is a bound here"));
+  EXPECT_EQ(occurrences(page, "no bound: see above"), 3);  // next step, sum, plan
+  EXPECT_TRUE(contains(page, "Certificates, no bounds"));
+  EXPECT_FALSE(contains(page, "Upper bounds"));
+  EXPECT_TRUE(contains(whole, "\"holds\":false"));
+  EXPECT_EQ(tag_problem(page), "");
+}
+
 TEST(EpisodePage, the_tag_check_finds_what_is_wrong) {
   EXPECT_NE(testing::tag_problem("<p><b></p></b>"), "");
   EXPECT_NE(testing::tag_problem("<p>"), "");

@@ -1,6 +1,8 @@
 #include "harness/report/figure_files.hpp"
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -8,6 +10,7 @@
 #include "harness/errors.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tests/unit/report/page_checks.hpp"
 
 namespace qsmpc::harness {
 namespace figure_files_test {
@@ -59,9 +62,27 @@ TEST(WriteFigures, leaves_an_svg_and_a_pdf_of_each) {
   const TemporaryFolder folder;
   const auto paths = write_figures({figure("one"), figure("two")}, folder.path());
   EXPECT_EQ(names_in(folder.path() + "/figures"),
-            (std::set<std::string>{"one.pdf", "one.svg", "two.pdf", "two.svg"}));
-  ASSERT_EQ(paths.size(), 4U);
+            (std::set<std::string>{"captions.txt", "one.pdf", "one.svg", "two.pdf", "two.svg"}));
+  ASSERT_EQ(paths.size(), 5U);
   EXPECT_EQ(paths[1], folder.path() + "/figures/one.pdf");
+}
+
+TEST(WriteFigures, puts_titles_and_notes_into_the_captions_where_they_are_not_drawn) {
+  const Chart chart{.title = "Least <clearance>",
+                    .note = "Of 3 drives.",
+                    .x_label = "",
+                    .y_label = "",
+                    .series = {{.name = "one", .x = {1, 2}, .y = {1, 2}}}};
+  const TemporaryFolder folder;
+  (void)write_figures({{.name = "both", .panels = {chart, chart}}}, folder.path(),
+                      {.titles = false});
+  const auto text = [&](const char* name) {
+    std::ifstream file(folder.path() + "/figures/" + name);
+    return std::string(std::istreambuf_iterator<char>(file), {});
+  };
+  EXPECT_EQ(text("captions.txt"),
+            "both\n  (a) Least <clearance>. Of 3 drives.\n  (b) Least <clearance>. Of 3 drives.\n");
+  EXPECT_FALSE(testing::contains(text("both.svg"), ">Least"));
 }
 
 TEST(WriteFigures, where_one_cannot_be_written_none_has_its_name) {

@@ -112,6 +112,42 @@ TEST(ResultsMarkdown, has_as_many_cells_in_every_row) {
   EXPECT_THAT(text, HasSubstr("| this does not | **no** |"));
 }
 
+TEST(ResultsMarkdown, has_tables_in_the_thesiss_shape_and_lists_what_has_no_place) {
+  ExperimentResult experiment{.name = "table-5-1", .title = "quality"};
+  for (const int step : {0, 1}) {
+    const std::string column = "step " + std::to_string(step);
+    experiment.rows.push_back({.quantity = "samples",
+                               .published = 1.0 + step,
+                               .here = 1.5 + step,
+                               .note = "the same",
+                               .place = TablePlace{"W2", "samples", column}});
+    experiment.rows.push_back({.quantity = "mixture",
+                               .unit = "m",
+                               .here = 0.25 + step,
+                               .note = step == 0 ? "exact" : "",
+                               .place = TablePlace{"W2", "mixture", column}});
+  }
+  experiment.rows.push_back({.quantity = "alone", .published = 4.0, .here = 2.0});
+  experiment.rows.push_back(
+      {.quantity = "late", .here = 7.0, .place = TablePlace{"W2", "late", "step 1"}});
+  Reproduction all = example();
+  all.experiments = {experiment};
+  EXPECT_THAT(results_markdown(all, "figures"),
+              HasSubstr("| W2 | step 0 | step 1 |\n"
+                        "| --- | ---: | ---: |\n"
+                        "| samples: published | 1 | 2 |\n"
+                        "| samples: here | 1.5 | 2.5 |\n"
+                        "| mixture (m) | 0.25 | 1.25 |\n"
+                        "| late |  | 7 |\n"
+                        "\n"
+                        "- samples: the same\n"
+                        "- mixture (m): exact (step 0)\n"
+                        "\n"
+                        "| quantity | published | here | ratio | note |\n"
+                        "| --- | ---: | ---: | ---: | --- |\n"
+                        "| alone | 4 | 2 | 0.5 |  |\n"));
+}
+
 TEST(ResultsPage, shows_rows_claims_and_figures_as_text) {
   const std::string page = results_page(example());
   EXPECT_THAT(page, HasSubstr("table-9-9"));

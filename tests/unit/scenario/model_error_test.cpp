@@ -6,7 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/scenario/error_origin.hpp"
 #include "harness/scenario/model_error_reader.hpp"
+#include "harness/scenario/scenario_warnings.hpp"
+#include "harness/scenario/shipped_files.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
 namespace qsmpc::harness {
@@ -109,7 +112,7 @@ TEST(ModelErrorKey, resolved_scenarios_hold_it_and_read_it_back_bit_for_bit) {
 TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
   const TemporaryFolder folder;
   const controller::ModelError error = loaded(whole_text);
-  (void)folder.file("error.yaml", model_error_yaml(error, "dubins", "from 3 episodes"));
+  (void)folder.file("error.yaml", model_error_yaml({error}, "dubins", "from 3 episodes"));
   const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
   expect_same(load_scenario(path).model_error.value(), error);
   // The resolved scenario needs the file no longer.
@@ -121,7 +124,7 @@ TEST(ModelErrorKey, names_a_file_beside_the_scenario) {
 TEST(ModelErrorKey, of_a_drive_is_read_back_from_a_file) {
   const TemporaryFolder folder;
   const controller::ModelError error = loaded(drive_text);
-  (void)folder.file("error.yaml", model_error_yaml(error, "dubins", "of a drive"));
+  (void)folder.file("error.yaml", model_error_yaml({error}, "dubins", "of a drive"));
   const std::string path = folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
   expect_same(load_scenario(path).model_error.value(), error);
 }
@@ -129,7 +132,7 @@ TEST(ModelErrorKey, of_a_drive_is_read_back_from_a_file) {
 TEST(ModelErrorKey, of_the_command_line_is_found_in_the_working_folder_too) {
   const TemporaryFolder folder;
   const controller::ModelError error = loaded(whole_text);
-  (void)folder.file("error.yaml", model_error_yaml(error, "dubins", ""));
+  (void)folder.file("error.yaml", model_error_yaml({error}, "dubins", ""));
   const TemporaryFolder elsewhere;
   const std::string path = elsewhere.file("s.yaml", minimal_text);
   const auto before = std::filesystem::current_path();
@@ -157,6 +160,83 @@ TEST(ModelErrorKey, problems_of_its_file_are_told_with_its_name_and_line) {
   // A file that is no YAML at all is a problem like any other.
   (void)folder.file("error.yaml", "rms: [1, 2\n");
   EXPECT_EQ(validate_scenario_file(path).at(0).file, folder / "error.yaml");
+}
+
+/// An error file that was measured with the scenario of `overrides`, beside a scenario that names
+/// it.
+std::string scenario_with_error_of(const TemporaryFolder& folder,
+                                   const std::vector<std::string>& overrides) {
+  (void)folder.file("error.yaml", model_error_yaml({loaded("rms: [0.1, 0.1, 0.1]\n"),
+                                                    error_origin_of(minimal_with(overrides))},
+                                                   "dubins"));
+  return folder.file("s.yaml", minimal_text + "model_error: error.yaml\n");
+}
+
+TEST(ErrorOrigin, of_another_model_or_control_period_is_refused) {
+  const TemporaryFolder folder;
+  const std::string path = scenario_with_error_of(folder, {"model.speed=1.5", "time_step=0.1"});
+  const auto problems = [&](const std::vector<std::string>& overrides) {
+    return validate_scenario_file(path, overrides);
+  };
+  EXPECT_TRUE(problems({"model.speed=1.5", "time_step=0.1"}).empty());
+  const auto speed = problems({"model.speed=3", "time_step=0.1"});
+  ASSERT_EQ(speed.size(), 1U);
+  EXPECT_EQ(speed[0].file, folder / "error.yaml");
+  EXPECT_EQ(speed[0].key, "measured.parameters.speed");
+  EXPECT_EQ(speed[0].found, "1.5");
+  EXPECT_THAT(speed[0].expected, HasSubstr("3, the model's"));
+  const auto period = problems({"model.speed=1.5", "time_step=0.05"});
+  ASSERT_EQ(period.size(), 1U);
+  EXPECT_EQ(period[0].key, "measured.time_step");
+}
+
+TEST(ErrorOrigin, of_another_plant_is_warned_of) {
+  const std::vector<std::string> car = {"plant={kind: mujoco, mjcf: dubins_car.xml}",
+                                        "disturbance.friction=0.1"};
+  const TemporaryFolder folder;
+  const std::string path = scenario_with_error_of(folder, car);
+  const auto warnings = [&](std::vector<std::string> overrides) {
+    return scenario_warnings(load_scenario(path, overrides));
+  };
+  EXPECT_THAT(warnings(car), ::testing::IsEmpty());
+  EXPECT_THAT(warnings({"plant={kind: mujoco, mjcf: dubins_car.xml}", "disturbance.friction=0.4"}),
+              ::testing::ElementsAre(HasSubstr("disturbance.friction: 0.1 there, 0.4 here")));
+  EXPECT_THAT(
+      warnings({"plant={kind: mujoco, mjcf: dubins_planar.xml}", "disturbance.friction=0.1"}),
+      ::testing::ElementsAre(
+          HasSubstr("plant.mjcf: dubins_car.xml there, dubins_planar.xml here")));
+  EXPECT_THAT(warnings({"disturbance.friction=0.1"}),
+              ::testing::Contains(HasSubstr("plant.kind: mujoco there, analytic here")));
+}
+
+TEST(ErrorOrigin, of_a_file_that_has_changed_is_warned_of) {
+  const TemporaryFolder folder;
+  const std::string car = content_of(find_mjcf("dubins_planar.xml", ""));
+  const std::vector<std::string> own = {
+      "plant={kind: mujoco, mjcf: " + folder.file("car.xml", car) + "}"};
+  const std::string path = scenario_with_error_of(folder, own);
+  EXPECT_THAT(scenario_warnings(load_scenario(path, own)), ::testing::IsEmpty());
+  std::string heavier = car;
+  const std::size_t mass = heavier.find("mass=\"3.5\"");
+  ASSERT_NE(mass, std::string::npos);
+  heavier.insert(mass + 6, "1");
+  (void)folder.file("car.xml", heavier);
+  EXPECT_THAT(scenario_warnings(load_scenario(path, own)),
+              ::testing::ElementsAre(HasSubstr("car.xml has changed since")));
+}
+
+TEST(ErrorOrigin, stays_in_the_resolved_scenario_and_is_not_needed) {
+  const TemporaryFolder folder;
+  const std::string path =
+      scenario_with_error_of(folder, {"plant={kind: mujoco, mjcf: dubins_car.xml}"});
+  const std::string written = to_yaml(load_scenario(path));
+  const Scenario read = parse_scenario(written);
+  ASSERT_TRUE(read.error_origin.has_value());
+  EXPECT_EQ(read.error_origin->plant.mjcf, "dubins_car.xml");
+  EXPECT_EQ(to_yaml(read), written);
+  (void)folder.file("error.yaml", "system: dubins\nrms: [0.1, 0.1, 0.1]\n");
+  EXPECT_FALSE(load_scenario(path).error_origin.has_value());
+  EXPECT_THAT(scenario_warnings(load_scenario(path)), ::testing::IsEmpty());
 }
 
 TEST(ModelErrorKey, rounding_of_printed_norms_is_no_contradiction) {

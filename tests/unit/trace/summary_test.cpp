@@ -54,6 +54,16 @@ TEST(Summary, adds_the_stage_costs_of_the_true_states) {
   EXPECT_DOUBLE_EQ(EpisodeView(trace).summary().closed_loop_cost, 25.0 + 3.0 + 12.0);
 }
 
+TEST(Summary, says_whether_its_certificates_are_bounds) {
+  Trace trace = straight_trace(2);
+  EXPECT_EQ(nlohmann::json::parse(summary_json(EpisodeView(trace)))["certificate"]["holds"], true);
+  trace.scenario.disturbance.sensor = Eigen::Matrix3d::Identity();
+  const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)));
+  EXPECT_EQ(json["certificate"]["holds"], false);
+  EXPECT_EQ(json["certificate"]["reason"],
+            "with measurement noise (disturbance.sensor) the feedback acts on what is seen");
+}
+
 TEST(Summary, counts_periods_of_touching_that_follow_each_other_once) {
   Trace trace = straight_trace(6);
   EXPECT_FALSE(EpisodeView(trace).summary().contacts.has_value());

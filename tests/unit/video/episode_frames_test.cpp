@@ -10,6 +10,10 @@
 
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/video/belief_shape.hpp"
+#include "harness/video/episode_hud.hpp"
+#include "harness/video/episode_painter.hpp"
 #include "render/scene/belief_painter.hpp"
 #include "tests/unit/video/straight_episode.hpp"
 
@@ -17,6 +21,8 @@ namespace qsmpc::harness {
 namespace episode_frames_test {
 
 using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 std::string row_of(const render::Frame& frame, const std::string& name) {
   for (const render::HudRow& row : frame.hud) {
@@ -88,13 +94,37 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   EXPECT_DOUBLE_EQ(frame.planned_path[0].x, 2.0 * kStride);
   ASSERT_EQ(frame.particles.size(), 3U);
   EXPECT_DOUBLE_EQ(frame.particles[1].points[0].x, 3.0 * kStride);
-  EXPECT_EQ(frame.charts[0].value, "3.0e-03");
-  EXPECT_THAT(row_of(frame, "P(unsafe) whole plan"), HasSubstr("2.5e-01"));
+  EXPECT_EQ(frame.charts[0].value, "≤ 0.3 %");
+  EXPECT_EQ(row_of(frame, "risk of plan"), "≤ 26 %");  // 0.003 + 0.25, rounded up
   EXPECT_THAT(row_of(frame, "speed"), HasSubstr("1.50"));
   EXPECT_THAT(frame.charts[1].values, ::testing::ElementsAre(0.0, 0.1, 0.2));
   EXPECT_EQ(frame.charts[0].values.size(), 3U);
   EXPECT_TRUE(frame.banner.empty());
   EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));
+}
+
+TEST(episode_frames, what_is_no_bound_is_not_called_one) {
+  Trace trace = straight_trace();
+  trace.scenario.disturbance.sensor = Eigen::Matrix3d::Identity();
+  const EpisodeView view(trace);
+  const render::Frame frame = EpisodeFrames(view).at(0.2);
+  EXPECT_EQ(frame.charts[0].label, "next step, no bound");
+  EXPECT_THAT(row_of(frame, "plan, no bound"), StartsWith("25"));
+  EXPECT_THAT(frame.charts[0].value, Not(HasSubstr("≤")));
+  for (const render::HudRow& row : frame.hud) EXPECT_THAT(row.value, Not(HasSubstr("≤")));
+}
+
+TEST(episode_frames, speed_is_the_plants_and_neither_the_models_constant_nor_the_noises) {
+  Trace trace = straight_trace();
+  trace.scenario.model.parameters["speed"] = 9.0;
+  // The plant loses speed in its third period: half of the stride, then the same kick.
+  for (std::size_t k = 3; k < trace.steps.size(); ++k) trace.steps[k].state.x() -= 0.5 * kStride;
+  trace.final_state.x() -= 0.5 * kStride;
+  const EpisodeView view(trace);
+  const EpisodeFrames frames(view);
+  EXPECT_THAT(row_of(frames.at(0.15), "speed"), HasSubstr("1.50"));
+  EXPECT_THAT(row_of(frames.at(0.25), "speed"), HasSubstr("0.75"));
+  EXPECT_THAT(row_of(frames.at(0.35), "speed"), HasSubstr("1.50"));
 }
 
 TEST(episode_frames, a_collision_is_told_when_it_was_and_as_an_alarm) {
@@ -169,10 +199,121 @@ TEST(episode_frames, ellipses_and_tube_are_those_of_the_particles_moments) {
   EXPECT_NEAR(std::hypot(frame.ellipses[1].half.first_axis.x, frame.ellipses[1].half.first_axis.y),
               0.2 * std::sqrt(-2.0 * std::log(0.5)), 1e-12);
   // The plan runs along x: the tube is as wide as the ellipse is along y.
-  ASSERT_EQ(frame.tube.size(), 3U);
-  EXPECT_NEAR(frame.tube[1].left.y - frame.tube[1].right.y, 0.4 * radius, 1e-12);
-  EXPECT_EQ(frame.tube[1].bound, 3e-3);
-  EXPECT_EQ(frame.tube[2].bound, 0.25);
+  ASSERT_EQ(frame.tube.size(), 3U + 2U * kTubeEndSections);
+  const render::TubeSection& second = frame.tube[kTubeEndSections + 1];
+  EXPECT_NEAR(second.left.y - second.right.y, 0.4 * radius, 1e-12);
+  EXPECT_EQ(second.bound, 3e-3);
+  EXPECT_EQ(frame.tube.back().bound, 0.25);
+}
+
+// Twice the area of the triangle, positive where it turns left.
+double turn(const render::PlanarPoint& a, const render::PlanarPoint& b,
+            const render::PlanarPoint& c) {
+  return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+TEST(episode_frames, tube_ends_round_and_covers_the_last_ellipse) {
+  std::vector<PlanarMoments> stages(2);
+  stages[0].covariance = Eigen::Vector2d(0.01, 0.01).asDiagonal();
+  stages[1].mean << 1.0, 0.4;
+  stages[1].covariance << 0.09, 0.03, 0.03, 0.04;  // aslant to the way
+  const std::vector<render::TubeSection> tube = belief_tube(stages, {0.1});
+  std::vector<render::PlanarPoint> outline;  // to the left of the way, and back
+  for (auto at = tube.rbegin(); at != tube.rend(); ++at) outline.push_back(at->left);
+  for (const render::TubeSection& section : tube) outline.push_back(section.right);
+  const Eigen::Vector2d along = stages[1].mean.normalized();
+  // Chords between the sections of the end cut off up to 2 % of the ellipse's radii.
+  const PlanarMoments smaller{stages[1].mean, 0.95 * stages[1].covariance};
+  const render::PlanarEllipse ellipse = probability_ellipse(smaller, 0.95);
+  for (int i = 0; i < 64; ++i) {
+    const render::PlanarPoint point = render::on_ellipse(ellipse, 2.0 * std::numbers::pi * i / 64);
+    const double ahead = along.dot(Eigen::Vector2d(point.x, point.y) - stages[1].mean);
+    if (ahead < 0.0) continue;  // that half lies within the band
+    for (std::size_t k = 1; k < outline.size(); ++k) {
+      const bool at_end =
+          along.dot(Eigen::Vector2d(outline[k].x, outline[k].y) - stages[1].mean) > 0.2;
+      if (at_end) {
+        EXPECT_GE(turn(outline[k - 1], outline[k], point), -1e-9) << i << " at " << k;
+      }
+    }
+  }
+  EXPECT_NEAR(std::hypot(tube.back().left.x - tube.back().right.x,
+                         tube.back().left.y - tube.back().right.y),
+              0.0, 1e-9);  // the tip
+}
+
+// A point on a line at 0.1 m more in each period, and its plan, which goes on so.
+Trace rail_trace() {
+  Trace trace;
+  trace.scenario = load_scenario("double_integrator");
+  for (int k = 0; k < 4; ++k) {
+    StepRecord step;
+    step.time = 0.1 * k;
+    step.state = Eigen::Vector2d(0.1 * k, 1.0);
+    step.input = Eigen::VectorXd::Zero(1);
+    step.disturbance = Eigen::Vector2d::Zero();
+    step.plan_states = Eigen::MatrixXd::Ones(2, 3);
+    for (int stage = 0; stage < 3; ++stage) {
+      step.plan_states(0, stage) = 0.1 * (k + stage);
+      step.particles.push_back(
+          {models::StateBatch(step.plan_states.col(stage)), Eigen::VectorXd::Ones(1)});
+    }
+    trace.steps.push_back(step);
+  }
+  trace.final_state = Eigen::Vector2d(0.4, 1.0);
+  trace.outcome = Outcome::kReached;
+  return testing::described(std::move(trace));
+}
+
+TEST(episode_frames, a_system_without_a_plane_stands_on_a_rail_and_time_is_y) {
+  const Trace trace = rail_trace();
+  const EpisodeView view(trace);
+  EXPECT_EQ(why_not_drawn(view), "");
+  const EpisodeFrames frames(view);
+  const render::Frame frame = frames.at(0.25);
+  EXPECT_NEAR(frame.pose.x, 0.25, 1e-9);
+  EXPECT_EQ(frame.pose.y, 0.0);
+  ASSERT_EQ(frame.qpos.size(), 1U);  // the slider's joint
+  EXPECT_NEAR(frame.qpos[0], 0.25, 1e-9);
+  ASSERT_EQ(frame.particles.size(), 3U);  // of 0.2, 0.3 and 0.4 s
+  EXPECT_NEAR(frame.particles[2].points[0].x, 0.4, 1e-9);
+  EXPECT_NEAR(frame.particles[2].points[0].y, -0.15, 1e-9);
+  EXPECT_NEAR(frame.planned_path[1].y, -0.05, 1e-9);
+  EXPECT_NEAR(frame.driven_path.front().y, 0.25, 1e-9);
+  EXPECT_NEAR(frame.driven_path.back().y, 0.0, 1e-9);
+  EXPECT_EQ(frames.world().bounds.x_upper, 3.0);
+  EXPECT_TRUE(std::isinf(frames.world().bounds.y_upper));
+}
+
+TEST(joint_pose, puts_states_that_are_joints_into_qpos) {
+  Trace trace;
+  trace.scenario = load_scenario("cart_pole");
+  trace = testing::described(std::move(trace));
+  const auto pose = JointPose::of(trace.scenario, trace.system, trace.scenario.plant.mjcf);
+  ASSERT_TRUE(pose);
+  EXPECT_THAT(pose->qpos(Eigen::Vector4d(0.5, 1.0, -1.2, 2.0)), ::testing::ElementsAre(0.5, -1.2));
+}
+
+TEST(episode_hud, bounds_are_percentages_that_are_rounded_up) {
+  EXPECT_EQ(bound_text(0.35), "≤ 35 %");
+  EXPECT_EQ(bound_text(0.3412), "≤ 35 %");
+  EXPECT_EQ(bound_text(1.38e-4), "≤ 0.014 %");
+  EXPECT_EQ(bound_text(0.9999), "≤ 100 %");
+  EXPECT_EQ(bound_text(3.0), "≤ 100 %");
+  EXPECT_EQ(bound_text(2e-9), "≤ 0.001 %");
+  EXPECT_EQ(bound_text(std::nan("")), "–");
+  EXPECT_EQ(percent_text(1e-8), "10⁻⁶ %");
+}
+
+TEST(episode_hud, what_rounds_to_zero_has_no_sign) {
+  Trace trace = straight_trace();
+  const auto text_of = [&trace](double input) {
+    for (StepRecord& step : trace.steps) step.input[0] = input;
+    return EpisodeFrames(EpisodeView(trace)).at(0.2).charts.at(1).value;
+  };
+  EXPECT_EQ(text_of(-0.004), "0.00");
+  EXPECT_EQ(text_of(-0.006), "−0.01");
+  EXPECT_EQ(text_of(1.25), "+1.25");
 }
 
 TEST(episode_frames, ghost_drives_along_the_plan_of_the_period_before) {
@@ -264,10 +405,10 @@ TEST(episode_frames, limits_of_the_risk_are_said_to_be_kept_or_exceeded) {
   const EpisodeView view(trace);
   const EpisodeFrames frames(view);
   EXPECT_EQ(row_of(frames.at(0.15), "risk limit"), "kept");
-  EXPECT_EQ(row_of(frames.at(0.15), "risk spent"), "0.003 of 0.005");
+  EXPECT_EQ(row_of(frames.at(0.15), "risk spent"), "0.3 % of 0.5 %");
   const render::Frame exceeded = frames.at(0.25);
   EXPECT_EQ(row_of(exceeded, "risk limit"), "exceeded");
-  EXPECT_EQ(row_of(exceeded, "risk spent"), "0.006 of 0.005");
+  EXPECT_EQ(row_of(exceeded, "risk spent"), "0.6 % of 0.5 %");
   EXPECT_EQ(std::count_if(exceeded.hud.begin(), exceeded.hud.end(),
                           [](const render::HudRow& row) { return row.warning; }),
             2);

@@ -167,8 +167,6 @@ TEST(episode_video, what_cannot_be_drawn_is_said_instead) {
   Scenario scenario = straight_scenario();
   scenario.plant.mjcf = "";
   EXPECT_THAT(message_of(scenario), HasSubstr("names no vehicle"));
-  scenario.model = {"double_integrator", {}};
-  EXPECT_THAT(message_of(scenario), HasSubstr("double_integrator has no position in the plane"));
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 

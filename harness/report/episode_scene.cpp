@@ -1,0 +1,239 @@
+#include "harness/report/episode_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <limits>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "harness/errors.hpp"
+#include "harness/mujoco/vehicle_shapes.hpp"
+#include "harness/report/packed_numbers.hpp"
+#include "harness/report/script_json.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostPlacements = 20'000;  // of a page: some 0.75 MB as text
+constexpr double kTimeTolerance = 1e-9;          // s, of samples before and after a jump
+
+struct TimedParts {
+  double time = 0.0;
+  std::vector<Placement> parts;
+};
+
+/// `place` moved by `share` of the way that leads from `before` to `after`.
+Placement moved(const Placement& place, double share, const Placement& before,
+                const Placement& after) {
+  const Eigen::Quaterniond turn = after.rotation * before.rotation.conjugate();
+  return {place.position + share * (after.position - before.position),
+          Eigen::Quaterniond::Identity().slerp(share, turn) * place.rotation};
+}
+
+/// Spreads the jump at the end of each period over all of it.
+class SmoothMotion {
+ public:
+  explicit SmoothMotion(const Trace& trace) : period_(trace.scenario.time_step) {}
+
+  void add(TimedParts sample) {
+    const bool jump = !open_.empty() && sample.time - open_.back().time < kTimeTolerance;
+    if (jump) close(sample.parts);
+    open_.push_back(std::move(sample));
+  }
+
+  /// The samples; the object is of no use afterwards.
+  [[nodiscard]] std::vector<TimedParts> take() {
+    // The last period of a killed episode has no end.
+    std::ranges::move(open_, std::back_inserter(samples_));
+    return std::move(samples_);
+  }
+
+ private:
+  void close(const std::vector<Placement>& after) {
+    const TimedParts last = open_.back();
+    for (TimedParts& sample : open_) {
+      const double share = std::clamp(1.0 - (last.time - sample.time) / period_, 0.0, 1.0);
+      for (std::size_t part = 0; part < after.size(); ++part) {
+        sample.parts[part] = moved(sample.parts[part], share, last.parts[part], after[part]);
+      }
+    }
+    open_.pop_back();  // what follows begins where it ends
+    std::ranges::move(open_, std::back_inserter(samples_));
+    open_.clear();
+  }
+
+  double period_;
+  std::vector<TimedParts> samples_;
+  std::vector<TimedParts> open_;
+};
+
+class SceneData {
+ public:
+  SceneData(const EpisodeView& view, VehicleShapes& vehicle) : view_(view), vehicle_(vehicle) {}
+
+  [[nodiscard]] Json json(const PlaneMap* ground) {
+    Json json = {{"shapes", shapes()}, {"meshes", meshes()}, {"parts", vehicle_.part_count()}};
+    add_motion(json);
+    if (ground != nullptr) json["ground"] = of_ground(*ground);
+    return json;
+  }
+
+ private:
+  static void add(const Placement& place, std::vector<double>& values) {
+    const Eigen::Quaterniond& q = place.rotation;
+    const Eigen::Vector3d& p = place.position;
+    values.insert(values.end(), {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()});
+  }
+
+  [[nodiscard]] Json shapes() const {
+    Json json = Json::array();
+    for (const VehicleShape& shape : vehicle_.shapes()) {
+      std::vector<double> place;
+      add(shape.place, place);
+      Json entry = {{"kind", kind_name(shape.kind)},
+                    {"part", shape.part},
+                    {"size", shape.size},
+                    {"place", place},
+                    {"rgba", shape.rgba}};
+      if (shape.kind == ShapeKind::kMesh) entry["mesh"] = shape.mesh;
+      json.push_back(entry);
+    }
+    return json;
+  }
+
+  static const char* kind_name(ShapeKind kind) {
+    switch (kind) {
+      case ShapeKind::kBox:
+        return "box";
+      case ShapeKind::kEllipsoid:
+        return "ellipsoid";
+      case ShapeKind::kCapsule:
+        return "capsule";
+      case ShapeKind::kCylinder:
+        return "cylinder";
+      case ShapeKind::kMesh:
+        break;
+    }
+    return "mesh";
+  }
+
+  [[nodiscard]] Json meshes() const {
+    static_assert(VehicleShapes::kMostVertices <= std::numeric_limits<std::uint16_t>::max());
+    Json json = Json::array();
+    for (const VehicleMesh& mesh : vehicle_.meshes()) {
+      const std::vector<std::uint16_t> corners(mesh.triangles.begin(), mesh.triangles.end());
+      json.push_back(
+          {{"vertices", packed_floats(mesh.vertices)}, {"triangles", packed_words(corners)}});
+    }
+    return json;
+  }
+
+  void add_motion(Json& json) {
+    std::vector<double> times;
+    std::vector<double> places;
+    for (const TimedParts& sample : samples()) {
+      times.push_back(sample.time);
+      for (const Placement& place : sample.parts) add(place, places);
+    }
+    if (times.empty()) {
+      for (const Placement& place : vehicle_.parts_at_origin()) add(place, places);
+    }
+    json["times"] = packed_floats(times);
+    json["places"] = packed_floats(places);
+  }
+
+  /// Every n-th, so that the page holds them, and the last one.
+  [[nodiscard]] std::vector<TimedParts> samples() {
+    SmoothMotion motion(view_.trace());
+    for (const MotionSample& sample : view_.trace().motion) {
+      if (is_drawable(sample.qpos)) motion.add({sample.time, vehicle_.parts(sample.qpos)});
+    }
+    std::vector<TimedParts> all = motion.take();
+    const std::size_t every = 1 + all.size() * vehicle_.part_count() / kMostPlacements;
+    std::vector<TimedParts> kept;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i % every == 0 || i + 1 == all.size()) kept.push_back(std::move(all[i]));
+    }
+    return kept;
+  }
+
+  static bool is_drawable(const std::vector<double>& qpos) {
+    return !qpos.empty() &&
+           std::ranges::all_of(qpos, [](double value) { return std::isfinite(value); });
+  }
+
+  /// x from and to, y from and to; null for what is not finite.
+  static Json of_rectangle(const MapRectangle& area) {
+    Json json = Json::array();
+    for (const double side : {area.x_lower, area.x_upper, area.y_lower, area.y_upper}) {
+      json.push_back(std::isfinite(side) ? Json(side) : Json());
+    }
+    return json;
+  }
+
+  static Json of_ground(const PlaneMap& map) {
+    Json json = {{"area", of_rectangle(map.area.value_or(map_area(map)))},
+                 {"bounds", of_rectangle(map.bounds)},
+                 {"obstacles", Json::array()},
+                 {"partial", Json::array()},
+                 {"targets", Json::array()}};
+    for (const MapRectangle& box : map.obstacles) json["obstacles"].push_back(of_rectangle(box));
+    for (const MapRectangle& box : map.partial_obstacles) {
+      json["partial"].push_back(of_rectangle(box));
+    }
+    for (const MapCircle& target : map.targets) {
+      json["targets"].push_back({target.centre.x, target.centre.y, target.radius});
+    }
+    return json;
+  }
+
+  const EpisodeView& view_;
+  VehicleShapes& vehicle_;
+};
+
+/// Whether there is motion of another number of coordinates than `vehicle` has.
+bool is_of_another(const Trace& trace, const VehicleShapes& vehicle) {
+  return std::ranges::any_of(trace.motion, [&](const MotionSample& sample) {
+    return !sample.qpos.empty() && sample.qpos.size() != vehicle.coordinate_count();
+  });
+}
+
+std::string left_out(const VehicleShapes& vehicle) {
+  if (vehicle.boxed() == 0) return {};
+  return fmt::format(
+      "{} of its shapes have more triangles than a page should hold ({} in all), and are boxes "
+      "here.",
+      vehicle.boxed(), VehicleShapes::kMostTriangles);
+}
+
+}  // namespace
+
+EpisodeScene episode_scene(const EpisodeView& view, const PlaneMap* ground) {
+  const Trace& trace = view.trace();
+  const std::string& path = trace.scenario.plant.mjcf;
+  const bool has_place =
+      ground != nullptr || (!trace.motion.empty() && !trace.motion.front().qpos.empty());
+  if (path.empty() || trace.steps.empty() || !has_place) return {};
+  try {
+    VehicleShapes vehicle(path);
+    if (is_of_another(trace, vehicle)) {
+      return {.note = fmt::format(
+                  "No view in three dimensions: {} is not the model that was driven.", path)};
+    }
+    if (vehicle.shapes().empty()) {
+      return {.note = fmt::format("No view in three dimensions: {} has no visible shapes.", path)};
+    }
+    return {.data = script_json(SceneData(view, vehicle).json(ground)), .note = left_out(vehicle)};
+  } catch (const InputError& error) {
+    return {.note = fmt::format("No view in three dimensions: {}", error.what())};
+  }
+}
+
+}  // namespace qsmpc::harness

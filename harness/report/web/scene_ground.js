@@ -1,0 +1,135 @@
+// What stands still: the plane with its bounds, obstacles and target.
+import {Box3, BoxGeometry, BufferGeometry, CircleGeometry, CylinderGeometry, EdgesGeometry, Group,
+        LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry,
+        RingGeometry, Shape, ShapeGeometry, Vector3} from "three";
+
+const kObstacleHeight = 0.4;   // m, at least; higher than the vehicle
+const kWallHeight = 0.1;       // m
+const kWallThickness = 0.06;   // m
+const kPostHeight = 0.75;      // m, of the target's flag, at least
+const kMargin = 0.12;          // of the area, that is shown about it
+const kMostGridLines = 40;
+
+const gridStep = (length) => {
+  const least = length / kMostGridLines;
+  const power = 10 ** Math.floor(Math.log10(least));
+  return [1, 2, 5, 10].map((n) => n * power).find((step) => step >= least);
+};
+
+// Lines at round multiples within [xl, xh] × [yl, yh].
+function grid([xl, xh, yl, yh], z, colour) {
+  const step = Math.max(gridStep(Math.max(xh - xl, yh - yl)), 1e-3);
+  const points = [];
+  for (let x = Math.ceil(xl / step) * step; x <= xh; x += step) {
+    points.push(new Vector3(x, yl, z), new Vector3(x, yh, z));
+  }
+  for (let y = Math.ceil(yl / step) * step; y <= yh; y += step) {
+    points.push(new Vector3(xl, y, z), new Vector3(xh, y, z));
+  }
+  const lines = new LineSegments(new BufferGeometry().setFromPoints(points),
+                                 new LineBasicMaterial({color: colour, depthWrite: false}));
+  lines.renderOrder = -1;
+  return lines;
+}
+
+// A floor below a model that has no place in a plane.
+export function gridAbout(box, colours) {
+  const size = box.getSize(new Vector3());
+  const margin = 0.5 * Math.max(size.x, size.y);
+  const area = [box.min.x - margin, box.max.x + margin, box.min.y - margin, box.max.y + margin];
+  const group = new Group();
+  const height = Math.min(box.min.z, 0);
+  group.add(grid(area, height, colours.of("var(--edge)")));
+  return {group, height, extent: () => box};
+}
+
+export class Ground {
+  constructor(data, vehicleHeight, colours) {
+    this.height = 0;
+    this.group = new Group();
+    this.colours = colours;
+    const [xl, xh, yl, yh] = data.area;
+    const margin = kMargin * Math.max(xh - xl, yh - yl);
+    this.area = data.area;
+    this.shown = [xl - margin, xh + margin, yl - margin, yh + margin];
+    this.obstacleHeight = Math.max(kObstacleHeight, 1.15 * vehicleHeight);
+    const bounds = this.clipped(data.bounds);
+    this.floor(this.shown, "var(--unsafe)", -3);
+    this.floor(bounds, "var(--free)", -2);
+    this.group.add(grid(bounds, 0, colours.of("var(--grid)")));
+    this.walls(data.bounds, bounds);
+    for (const box of data.obstacles) this.obstacle(this.clipped(box), false);
+    for (const box of data.partial) this.obstacle(this.clipped(box), true);
+    for (const target of data.targets) this.target(...target);
+  }
+
+  // What is infinite ends at the edge of what is shown.
+  clipped([xl, xh, yl, yh]) {
+    const [left, right, near, far] = this.shown;
+    const within = (value, missing, low, high) => Math.min(Math.max(value ?? missing, low), high);
+    return [within(xl, left, left, right), within(xh, right, left, right),
+            within(yl, near, near, far), within(yh, far, near, far)];
+  }
+
+  // Drawn before all that lies on it, which it therefore cannot hide.
+  floor([xl, xh, yl, yh], colour, order) {
+    const material = new MeshBasicMaterial({color: this.colours.of(colour), depthWrite: false});
+    const floor = new Mesh(new PlaneGeometry(xh - xl, yh - yl), material);
+    floor.position.set((xl + xh) / 2, (yl + yh) / 2, 0);
+    floor.renderOrder = order;
+    this.group.add(floor);
+  }
+
+  box([xl, xh, yl, yh], height, material) {
+    const box = new Mesh(new BoxGeometry(xh - xl, yh - yl, height), material);
+    box.position.set((xl + xh) / 2, (yl + yh) / 2, height / 2);
+    this.group.add(box);
+    return box;
+  }
+
+  walls(given, [xl, xh, yl, yh]) {
+    const material = new MeshLambertMaterial({color: this.colours.of("var(--soft)")});
+    const t = kWallThickness;
+    const sides = [[xl - t, xl, yl, yh], [xh, xh + t, yl, yh], [xl, xh, yl - t, yl], [xl, xh, yh, yh + t]];
+    sides.forEach((side, i) => {
+      if (given[i] !== null) this.box(side, kWallHeight, material);
+    });
+  }
+
+  // `partial`: one that is there for some of the other states only.
+  obstacle(sides, partial) {
+    if (sides[1] <= sides[0] || sides[3] <= sides[2]) return;
+    const material = new MeshLambertMaterial({color: this.colours.of("var(--obstacle)"), transparent: partial,
+                                              opacity: partial ? 0.35 : 1, depthWrite: !partial});
+    const box = this.box(sides, this.obstacleHeight, material);
+    const edges = new LineSegments(new EdgesGeometry(box.geometry),
+                                   new LineBasicMaterial({color: this.colours.of("var(--soft)")}));
+    edges.position.copy(box.position);
+    this.group.add(edges);
+  }
+
+  target(x, y, radius) {
+    const colour = this.colours.of("var(--c2)");
+    const flat = (geometry, opacity) => {
+      const material = new MeshBasicMaterial({color: colour, transparent: true, opacity, depthWrite: false});
+      const mesh = new Mesh(geometry, material);
+      mesh.position.set(x, y, 0);
+      this.group.add(mesh);
+    };
+    flat(new CircleGeometry(radius, 64), 0.25);
+    flat(new RingGeometry(0.93 * radius, radius, 64), 0.9);
+    const height = Math.max(kPostHeight, 1.3 * this.obstacleHeight);
+    const post = new Mesh(new CylinderGeometry(0.02 * height, 0.02 * height, height, 12).rotateX(Math.PI / 2),
+                          new MeshLambertMaterial({color: this.colours.of("var(--soft)")}));
+    post.position.set(x, y, height / 2);
+    const cloth = new Shape([[0, 1], [0.45, 0.86], [0, 0.72]].map(([a, b]) => ({x: a * height, y: b * height})));
+    const flag = new Mesh(new ShapeGeometry(cloth).rotateX(Math.PI / 2), new MeshBasicMaterial({color: colour, side: 2}));
+    flag.position.set(x, y, 0);
+    this.group.add(post, flag);
+  }
+
+  extent() {
+    const [xl, xh, yl, yh] = this.area;
+    return new Box3(new Vector3(xl, yl, 0), new Vector3(xh, yh, 0));
+  }
+}

@@ -1,0 +1,21 @@
+#include "harness/scenario/certificate_scope.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+/// Whether the input depends on what is seen of the state.
+bool has_feedback(const Scenario::Controller& controller) {
+  if (controller.kind == "lqr") return true;
+  if (controller.policy != "closed_loop") return false;
+  const bool is_zero = controller.feedback_gain && controller.feedback_gain->isZero(0.0);
+  return !is_zero || controller.optimise_gain;
+}
+
+}  // namespace
+
+std::string why_no_bound(const Scenario& scenario) {
+  if (scenario.disturbance.sensor.isZero(0.0) || !has_feedback(scenario.controller)) return {};
+  return "with measurement noise (disturbance.sensor) the feedback acts on what is seen";
+}
+
+}  // namespace qsmpc::harness

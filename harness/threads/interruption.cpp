@@ -1,0 +1,27 @@
+#include "harness/threads/interruption.hpp"
+
+#include <atomic>
+
+namespace qsmpc::harness {
+namespace {
+
+// Signals are the whole process's, and so is this. Signal handlers may touch lock-free atomics.
+std::atomic<int> seen = 0;
+std::atomic<int> patience = 1;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+}  // namespace
+
+int interrupts() noexcept { return seen.load(std::memory_order_relaxed); }
+
+int note_interrupt() noexcept { return seen.fetch_add(1, std::memory_order_relaxed) + 1; }
+
+void check_interrupts() {
+  if (interrupts() >= patience.load(std::memory_order_relaxed)) throw Interrupted();
+}
+
+InterruptPatience::InterruptPatience(int count) : before_(patience.exchange(count)) {}
+
+InterruptPatience::~InterruptPatience() { patience = before_; }
+
+}  // namespace qsmpc::harness

@@ -1,0 +1,10 @@
+#pragma once
+
+#include <string>
+
+namespace qsmpc::render {
+
+/// Of the FFmpeg whose libraries are linked, e.g. "5.1.6-0+deb12u1".
+[[nodiscard]] std::string libav_version();
+
+}  // namespace qsmpc::render

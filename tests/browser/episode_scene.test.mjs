@@ -1,0 +1,198 @@
+// The view in three dimensions of an episode's page, drawn by Chromium's own software.
+import assert from "node:assert/strict";
+import {readFileSync, statSync} from "node:fs";
+import {join} from "node:path";
+import {after, before, test} from "node:test";
+
+import {artefacts, openPage, qsmpc, sidewaysScroll, startBrowser, temporaryFolder, until}
+  from "./pages.mjs";
+
+const kSoftware = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
+let browser;
+let folder;
+
+before(async () => {
+  folder = temporaryFolder();
+  qsmpc("run", "dubins_alley", "--quiet", "--no-video", "--out", folder, "--set", "limit.steps=30");
+  browser = await startBrowser(kSoftware);
+});
+
+after(async () => { await browser?.close(); });
+
+async function open(options) {
+  const opened = await openPage(browser, join(folder, "report.html"), options);
+  await opened.page.locator("#scene").scrollIntoViewIfNeeded();
+  await opened.page.locator("#scene canvas").waitFor();
+  return opened;
+}
+
+const whole = (page) => page.locator("#scene .whole").click();
+
+// What is seen at a time (s): how many pixels are like the first one, how many have the car's paint,
+// and the middle of those (shares of the picture). The picture can be read in its own frame only.
+const seenAt = (page, time) => page.evaluate((value) => new Promise((resolve) => {
+  const slider = document.getElementById("time");
+  slider.value = value;
+  slider.dispatchEvent(new Event("input"));
+  requestAnimationFrame(() => {
+    const canvas = document.querySelector("#scene canvas");
+    const copy = document.createElement("canvas");
+    copy.width = canvas.width;
+    copy.height = canvas.height;
+    const context = copy.getContext("2d");
+    context.drawImage(canvas, 0, 0);
+    const {data} = context.getImageData(0, 0, copy.width, copy.height);
+    const seen = {all: data.length / 4, ground: 0, paint: 0, x: 0, y: 0, coloured: 0};
+    for (let i = 0; i < data.length; i += 4) {
+      const [r, g, b] = data.subarray(i, i + 3);
+      if (r === data[0] && g === data[1] && b === data[2]) ++seen.ground;
+      if (Math.max(r, g, b) - Math.min(r, g, b) > 60) ++seen.coloured;
+      if (r < 150 || g > 0.62 * r || b > 0.25 * r) continue;
+      ++seen.paint;
+      seen.x += (i / 4) % copy.width / copy.width;
+      seen.y += Math.floor(i / 4 / copy.width) / copy.height;
+    }
+    seen.x /= seen.paint;
+    seen.y /= seen.paint;
+    resolve(seen);
+  });
+}), String(time));
+
+test("draws the vehicle from its file without an error and asks for nothing", async () => {
+  const {page, seen} = await open();
+  const drawn = await seenAt(page, 1);
+  assert.ok(drawn.ground < 0.9 * drawn.all, `${drawn.ground} of ${drawn.all} pixels are empty`);
+  assert.ok(drawn.paint > 300, `${drawn.paint} pixels of the car`);
+  assert.ok(Math.hypot(drawn.x - 0.5, drawn.y - 0.5) < 0.1, "the car is not in the middle");
+  assert.deepEqual(seen.errors, []);
+  assert.deepEqual(seen.requests, []);
+  await page.close();
+});
+
+test("the slider moves the vehicle", async () => {
+  const {page} = await open();
+  await whole(page);
+  const first = await seenAt(page, 0.2);
+  const second = await seenAt(page, 2.9);
+  assert.ok(first.paint > 10 && second.paint > 10);
+  // The alley leads to larger x, which is to the right when all of it is shown.
+  assert.ok(second.x > first.x + 0.05, `from ${first.x} to ${second.x}`);
+  await page.locator('[data-scene="follow"]').check();
+  const begin = await seenAt(page, 0.2);
+  const end = await seenAt(page, 0.8);
+  assert.ok(Math.hypot(end.x - begin.x, end.y - begin.y) < 0.02, "the view does not follow");
+  await page.close();
+});
+
+test("what is not wanted is not drawn", async () => {
+  const {page} = await open();
+  let before = (await seenAt(page, 1.1)).coloured;
+  for (const layer of ["particles", "plan", "way"]) {
+    await page.locator(`[data-scene="${layer}"]`).uncheck();
+    const now = (await seenAt(page, 1.1)).coloured;
+    assert.ok(now < before, `${layer}: ${before}, then ${now}`);
+    before = now;
+  }
+  await page.close();
+});
+
+test("is turned by pointer and keys, and brought nearer by plus", async () => {
+  const {page} = await open();
+  const straight = await seenAt(page, 1);
+  await page.locator("#scene canvas").focus();
+  for (let i = 0; i < 4; ++i) await page.keyboard.press("+");
+  const near = await seenAt(page, 1);
+  assert.ok(near.paint > 1.5 * straight.paint, `${straight.paint}, then ${near.paint}`);
+  const turned = async (act) => {
+    const before = await seenAt(page, 1);
+    await act();
+    const now = await seenAt(page, 1);
+    assert.ok(Math.abs(now.paint - before.paint) > 10, `${before.paint}, then ${now.paint}`);
+  };
+  await turned(async () => { for (let i = 0; i < 9; ++i) await page.keyboard.press("ArrowLeft"); });
+  await turned(async () => {
+    const {x, y, width, height} = await page.locator("#scene canvas").boundingBox();
+    await page.mouse.move(x + width / 2, y + height / 2);
+    await page.mouse.down();
+    await page.mouse.move(x + width / 2 + 160, y + height / 2 + 40, {steps: 5});
+    await page.mouse.up();
+  });
+  await page.close();
+});
+
+test("the wheel scrolls the page until the view is clicked", async () => {
+  const {page} = await open();
+  const middle = page.locator("#scene canvas");
+  const scrolled = () => page.evaluate(() => scrollY);
+  await middle.hover();
+  const begin = await scrolled();
+  await page.mouse.wheel(0, 60);
+  await until(page, (from) => scrollY > from, begin);
+  const before = await seenAt(page, 1);
+  await middle.click();
+  const at = await scrolled();
+  for (let i = 0; i < 3; ++i) await page.mouse.wheel(0, -120);
+  await page.waitForTimeout(200);
+  assert.equal(await scrolled(), at);
+  assert.ok((await seenAt(page, 1)).paint > before.paint);
+  await page.close();
+});
+
+test("without WebGL it says so, and the page works", async () => {
+  const plain = await startBrowser(["--disable-3d-apis"]);
+  const {page, seen} = await openPage(plain, join(folder, "report.html"));
+  await page.locator("#scene").scrollIntoViewIfNeeded();
+  await until(page, () => /no WebGL/.test(document.getElementById("scene").textContent));
+  assert.equal(await page.locator("#scene canvas").count(), 0);
+  assert.equal(await page.locator("#scene .layers").isVisible(), false);
+  await page.locator("#time").fill("1.1");
+  assert.match(await page.locator('[data-now="time"]').textContent(), /^1\.10 s/);
+  assert.deepEqual(seen.errors, []);
+  await plain.close();
+});
+
+test("pages without a vehicle's file do not carry it", async () => {
+  const out = temporaryFolder();
+  qsmpc("run", "double_integrator", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=5");
+  const page_text = readFileSync(join(out, "report.html"), "utf8");
+  assert.ok(!page_text.includes("three.js"));
+  assert.ok(statSync(join(out, "report.html")).size < statSync(join(folder, "report.html")).size - 5e5);
+});
+
+test("a model without a place in the plane is drawn alone", async () => {
+  const out = temporaryFolder();
+  qsmpc("run", "cart_pole_balance", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=10",
+        "--set", "plant.kind=mujoco");
+  const {page, seen} = await openPage(browser, join(out, "report.html"));
+  await page.locator("#scene").scrollIntoViewIfNeeded();
+  await page.locator("#scene canvas").waitFor();
+  const drawn = await seenAt(page, 0.2);
+  assert.ok(drawn.coloured > 200, `${drawn.coloured} pixels of the cart and its pole`);
+  assert.deepEqual(seen.errors, []);
+  await page.close();
+});
+
+for (const [name, options] of Object.entries({
+  light: {colorScheme: "light", viewport: {width: 1440, height: 900}},
+  dark: {colorScheme: "dark", viewport: {width: 1440, height: 900}},
+  narrow: {colorScheme: "dark", viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true},
+})) {
+  test(`fits its page: ${name}`, async () => {
+    const {page, seen} = await open(options);
+    const drawn = await seenAt(page, 1.2);
+    assert.ok(drawn.paint > 300, `${drawn.paint} pixels of the car`);
+    assert.equal(await sidewaysScroll(page), 0);
+    const inside = await page.evaluate(() => {
+      const box = (selector) => document.querySelector(selector).getBoundingClientRect();
+      const canvas = box("#scene canvas");
+      const card = box("#scene");
+      return canvas.left >= card.left && canvas.right <= card.right && canvas.bottom <= card.bottom &&
+        canvas.width > 250 && canvas.height > 250;
+    });
+    assert.ok(inside);
+    await page.locator("#scene").screenshot({path: join(artefacts, `scene-${name}.png`)});
+    assert.deepEqual(seen.errors, []);
+    await page.close();
+  });
+}
