@@ -151,8 +151,8 @@ TEST(FeedbackLoop, refuses_what_it_cannot_hold) {
   position.speed = "{body: agent, quantity: x}";
   EXPECT_THAT(refusal("", "{gain: 1}", position).expected, HasSubstr("forward_speed"));
   EXPECT_THAT(refusal("", "{}").expected, HasSubstr("parameter"));
-  EXPECT_EQ(refusal(", time_constant: 0").key, "plant.loops[0].time_constant");
-  EXPECT_EQ(refusal(", response: 0").key, "plant.loops[0].response");
+  EXPECT_EQ(refusal(", time_constant: 0").key, "plant.loops.0.time_constant");
+  EXPECT_EQ(refusal(", response: 0").key, "plant.loops.0.response");
   // More than the propeller can bring against the friction.
   EXPECT_THAT(refusal("", "{gain: 600}").expected, HasSubstr("a longer `settling`"));
   Vehicle sideways = kPusher;
