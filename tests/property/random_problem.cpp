@@ -86,12 +86,6 @@ Family random_family(Generator& generator) {
             .walls = {0, 1}};
   }
   Eigen::VectorXd start = uniform_vector(generator, 4, -0.3, 0.3);
-  if (which < 0.95) {
-    return {.system = "point_mass",
-            .parameters = {{"damping", uniform(generator, 0.0, 1.0)}},
-            .start = start,
-            .walls = {0, 1}};
-  }
   return {.system = "cart_pole",
           .parameters = {},
           .start = start,
@@ -140,14 +134,12 @@ controller::SafeSet random_safe_set(Generator& generator, const Family& family,
 /// heading.
 controller::Body random_body(Generator& generator, const Family& family,
                              const Eigen::VectorXd& spread) {
-  const bool has_heading = family.walls.size() == 3;
-  const bool is_on_plane = has_heading || family.system == "point_mass";
-  controller::Body body{
-      .discs = {}, .x = 0, .y = is_on_plane ? 1 : -1, .heading = has_heading ? 2 : -1};
+  const bool plane = family.walls.size() == 3;
+  controller::Body body{.discs = {}, .x = 0, .y = plane ? 1 : -1, .heading = plane ? 2 : -1};
   const int count = chance(generator, 0.5) ? uniform_int(generator, 1, 4) : 0;
   for (int i = 0; i < count; ++i) {
     controller::Disc disc{.radius = uniform(generator, 0.0, 2.0) * spread[0]};
-    if (has_heading && chance(generator, 0.8)) {
+    if (plane && chance(generator, 0.8)) {
       disc.offset = 5.0 * spread[0] * uniform_vector(generator, 2, -1.0, 1.0);
     }
     body.discs.push_back(disc);
