@@ -20,6 +20,7 @@
 #include "harness/cli/fail_on.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/cli/plant_warnings.hpp"
 #include "harness/cli/progress.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
@@ -114,6 +115,7 @@ int campaign_command(CampaignArguments& arguments) {
   refuse_beyond_memory(campaign, arguments);
   const std::string folder =
       arguments.out.empty() ? default_folder(campaign.name, "campaign") : arguments.out;
+  tell_plant_warnings(campaign);
   const CampaignProgress end = drive(campaign, folder, arguments);
   write_file(folder + "/" + kCampaignCopy, read_text_file(find_campaign(arguments.campaign)));
   const CampaignStatistics statistics = write_campaign_results(folder);

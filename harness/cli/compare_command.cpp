@@ -15,6 +15,7 @@
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/cli/plant_warnings.hpp"
 #include "harness/cli/progress.hpp"
 #include "harness/cli/scenario_arguments.hpp"
 #include "harness/figures/svg_figure.hpp"
@@ -132,6 +133,8 @@ int compare(CompareArguments& arguments) {
         options.plants.empty() ? default_plants(scenario).back() : options.plants.back();
   }
   options.on_plants_ready = [&] {
+    tell_plant_warnings(scenario,
+                        options.plants.empty() ? default_plants(scenario) : options.plants);
     make_output_folder(folder);
     if (!arguments.error_file.empty()) make_output_folder(folder_of(arguments.error_file));
   };

@@ -13,6 +13,7 @@
 
 #include "harness/assembly/assembly.hpp"
 #include "harness/doctor/diagnosis.hpp"
+#include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/scenario/yaml_text.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/text/number_format.hpp"
@@ -90,6 +91,13 @@ std::string mapping_lines(const PlantMapping& mapping) {
                                       ? ""
                                       : fmt::format("parameter: {}, ", hold.constant.parameter);
     text += "    - " + term_text(hold.actuator, parameter, hold.constant.gain) + "\n";
+  }
+  const bool has_feedback = std::ranges::any_of(mapping.loops, [](const PlantLoop& loop) {
+    return std::holds_alternative<FeedbackLoop>(loop);
+  });
+  if (has_feedback) {
+    text += "  loops:\n";
+    for (const PlantLoop& loop : mapping.loops) text += "    - " + plant_loop_text(loop) + "\n";
   }
   return text;
 }

@@ -39,6 +39,31 @@ double factor_of(const InputAnswer& answer, const PlantAnswers& all) {
   return 1.0 / ratio;
 }
 
+/// Multiplies the goals of the feedback loops that follow `input`, or, empty, a constant. Whether
+/// there are any.
+bool scale_goals(PlantMapping& mapping, const std::string& input, double factor) {
+  bool any = false;
+  for (PlantLoop& loop : mapping.loops) {
+    auto* feedback = std::get_if<FeedbackLoop>(&loop);
+    if (feedback == nullptr || feedback->input != input) continue;
+    feedback->goal.gain *= factor;
+    any = true;
+  }
+  return any;
+}
+
+/// Leaves the responses of feedback loops to be measured. Whether one was given.
+bool forget_responses(PlantMapping& mapping) {
+  bool any = false;
+  for (PlantLoop& loop : mapping.loops) {
+    auto* feedback = std::get_if<FeedbackLoop>(&loop);
+    if (feedback == nullptr || !feedback->response) continue;
+    feedback->response.reset();
+    any = true;
+  }
+  return any;
+}
+
 /// Whether it changed anything.
 bool scale_gains(PlantMapping& mapping, const PlantAnswers& answers,
                  const models::SystemDescription& system) {
@@ -48,10 +73,11 @@ bool scale_gains(PlantMapping& mapping, const PlantAnswers& answers,
     if (factor == 1.0) continue;
     if (answer.input < 0) {
       for (HoldTerm& hold : mapping.holds) hold.constant.gain *= factor;
-      changed = changed || !mapping.holds.empty();
+      changed = scale_goals(mapping, "", factor) || changed || !mapping.holds.empty();
       continue;
     }
     const std::string& name = system.inputs[static_cast<std::size_t>(answer.input)].name;
+    changed = scale_goals(mapping, name, factor) || changed;
     const auto terms = mapping.inputs.find(name);
     if (terms == mapping.inputs.end()) continue;
     for (ControlTerm& term : terms->second) term.gain *= factor;
@@ -76,7 +102,8 @@ GainSearch search_gains(const Scenario& scenario, const PlantAnswers& answers) {
   for (int round = 0; round < kRounds; ++round) {
     Scenario next = scenario;
     next.plant.mapping = search.mapping;
-    if (!scale_gains(*next.plant.mapping, search.answers, system)) break;
+    const bool forgot = round == 0 && forget_responses(*next.plant.mapping);
+    if (!forgot && !scale_gains(*next.plant.mapping, search.answers, system)) break;
     PlantAnswers found = plant_answers(next);
     if (found.fault) break;
     search.mapping = *std::move(next.plant.mapping);

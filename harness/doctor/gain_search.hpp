@@ -21,8 +21,9 @@ struct GainSearch {
 
 /// Scales the gains of `hold` until the vehicle moves by itself as the model does, and those of
 /// each input under `input` until the state that it acts on first answers as the model's: each by
-/// the ratio that is missing, and again, since one may change the other. Loops have no gains to
-/// scale. `answers`: those of `scenario`, complete. Throws InputError as plant_answers.
+/// the ratio that is missing, and again, since one may change the other. Goals of feedback loops
+/// are scaled likewise, after their responses, where given, are measured instead. `answers`: those
+/// of `scenario`, complete. Throws InputError as plant_answers.
 [[nodiscard]] GainSearch search_gains(const Scenario& scenario, const PlantAnswers& answers);
 
 }  // namespace qsmpc::harness

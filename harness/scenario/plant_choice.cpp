@@ -54,7 +54,11 @@ const std::vector<ShippedPlant>& shipped_plants() {
       {.name = "mujoco_cart_pole",
        .system = "cart_pole",
        .mjcf = "cart_pole.xml",
-       .summary = "a cart on a rail with a hinged pole"}};
+       .summary = "a cart on a rail with a hinged pole"},
+      {.name = "mujoco_slider",
+       .system = "point_mass",
+       .mjcf = "point_mass.xml",
+       .summary = "a mass on two crossed rails"}};
   return plants;
 }
 

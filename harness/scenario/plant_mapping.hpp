@@ -34,6 +34,9 @@ struct PlantQuantity {
 /// the world's z axis).
 [[nodiscard]] const std::vector<std::string>& body_quantities();
 
+/// Those of joints and bodies that are velocities.
+[[nodiscard]] const std::vector<std::string>& velocity_quantities();
+
 /// What an input adds to the control of an actuator: gain · input + offset.
 struct ControlTerm {
   std::string actuator;
@@ -104,7 +107,19 @@ struct TyreForces {
   double slowest = 0.0;                 ///< m/s, > 0: slip is taken at this speed at least
 };
 
-using PlantLoop = std::variant<AckermannLoop, SpeedHoldLoop, AxleForces, TyreForces>;
+/// Low-level loop: actuators that bring forces or torques hold a velocity of the vehicle at a
+/// constant, or at gain · input, with which it then moves as after a lag of `time_constant`.
+struct FeedbackLoop {
+  PlantQuantity quantity;              ///< a velocity
+  std::string input;                   ///< that the goal follows; empty where it is constant
+  PlantConstant goal;                  ///< the constant; or its `gain` alone, of the input
+  std::vector<ControlTerm> actuators;  ///< at least one; gains only: how they share the command
+  double time_constant = 0.1;          ///< s, > 0
+  /// The velocity's rate by unit of the command, not 0; else found when the vehicle settles.
+  std::optional<double> response;
+};
+
+using PlantLoop = std::variant<AckermannLoop, SpeedHoldLoop, AxleForces, TyreForces, FeedbackLoop>;
 
 /// The simulator's time steps that a model was made for, s.
 struct TimeStepRange {

@@ -67,6 +67,11 @@ std::vector<KeyDescription> loop_keys() {
       mappings({element_key("joint", "that the wheel turns about"),
                 element_key("actuator", "servo that steers it, `ackermann` only", false),
                 positive_key("cornering_stiffness", "of its tyre, `tyre_forces` only", "N/rad")});
+  const MappingValue goal{{{.name = "input", .values = {input}, .words = "that the goal follows"},
+                           parameter_key(),
+                           gain_key("factor on either; the goal itself without one")}};
+  const ListValue actuators = mappings({element_key("actuator", "that brings a force or torque"),
+                                        gain_key("how it shares the command, not 0")});
   return {
       {.name = "kind",
        .values = {NameValue{loop_kind_names()}},
@@ -77,6 +82,15 @@ std::vector<KeyDescription> loop_keys() {
       {.name = "wheels",
        .values = {wheels},
        .words = "`ackermann`: those that are steered; `tyre_forces`: all"},
+      {.name = "quantity",
+       .values = {quantity()},
+       .words = "`feedback`: the velocity that is held"},
+      {.name = "goal", .values = {goal}, .words = "`feedback`: what it is held at"},
+      {.name = "actuators", .values = {actuators}, .words = "`feedback`: what holds it"},
+      positive_key("time_constant", "`feedback`: of the lag behind the goal", "s"),
+      {.name = "response",
+       .values = {NumberValue{}},
+       .words = "`feedback`: rate of the velocity by unit of the command, not 0; else measured"},
       {.name = "fixed_axle",
        .values = {elements()},
        .words = "`ackermann`: joints of the wheels that are not steered"},
@@ -155,7 +169,7 @@ std::vector<KeyDescription> timing_keys() {
 
 const std::vector<std::string>& loop_kind_names() {
   static const std::vector<std::string> names{"ackermann", "speed_hold", "axle_forces",
-                                              "tyre_forces"};
+                                              "tyre_forces", "feedback"};
   return names;
 }
 

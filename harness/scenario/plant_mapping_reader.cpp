@@ -156,6 +156,7 @@ class MappingReader {
     }
     if (kind == "axle_forces") mapping_.loops.emplace_back(axle_forces(loop));
     if (kind == "tyre_forces") mapping_.loops.emplace_back(tyre_forces(loop));
+    if (kind == "feedback") mapping_.loops.emplace_back(feedback(loop));
     if (!kind.empty()) loop.refuse_unread();
   }
 
@@ -204,6 +205,43 @@ class MappingReader {
     return result;
   }
 
+  FeedbackLoop feedback(Section& loop) {
+    FeedbackLoop result;
+    loop.require("quantity", "a velocity: of a joint, body or sensor");
+    Section held = loop.section("quantity");
+    if (held.present()) result.quantity = quantity(held);
+    const auto& known = velocity_quantities();
+    const bool is_velocity = result.quantity.source == QuantitySource::kSensor ||
+                             std::ranges::find(known, result.quantity.quantity) != known.end();
+    if (held.present() && !is_velocity) {
+      loop.note("quantity", "a velocity: " + expected_names("", known), result.quantity.quantity);
+    }
+    read_goal(loop, result);
+    const std::size_t actuators = count(loop, "actuators");
+    for (std::size_t i = 0; i < actuators; ++i) {
+      Section item = loop.item("actuators", i);
+      result.actuators.push_back(
+          {.actuator = element(item, "actuator"), .gain = not_zero(item, "gain")});
+      item.refuse_unread();
+    }
+    if (actuators == 0) loop.note("actuators", "a list of at least one actuator");
+    result.time_constant = loop.number("time_constant", result.time_constant, kPositive);
+    if (loop.has("response")) result.response = not_zero(loop, "response");
+    return result;
+  }
+
+  void read_goal(Section& loop, FeedbackLoop& result) {
+    loop.require("goal", "a mapping with `input`, `parameter` or `gain`");
+    Section goal = loop.section("goal");
+    if (goal.present() && goal.has("input")) {
+      result.input = input_name(goal, "input");
+      result.goal.gain = not_zero(goal, "gain");
+    } else if (goal.present()) {
+      result.goal = constant(goal);
+    }
+    goal.refuse_unread();
+  }
+
   void read_timing() {
     Section limits = section_.section("rate_limit");
     for (const std::string& actuator : limits.keys()) {
@@ -246,6 +284,12 @@ const std::vector<std::string>& body_quantities() {
       "x",       "y",          "z",          "roll",          "pitch",
       "yaw",     "velocity_x", "velocity_y", "forward_speed", "lateral_speed",
       "yaw_rate"};
+  return names;
+}
+
+const std::vector<std::string>& velocity_quantities() {
+  static const std::vector<std::string> names{"velocity",      "velocity_x",    "velocity_y",
+                                              "forward_speed", "lateral_speed", "yaw_rate"};
   return names;
 }
 

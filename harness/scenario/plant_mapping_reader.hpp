@@ -35,6 +35,9 @@ inline constexpr const char* kMappingText = "qsmpc";
 [[nodiscard]] PlantMapping own_plant_mapping(const std::optional<std::string>& text,
                                              const std::string& file, const MappedSystem& system);
 
+/// `loop` as an item of `loops` in YAML: "{kind: …}".
+[[nodiscard]] std::string plant_loop_text(const PlantLoop& loop);
+
 /// `mapping` as what stands between the braces of a mapping in YAML: "state: {…}, input: {…}".
 [[nodiscard]] std::string plant_mapping_text(const PlantMapping& mapping);
 

@@ -78,6 +78,22 @@ struct LoopText {
         list_of(loop.wheels, wheel), yaml_number(loop.longitudinal_stiffness),
         yaml_number(loop.friction), yaml_number(loop.slowest));
   }
+
+  std::string operator()(const FeedbackLoop& loop) const {
+    const std::string goal = loop.input.empty() ? constant_text(loop.goal)
+                                                : fmt::format("input: {}, gain: {}", loop.input,
+                                                              yaml_number(loop.goal.gain));
+    const auto actuator = [](const ControlTerm& one) {
+      return fmt::format("{{actuator: {}, gain: {}}}", quoted_yaml(one.actuator),
+                         yaml_number(one.gain));
+    };
+    const std::string response =
+        loop.response ? fmt::format(", response: {}", yaml_number(*loop.response)) : "";
+    return fmt::format(
+        "{{kind: feedback, quantity: {}, goal: {{{}}}, actuators: {}, time_constant: {}{}}}",
+        quantity_text(loop.quantity), goal, list_of(loop.actuators, actuator),
+        yaml_number(loop.time_constant), response);
+  }
 };
 
 std::string inputs_text(const PlantMapping& mapping) {
@@ -94,6 +110,8 @@ std::string inputs_text(const PlantMapping& mapping) {
 
 }  // namespace
 
+std::string plant_loop_text(const PlantLoop& loop) { return std::visit(LoopText{}, loop); }
+
 std::string plant_mapping_text(const PlantMapping& mapping) {
   std::string states;
   for (const auto& [name, quantity] : mapping.states) {
@@ -103,7 +121,6 @@ std::string plant_mapping_text(const PlantMapping& mapping) {
     return fmt::format("{{actuator: {}, {}}}", quoted_yaml(term.actuator),
                        constant_text(term.constant));
   };
-  const auto loop = [](const PlantLoop& one) { return std::visit(LoopText{}, one); };
   std::string limits;
   for (const auto& [actuator, rate] : mapping.rate_limits) {
     limits += fmt::format("{}{}: {}", limits.empty() ? "" : ", ", quoted_yaml(actuator),
@@ -112,9 +129,9 @@ std::string plant_mapping_text(const PlantMapping& mapping) {
   std::string out = fmt::format(
       "state: {{{}}}, input: {{{}}}, hold: {}, loops: {}, rolling: {}, rate_limit: {{{}}}, "
       "input_delay: {}, settling: {}",
-      states, inputs_text(mapping), list_of(mapping.holds, hold), list_of(mapping.loops, loop),
-      list_of(mapping.rolling, quoted_yaml), limits, yaml_number(mapping.input_delay),
-      yaml_number(mapping.settling));
+      states, inputs_text(mapping), list_of(mapping.holds, hold),
+      list_of(mapping.loops, plant_loop_text), list_of(mapping.rolling, quoted_yaml), limits,
+      yaml_number(mapping.input_delay), yaml_number(mapping.settling));
   if (mapping.time_steps) {
     out += fmt::format(", time_steps: [{}, {}]", yaml_number(mapping.time_steps->least),
                        yaml_number(mapping.time_steps->most));

@@ -9,6 +9,7 @@
 #include "models/dynamics/double_integrator.hpp"
 #include "models/dynamics/dubins.hpp"
 #include "models/dynamics/dubins_rk4.hpp"
+#include "models/dynamics/point_mass.hpp"
 
 namespace qsmpc::models {
 namespace {
@@ -24,7 +25,7 @@ const std::vector<Registration>& registrations() {
   static const std::vector<Registration> table = {
       {dubins_entry(), make_dubins},       {dubins_rk4_entry(), make_dubins_rk4},
       {bicycle_entry(), make_bicycle},     {double_integrator_entry(), make_double_integrator},
-      {cart_pole_entry(), make_cart_pole},
+      {cart_pole_entry(), make_cart_pole}, {point_mass_entry(), make_point_mass},
   };
   return table;
 }

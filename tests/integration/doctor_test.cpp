@@ -115,10 +115,32 @@ TEST(Doctor, run_warns_of_a_time_step_at_which_the_plant_diverges) {
   EXPECT_THAT(run("0.001").errors, Not(HasSubstr("the plant breaks")));
 }
 
+/// Wheels of the differential robot that turn too slowly for its speed.
+constexpr const char* kSlowWheels =
+    "[{actuator: left_motor, parameter: speed, gain: 1.25}, "
+    "{actuator: right_motor, parameter: speed, gain: 1.25}]";
+
+TEST(Doctor, compare_and_campaign_warn_with_the_name_of_the_plant_or_variant) {
+  const TemporaryFolder folder;
+  const ProcessResult compare =
+      run_qsmpc({"compare", "differential_robot", "--set", std::string("plant.hold=") + kSlowWheels,
+                 "--set", "limit.steps=2", "--plant", "analytic", "--plant", "mujoco", "--episodes",
+                 "1", "--paths", "20", "--out", folder.path() + "/compare"});
+  EXPECT_THAT(compare.errors, HasSubstr("qsmpc: warning: mujoco: "));
+  EXPECT_THAT(compare.errors, Not(HasSubstr("warning: analytic")));
+  const std::string campaign =
+      folder.file("wheels.yaml",
+                  std::string("name: wheels\nscenario: differential_robot\nvariants:\n"
+                              "  fast: {}\n  slow: {plant.hold: ") +
+                      kSlowWheels + "}\ngrid: {limit.steps: [2]}\nseeds: {first: 1, count: 1}\n");
+  const ProcessResult drives =
+      run_qsmpc({"campaign", campaign, "--out", folder.path() + "/drives"});
+  EXPECT_THAT(drives.errors, HasSubstr("qsmpc: warning: slow"));
+  EXPECT_THAT(drives.errors, Not(HasSubstr("warning: fast")));
+}
+
 TEST(Doctor, prints_every_answer_and_gains_that_work) {
-  const std::string slow =
-      "plant.hold=[{actuator: left_motor, parameter: speed, gain: 1.25}, "
-      "{actuator: right_motor, parameter: speed, gain: 1.25}]";
+  const std::string slow = std::string("plant.hold=") + kSlowWheels;
   const ProcessResult wrong = run_qsmpc({"doctor", "differential_robot", "--set", slow, "--json"});
   EXPECT_EQ(wrong.exit_code, 1) << wrong.errors;
   const auto json = nlohmann::json::parse(wrong.output);

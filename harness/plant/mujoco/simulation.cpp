@@ -19,7 +19,6 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kSettledSpeedError = 0.01;  // relative
 // Tyres and contacts need some thousands at most; more keep a drive from ever ending.
 constexpr int kMostPeriodSteps = 20'000;
 // Of the springs' angular frequency by the time step: explicit springs are stable below 2.
@@ -81,6 +80,8 @@ Simulation::Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded)
       axles_.emplace_back(named, *axles, system_).scale_friction(setup.variation.friction);
     } else if (const auto* tyres = std::get_if<TyreForces>(&loop)) {
       tyres_.emplace_back(named, *tyres).scale_friction(setup.variation.friction);
+    } else if (const auto* feedback = std::get_if<FeedbackLoop>(&loop)) {
+      feedbacks_.emplace_back(named, *data_, *feedback, system_, setup.parameters);
     }
   }
   if (model_->opt.integrator == mjINT_RK4 && !(axles_.empty() && tyres_.empty())) {
@@ -95,56 +96,6 @@ Simulation::Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded)
   }
   if (setup.solid) solid_.emplace(named, states_.carrier());
   settle(loaded.mapping.settling);
-}
-
-// With loops that hold a speed, two runs: the first shows at which speed the vehicle rolls
-// steadily, and the second settles it with the command corrected for that.
-void Simulation::settle(double duration) {
-  mj_resetData(model_.get(), data_.get());
-  mj_forward(model_.get(), data_.get());
-  for (const auto& hold : controls_.speed_holds()) set_forward_speed(hold.body, hold.speed);
-  mj_forward(model_.get(), data_.get());
-  for (TyreForceBinding& tyres : tyres_) tyres.weigh(*data_);
-  run_idle(duration);
-  for (auto& hold : controls_.speed_holds()) {
-    const double speed = forward_speed(hold.body);
-    if (!(std::abs(speed - hold.speed) <= kSettledSpeedError * hold.speed)) {
-      throw SimulatorError({.file = file_,
-                            .found = fmt::format("{:.4g} m/s after settling", speed),
-                            .expected = fmt::format("{:.4g} m/s within 1 %", hold.speed)});
-    }
-    hold.calibrate(speed);
-  }
-  if (!controls_.speed_holds().empty()) {
-    active_period_ = -2;
-    run_idle(duration);
-  }
-  settled_ = snapshot();
-}
-
-void Simulation::run_idle(double duration) {
-  const auto count = std::lround(duration / model_->opt.timestep);
-  for (long k = 0; k < count; ++k) step();
-}
-
-double Simulation::forward_speed(int body) const {
-  std::array<double, 6> motion{};
-  mj_forward(model_.get(), data_.get());
-  mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, body, motion.data(), 0);
-  const Eigen::Vector3d forward = body_rotation(*data_, body).col(0);
-  const double level = std::hypot(forward.x(), forward.y());
-  return level > 0.0 ? (forward.x() * motion[3] + forward.y() * motion[4]) / level : 0.0;
-}
-
-/// Moves the body forward, and spins the wheels along.
-void Simulation::set_forward_speed(int body, double speed) {
-  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> jacobian(3, model_->nv);
-  mj_jacBody(model_.get(), data_.get(), jacobian.data(), nullptr, body);
-  const Eigen::Vector3d missing =
-      (speed - forward_speed(body)) * body_rotation(*data_, body).col(0);
-  Eigen::Map<Eigen::VectorXd> velocities(data_->qvel, model_->nv);
-  velocities += models::smallest_solution(jacobian, missing);
-  for (const RollingWheel& wheel : rolling_) data_->qvel[wheel.dof] = speed / wheel.radius;
 }
 
 void Simulation::reset(const Eigen::VectorXd& state) {
@@ -277,17 +228,36 @@ void Simulation::keep_level(Eigen::Ref<Eigen::VectorXd> applied) {
   applied += rows.transpose() * (inertia * acceleration);
 }
 
+/// What the low-level loops ask of the actuators. data: with positions and velocities up to date.
+void Simulation::control() {
+  if (feedbacks_.empty() || feedback_mode_ == Feedback::kOff) {
+    controls_.follow(*data_, targets_);
+    return;
+  }
+  Eigen::VectorXd wanted = targets_;
+  if (feedback_mode_ == Feedback::kTest) wanted += test_controls_;
+  if (feedback_mode_ == Feedback::kOn) {
+    for (FeedbackBinding& feedback : feedbacks_) feedback.act(*data_, active_input_, wanted);
+  }
+  controls_.follow(*data_, wanted);
+}
+
 void Simulation::step() {
   check_interrupts();
   choose_input();
-  controls_.follow(*data_, targets_);
   // MuJoCo's second half of a step knows no Runge-Kutta; forces that depend on the state need the
   // halves, others do not.
   if (model_->opt.integrator == mjINT_RK4) {
+    if (!feedbacks_.empty()) {
+      mj_fwdPosition(model_.get(), data_.get());
+      mj_fwdVelocity(model_.get(), data_.get());
+    }
+    control();
     apply_forces();
     mj_step(model_.get(), data_.get());
   } else {
     mj_step1(model_.get(), data_.get());
+    control();
     apply_forces();
     mj_step2(model_.get(), data_.get());
   }
@@ -332,12 +302,15 @@ std::vector<double> Simulation::qpos() const { return copied(data_->qpos, model_
 SimulationSnapshot Simulation::snapshot() const {
   std::vector<Eigen::VectorXd> loads;
   for (const TyreForceBinding& tyres : tyres_) loads.push_back(tyres.loads());
+  std::vector<double> memories;
+  for (const FeedbackBinding& feedback : feedbacks_) memories.push_back(feedback.memory());
   return {.qpos = copied(data_->qpos, model_->nq),
           .qvel = copied(data_->qvel, model_->nv),
           .act = copied(data_->act, model_->na),
           .qacc_warmstart = copied(data_->qacc_warmstart, model_->nv),
           .ctrl = copied(data_->ctrl, model_->nu),
           .tyre_loads = loads,
+          .feedback_memories = memories,
           .state = state_,
           .steps = steps_};
 }
@@ -350,6 +323,9 @@ void Simulation::restore(const SimulationSnapshot& snapshot) {
   std::ranges::copy(snapshot.qacc_warmstart, data_->qacc_warmstart);
   std::ranges::copy(snapshot.ctrl, data_->ctrl);
   for (std::size_t k = 0; k < tyres_.size(); ++k) tyres_[k].set_loads(snapshot.tyre_loads[k]);
+  for (std::size_t k = 0; k < feedbacks_.size(); ++k) {
+    feedbacks_[k].set_memory(snapshot.feedback_memories[k]);
+  }
   state_ = snapshot.state;
   steps_ = snapshot.steps;
 }

@@ -14,6 +14,7 @@
 #include "harness/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/applied_forces.hpp"
 #include "harness/plant/mujoco/control_binding.hpp"
+#include "harness/plant/mujoco/feedback_binding.hpp"
 #include "harness/plant/mujoco/loaded_vehicle.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
 #include "harness/plant/mujoco/solid_map.hpp"
@@ -50,6 +51,7 @@ struct SimulationSnapshot {
   std::vector<double> qacc_warmstart;
   std::vector<double> ctrl;
   std::vector<Eigen::VectorXd> tyre_loads;  // N
+  std::vector<double> feedback_memories;
   Eigen::VectorXd state;
   long steps = 0;
 };
@@ -102,6 +104,9 @@ class Simulation {
   Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded);
   void settle(double duration);
   void run_idle(double duration);
+  void settle_with_feedback(double duration);
+  [[nodiscard]] double measured_response(const FeedbackBinding& feedback);
+  void control();
   void choose_input();
   void apply_forces();
   void apply_pull();
@@ -119,6 +124,9 @@ class Simulation {
   ControlBinding controls_;
   std::vector<AxleForceBinding> axles_;
   std::vector<TyreForceBinding> tyres_;
+  std::vector<FeedbackBinding> feedbacks_;
+  enum class Feedback { kOff, kTest, kOn } feedback_mode_ = Feedback::kOn;
+  Eigen::VectorXd test_controls_;  // of kTest
   struct RollingWheel {
     int dof;
     double radius;

@@ -132,5 +132,18 @@ TEST(JointPlants, the_slider_is_the_double_integrator) {
   EXPECT_LT(plant_error(plant, 0.01, truth), 1e-13);
 }
 
+TEST(JointPlants, the_crossed_rails_are_the_point_mass) {
+  const JointPlant plant{.system = "point_mass",
+                         .mjcf = "point_mass.xml",
+                         .start = {0.5, -0.3, 0.8, -1.1},
+                         .input_scale = {2.0, 1.0},
+                         .coarse_step = 0.1,
+                         .order = 4,
+                         .reference_system = "point_mass"};
+  const std::vector<Eigen::VectorXd> truth = analytic_states(plant, 1);
+  EXPECT_LT(plant_error(plant, 0.1, truth), 1e-13);
+  EXPECT_LT(plant_error(plant, 0.01, truth), 1e-13);
+}
+
 }  // namespace joint_plants_test
 }  // namespace qsmpc::harness

@@ -1,0 +1,124 @@
+// How a Simulation comes to rest on its springs and to the speeds that its loops hold.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "harness/errors.hpp"
+#include "harness/plant/mujoco/simulation.hpp"
+#include "models/linear_algebra.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr double kSettledSpeedError = 0.01;  // relative
+constexpr double kFeedbackError = 0.05;      // relative; the loop goes on correcting it
+
+}  // namespace
+
+// With loops that hold a speed, two runs: the first shows at which speed the vehicle rolls
+// steadily, and the second settles it with the command corrected for that.
+void Simulation::settle(double duration) {
+  mj_resetData(model_.get(), data_.get());
+  mj_forward(model_.get(), data_.get());
+  for (const auto& hold : controls_.speed_holds()) set_forward_speed(hold.body, hold.speed);
+  mj_forward(model_.get(), data_.get());
+  for (TyreForceBinding& tyres : tyres_) tyres.weigh(*data_);
+  if (!feedbacks_.empty()) settle_with_feedback(duration);
+  run_idle(duration);
+  for (auto& hold : controls_.speed_holds()) {
+    const double speed = forward_speed(hold.body);
+    if (!(std::abs(speed - hold.speed) <= kSettledSpeedError * hold.speed)) {
+      throw SimulatorError({.file = file_,
+                            .found = fmt::format("{:.4g} m/s after settling", speed),
+                            .expected = fmt::format("{:.4g} m/s within 1 %", hold.speed)});
+    }
+    hold.calibrate(speed);
+  }
+  if (!controls_.speed_holds().empty()) {
+    active_period_ = -2;
+    run_idle(duration);
+  }
+  settled_ = snapshot();
+}
+
+/// At rest first: from there each loop's actuators are tried where its response is not known. Then
+/// all loops bring the vehicle to their goals.
+void Simulation::settle_with_feedback(double duration) {
+  feedback_mode_ = Feedback::kOff;
+  run_idle(duration);
+  const SimulationSnapshot rest = snapshot();
+  for (FeedbackBinding& feedback : feedbacks_) {
+    if (!feedback.has_response()) feedback.set_response(measured_response(feedback));
+    restore(rest);
+  }
+  active_period_ = -2;
+  feedback_mode_ = Feedback::kOn;
+  run_idle(duration);
+  mj_forward(model_.get(), data_.get());
+  for (const FeedbackBinding& feedback : feedbacks_) {
+    const double goal = feedback.goal(active_input_);
+    const double velocity = feedback.value(*data_);
+    if (goal == 0.0 || std::abs(velocity - goal) <= kFeedbackError * std::abs(goal)) continue;
+    throw SimulatorError(
+        {.file = file_,
+         .found = fmt::format("{:.4g} after settling with feedback", velocity),
+         .expected = fmt::format("{:.4g} within 5 %, or a longer `settling`", goal)});
+  }
+}
+
+/// Half the difference of what the test command and its opposite do to the velocity within a time
+/// constant, by unit of the command and by time.
+double Simulation::measured_response(const FeedbackBinding& feedback) {
+  constexpr double kNoResponse = 1e-9;
+  const SimulationSnapshot rest = snapshot();
+  const double command = feedback.test_command();
+  const double step = model_->opt.timestep;
+  const double time = std::max(1.0, std::round(feedback.time_constant() / step)) * step;
+  std::array<double, 2> velocities{};
+  feedback_mode_ = Feedback::kTest;
+  for (const int side : {0, 1}) {
+    restore(rest);
+    test_controls_ = Eigen::VectorXd::Zero(model_->nu);
+    feedback.add(side == 0 ? -command : command, test_controls_);
+    run_idle(time);
+    mj_forward(model_.get(), data_.get());
+    velocities[side] = feedback.value(*data_);
+  }
+  feedback_mode_ = Feedback::kOff;
+  const double response = 0.5 * (velocities[1] - velocities[0]) / (command * time);
+  if (std::abs(response) > kNoResponse) return response;
+  throw SimulatorError({.file = file_,
+                        .found = fmt::format("a velocity that changes by {:.3g} under a control of "
+                                             "{:.3g}",
+                                             velocities[1] - velocities[0], command),
+                        .expected = "actuators of a feedback loop that move what it holds"});
+}
+
+void Simulation::run_idle(double duration) {
+  const auto count = std::lround(duration / model_->opt.timestep);
+  for (long k = 0; k < count; ++k) step();
+}
+
+double Simulation::forward_speed(int body) const {
+  std::array<double, 6> motion{};
+  mj_forward(model_.get(), data_.get());
+  mj_objectVelocity(model_.get(), data_.get(), mjOBJ_XBODY, body, motion.data(), 0);
+  const Eigen::Vector3d forward = body_rotation(*data_, body).col(0);
+  const double level = std::hypot(forward.x(), forward.y());
+  return level > 0.0 ? (forward.x() * motion[3] + forward.y() * motion[4]) / level : 0.0;
+}
+
+/// Moves the body forward, and spins the wheels along.
+void Simulation::set_forward_speed(int body, double speed) {
+  Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> jacobian(3, model_->nv);
+  mj_jacBody(model_.get(), data_.get(), jacobian.data(), nullptr, body);
+  const Eigen::Vector3d missing =
+      (speed - forward_speed(body)) * body_rotation(*data_, body).col(0);
+  Eigen::Map<Eigen::VectorXd> velocities(data_->qvel, model_->nv);
+  velocities += models::smallest_solution(jacobian, missing);
+  for (const RollingWheel& wheel : rolling_) data_->qvel[wheel.dof] = speed / wheel.radius;
+}
+
+}  // namespace qsmpc::harness
