@@ -116,7 +116,7 @@ TEST(TradeoffSection, lists_every_variant_with_drives_that_reached_and_timed_out
   EXPECT_FALSE(testing::contains(html, "<b>"));
   EXPECT_EQ(testing::occurrences(html, "<th scope=\"row\">"), 4);
   EXPECT_TRUE(testing::contains(html,
-                                "<th scope=\"row\">2: a.yaml / w20</th><td class=\"text\">penalties"
+                                "<th scope=\"row\">1: a.yaml / w20</th><td class=\"text\">penalties"
                                 "</td><td>100</td><td>69</td><td>30</td><td>1</td>"));
   EXPECT_EQ(tradeoff_section({}), "");
 }
