@@ -39,6 +39,9 @@ CampaignStatistics tradeoff_example() {
   CampaignStatistics statistics;
   statistics.variants = {variant("w2", 20, 0), variant("w20", 1, 30), variant("<b>", 0, 0),
                          variant("never", 0, 100)};
+  for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
+    statistics.variants[n].id = static_cast<std::int64_t>(n);
+  }
   statistics.tradeoff = {
       {.scenario = "a.yaml",
        .plant = "",
