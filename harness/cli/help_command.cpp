@@ -24,6 +24,7 @@ std::string help_of(const CLI::App& app, const std::vector<std::string>& words) 
         inner, [&](const CLI::App* candidate) { return candidate->get_name() == word; });
     if (found == inner.end()) {
       std::vector<std::string> known;
+      known.reserve(inner.size());
       for (const CLI::App* candidate : inner) known.push_back(candidate->get_name());
       throw InputError({.key = "help",
                         .found = word,

@@ -35,7 +35,7 @@ std::string default_folder(const std::string& name, const std::string& suffix,
     const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
     if (!plain) c = '_';
   }
-  const std::string folder = "out/" + plain_name + "-" + suffix;
+  std::string folder = "out/" + plain_name + "-" + suffix;
   if (plain_name == name && overrides.empty()) return folder;
   std::string all = name;
   for (const std::string& override : overrides) all += '\0' + override;
