@@ -101,7 +101,7 @@ std::string scene_box(std::string_view layer, std::string_view words) {
 /// The view in three dimensions, which the scene's script fills, or why there is none.
 std::string scene_figure(const EpisodeScene& scene, bool in_plane,
                          const controller::DecisionParts& parts) {
-  const std::string note =
+  std::string note =
       scene.note.empty() ? "" : "<p class=\"note\">" + escape_html(scene.note) + "</p>\n";
   if (scene.data.empty()) return note;
   std::string html =

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "harness/plant/mujoco/control_binding.hpp"
 #include "models/constants.hpp"
@@ -42,18 +43,19 @@ FeedbackBinding::FeedbackBinding(const NamedModel& named, mjData& data, const Fe
 }
 
 void FeedbackBinding::limit_command(int actuator, double gain) {
+  const auto index = static_cast<std::ptrdiff_t>(actuator);
   const auto narrow = [&](const mjtNum* range, double by) {
     const double one = range[0] / by;
     const double other = range[1] / by;
     least_ = std::max(least_, std::min(one, other));
     most_ = std::min(most_, std::max(one, other));
   };
-  if (model_.actuator_ctrllimited[actuator]) narrow(model_.actuator_ctrlrange + 2 * actuator, gain);
-  const double force = model_.actuator_gainprm[mjNGAIN * actuator];
+  if (model_.actuator_ctrllimited[actuator]) narrow(model_.actuator_ctrlrange + 2 * index, gain);
+  const double force = model_.actuator_gainprm[mjNGAIN * index];
   const bool is_motor = model_.actuator_gaintype[actuator] == mjGAIN_FIXED &&
                         model_.actuator_biastype[actuator] == mjBIAS_NONE && force != 0.0;
   if (is_motor && model_.actuator_forcelimited[actuator]) {
-    narrow(model_.actuator_forcerange + 2 * actuator, gain * force);
+    narrow(model_.actuator_forcerange + 2 * index, gain * force);
   }
 }
 
