@@ -4,10 +4,8 @@ import {readFileSync, statSync} from "node:fs";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 
-import {artefacts, openPage, qsmpc, sidewaysScroll, startBrowser, temporaryFolder, until}
+import {artefacts, openPage, qsmpc, sidewaysScroll, softwareGl, startBrowser, temporaryFolder, until}
   from "./pages.mjs";
-
-const kSoftware = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
 
 let browser;
 let folder;
@@ -15,7 +13,7 @@ let folder;
 before(async () => {
   folder = temporaryFolder();
   qsmpc("run", "dubins_alley", "--quiet", "--no-video", "--out", folder, "--set", "limit.steps=30");
-  browser = await startBrowser(kSoftware);
+  browser = await startBrowser(softwareGl);
 });
 
 after(async () => { await browser?.close(); });

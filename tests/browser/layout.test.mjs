@@ -6,7 +6,7 @@ import {join} from "node:path";
 import {after, before, test} from "node:test";
 
 import {emptyColumns, layoutProblems} from "./layout.mjs";
-import {artefacts, openPage, qsmpc, startBrowser, temporaryFolder} from "./pages.mjs";
+import {artefacts, openPage, qsmpc, softwareGl, startBrowser, temporaryFolder} from "./pages.mjs";
 
 const screens = {
   desktop: {viewport: {width: 1440, height: 900}},
@@ -39,7 +39,7 @@ before(async () => {
   campaign("campaign", "scenario: dubins_obstacles\nvariants: {closed: {}, open: {controller.policy: open_loop}, " +
     "greedy: {controller.horizon: 3}}\nseeds: {count: 6}\ngrid: {limit.steps: [60]}\ntraces: none\n");
   campaign("campaign_of_one", "scenario: dubins_corridor\nseeds: {count: 6}\ntraces: none\n");
-  browser = await startBrowser();
+  browser = await startBrowser(softwareGl);
 });
 
 after(async () => { await browser?.close(); });
@@ -53,6 +53,11 @@ for (const name of pages) {
       test(`${name}: ${screen}, ${colorScheme}: no overlap, no clipping, no empty panel`, async () => {
         const {page, seen} = await openPage(browser, join(folders[name], "report.html"), {...size, colorScheme});
         await page.waitForTimeout(300);  // charts draw after the page has loaded
+        if (await page.locator("#scene").isVisible()) {  // drawn once it is scrolled to
+          await page.locator("#scene").scrollIntoViewIfNeeded();
+          await page.locator("#scene canvas").waitFor();
+          await page.evaluate(() => window.scrollTo(0, 0));
+        }
         await page.locator("details").evaluateAll((all) => all.forEach((one) => { one.open = true; }));
         await page.screenshot({path: join(artefacts, `layout-${name}-${screen}-${colorScheme}.png`), fullPage: true});
         assert.deepEqual(await page.evaluate(layoutProblems, {wide: screen === "desktop"}), []);

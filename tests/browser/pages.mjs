@@ -29,6 +29,9 @@ export function qsmpc(...words) {
 
 export const readJson = (path) => JSON.parse(readFileSync(path, "utf8"));
 
+// WebGL in software, for the view in three dimensions.
+export const softwareGl = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"];
+
 // With `more` of Chromium's own options.
 export function startBrowser(more = []) {
   const executablePath = ["/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"]

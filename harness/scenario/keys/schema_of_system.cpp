@@ -140,7 +140,12 @@ Json part_of_mapping(const std::vector<KeyDescription>& keys, const SystemNames&
   std::vector<std::string> known;
   bool has_family = false;
   put_parts(part, known, has_family, keys, names);
-  if (has_family) part["propertyNames"] = {{"enum", known}};
+  if (!has_family) return part;
+  if (known.empty()) {
+    part["maxProperties"] = 0;  // e.g. the constants of a system that has none
+  } else {
+    part["propertyNames"] = {{"enum", known}};
+  }
   return part;
 }
 
