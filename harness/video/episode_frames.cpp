@@ -212,7 +212,7 @@ double EpisodeFrames::lane(std::size_t stage) const {
 Eigen::VectorXd EpisodeFrames::state_at(std::size_t step, double time) const {
   const Eigen::MatrixXd& states = view_.states();
   const auto k = static_cast<Eigen::Index>(step);
-  const Eigen::VectorXd from = states.col(k);
+  Eigen::VectorXd from = states.col(k);
   if (k + 1 >= states.cols()) return from;
   const auto before_kick = [this, &states](Eigen::Index at) {
     const Eigen::VectorXd& kick = steps_[static_cast<std::size_t>(at - 1)].disturbance;
@@ -222,7 +222,7 @@ Eigen::VectorXd EpisodeFrames::state_at(std::size_t step, double time) const {
   const double period = view_.scenario().time_step;
   const double share = std::clamp((time - steps_[step].time) / period, 0.0, 1.0);
   const double ease = std::min(EpisodeTrack::kEaseTime / period, 0.5);
-  const Eigen::VectorXd on_the_way = from + share * (before_kick(k + 1) - from);
+  Eigen::VectorXd on_the_way = from + share * (before_kick(k + 1) - from);
   if (k == 0 || share >= ease) return on_the_way;
   return on_the_way + (1.0 - share / ease) * (before_kick(k) - from);
 }

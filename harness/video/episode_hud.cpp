@@ -26,7 +26,7 @@ double next_certificate(const StepRecord& step) {
 
 // "0.00" also for what rounds to it from below.
 std::string signed_text(double value) {
-  const std::string size = fmt::format("{:.2f}", std::abs(value));
+  std::string size = fmt::format("{:.2f}", std::abs(value));
   if (size == "0.00") return size;
   return (value < 0.0 ? "−" : "+") + size;
 }
