@@ -109,7 +109,10 @@ class Comparer {
 /// `answer` as it is `delay` periods later; nothing before its first period.
 Eigen::VectorXd delayed(const Eigen::VectorXd& answer, double delay) {
   Eigen::VectorXd later = Eigen::VectorXd::Zero(answer.size());
-  const auto at = [&](Eigen::Index k) { return k < 0 ? 0.0 : answer[k]; };
+  // Where nothing is delayed, the share of what follows the last period is 0.
+  const auto at = [&](Eigen::Index k) {
+    return k < 0 ? 0.0 : answer[std::min(k, answer.size() - 1)];
+  };
   for (Eigen::Index k = 0; k < answer.size(); ++k) {
     const double time = static_cast<double>(k) - delay;
     const double whole = std::floor(time);

@@ -32,6 +32,7 @@ template <class Number>
 std::vector<Number> numbers_of(const nlohmann::json& text) {
   const std::vector<std::uint8_t> bytes = bytes_of(text.get<std::string>());
   std::vector<Number> numbers(bytes.size() / sizeof(Number));
+  if (numbers.empty()) return numbers;
   std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
   return numbers;
 }
