@@ -117,6 +117,7 @@ struct ControllerEntry {
   std::unique_ptr<Controller> (*make)(const models::Dynamics& dynamics,
                                       const ControllerSettings& settings) = nullptr;
   bool keeps_limits = false;  ///< whether it plans within limits of the risk
+  bool takes_guide = false;   ///< whether its plans aim along the way that a guide knows
 };
 
 /// The table of controllers; the first is the default.

@@ -46,20 +46,21 @@ double MissionBudget::spent_of_planned() const {
   return std::min(1.0, (spent_ + untold) / (planned_ + untold));
 }
 
-double MissionBudget::expected_periods(const Eigen::VectorXd& mean) const {
+double MissionBudget::expected_periods(const Eigen::VectorXd& mean,
+                                       std::optional<double> way) const {
   const models::SystemDescription& system = dynamics_.description();
   if (!has_position(system) || !(progress_ > 0.0)) return kInfinity;
-  const double distance = (position_of(system, mean) - position_of(system, target_)).norm();
-  return std::ceil(kDetour * distance / progress_);
+  const double straight = (position_of(system, mean) - position_of(system, target_)).norm();
+  return std::ceil(way.value_or(kDetour * straight) / progress_);
 }
 
 RiskLimits MissionBudget::limits(const Eigen::VectorXd& mean, Eigen::Index horizon,
-                                 Eigen::Index periods_left) const {
+                                 Eigen::Index periods_left, std::optional<double> way) const {
   RiskLimits limits;
   if (std::isinf(limit_)) return limits;
   const double left = std::max(0.0, limit_ - spent_);
   const double ahead = static_cast<double>(horizon);
-  const double periods = std::min(expected_periods(mean),
+  const double periods = std::min(expected_periods(mean, way),
                                   static_cast<double>(std::max<Eigen::Index>(1, periods_left)));
   limits.first = left;
   const double share = std::min(1.0, ahead / periods);

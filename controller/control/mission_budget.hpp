@@ -6,6 +6,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -27,9 +28,11 @@ class MissionBudget {
   /// Limits of the plan for a belief with this mean: the next stage may use all that is left, and
   /// the plan its share of it, by how much of the way to the target it is expected to come, and by
   /// how much of what plans are certified is spent in the end: late stages are planned anew before
-  /// they are driven. periods_left: of the drive, at most.
+  /// they are driven. periods_left: of the drive, at most. way: to the target, m, where it is
+  /// known.
   [[nodiscard]] RiskLimits limits(const Eigen::VectorXd& mean, Eigen::Index horizon,
-                                  Eigen::Index periods_left) const;
+                                  Eigen::Index periods_left,
+                                  std::optional<double> way = std::nullopt) const;
 
   /// The plan is in force: what is certified of its next stage is spent.
   void spend(const Plan& plan);
@@ -39,7 +42,8 @@ class MissionBudget {
 
  private:
   [[nodiscard]] double spent_of_planned() const;
-  [[nodiscard]] double expected_periods(const Eigen::VectorXd& mean) const;
+  [[nodiscard]] double expected_periods(const Eigen::VectorXd& mean,
+                                        std::optional<double> way) const;
 
   const models::Dynamics& dynamics_;
   double limit_;

@@ -31,7 +31,8 @@ ControllerEntry nominal_controller() {
               [](const ControllerSettings& settings) {
                 return PlanningController::parts(mean_only(settings));
               },
-          .make = make_nominal};
+          .make = make_nominal,
+          .takes_guide = true};
 }
 
 }  // namespace qsmpc::controller

@@ -5,7 +5,8 @@ namespace qsmpc::controller {
 const Decision& PlanningController::decide(const Situation& situation) {
   check_situation(situation, planner_.dynamics().state_dim());
   const RiskLimits limits =
-      mission_.limits(situation.belief.mean, planner_.settings().horizon, situation.periods_left);
+      mission_.limits(situation.belief.mean, planner_.settings().horizon, situation.periods_left,
+                      planner_.way_to_target(situation.belief.mean));
   const Plan& plan =
       planner_.plan(situation.belief,
                     {.deadline = situation.deadline, .period = situation.period, .limits = limits});

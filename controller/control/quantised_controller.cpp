@@ -11,7 +11,8 @@ ControllerEntry quantised_controller() {
                      const ControllerSettings& settings) -> std::unique_ptr<Controller> {
             return std::make_unique<PlanningController>(dynamics, settings);
           },
-          .keeps_limits = true};
+          .keeps_limits = true,
+          .takes_guide = true};
 }
 
 }  // namespace qsmpc::controller

@@ -59,6 +59,7 @@ PlanEvaluator::PlanEvaluator(const models::Dynamics& dynamics, const PlannerSett
       z_(Eigen::Index{dynamics.input_dim()} * settings.horizon) {
   if (solver_entry(settings.solver).takes_constraints) constraint_set_.emplace();
   set_limits(settings.risk, 0);
+  if (settings.guide) guide_.emplace(dynamics, settings);
 }
 
 void PlanEvaluator::set_limits(const RiskLimits& limits, Eigen::Index period) {
@@ -73,7 +74,7 @@ void PlanEvaluator::set_braking(bool braking) {
   const QuadraticCost& weights = settings_.cost;
   if (!braking) {
     weights_ = weights;
-    nearest_target(weights.target, weights.angles, gaussian_.mean, weights_.target);
+    place_target();
     return;
   }
   weights_.state.setZero();
@@ -97,7 +98,13 @@ void PlanEvaluator::take_belief(const Gaussian& belief) {
   quantiser_.quantise(belief, belief_);
   gaussian_ = belief;
   within_ = belief_.within_covariance;
-  nearest_target(settings_.cost.target, settings_.cost.angles, belief.mean, weights_.target);
+  place_target();
+}
+
+void PlanEvaluator::place_target() {
+  const Eigen::VectorXd& target =
+      guide_ ? guide_->aim(gaussian_.mean).state : settings_.cost.target;
+  nearest_target(target, settings_.cost.angles, gaussian_.mean, weights_.target);
 }
 
 void PlanEvaluator::set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,

@@ -12,6 +12,7 @@
 #include "controller/planning/belief_quantiser.hpp"
 #include "controller/planning/constraints/horizon_constraints.hpp"
 #include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/guide/guide.hpp"
 #include "controller/planning/plan.hpp"
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/policy_maker.hpp"
@@ -24,7 +25,7 @@ namespace qsmpc::controller {
 class PlanEvaluator {
  public:
   /// Refers to both, which must be checked (check_planner_settings). Throws std::invalid_argument
-  /// on an unknown name.
+  /// on an unknown name, and as Guide.
   PlanEvaluator(const models::Dynamics& dynamics, const PlannerSettings& settings);
   PlanEvaluator(const PlanEvaluator&) = delete;
   PlanEvaluator& operator=(const PlanEvaluator&) = delete;
@@ -73,9 +74,12 @@ class PlanEvaluator {
   [[nodiscard]] HorizonCost& cost() { return cost_; }
   [[nodiscard]] PolicyMaker& policies() { return policies_; }
   [[nodiscard]] BeliefQuantiser& quantiser() { return quantiser_; }
+  /// What knows the way round obstacles, where the settings ask for it.
+  [[nodiscard]] std::optional<Guide>& guide() { return guide_; }
   /// The belief at hand as particles.
   [[nodiscard]] const GaussianQuantisation& belief() const { return belief_; }
-  /// The cost's weights, about the target that is nearest to the belief.
+  /// The cost's weights, about the target that is nearest to the belief, or about what a guide puts
+  /// in its place.
   [[nodiscard]] const QuadraticCost& weights() const { return weights_; }
   [[nodiscard]] const Propagator& propagator() const { return *propagator_; }
   /// Those of stage_constraint.hpp, at the assignments held; empty unless the solver takes any.
@@ -88,6 +92,7 @@ class PlanEvaluator {
 
  private:
   void flatten(const Policy& policy);
+  void place_target();
 
   const models::Dynamics& dynamics_;
   const PlannerSettings& settings_;
@@ -107,6 +112,7 @@ class PlanEvaluator {
   Gaussian gaussian_;  // the belief at hand
   GaussianQuantisation belief_;
   std::optional<RiskConstraint> risk_;
+  std::optional<Guide> guide_;
   std::chrono::duration<double> prediction_time_{0.0};
 };
 

@@ -173,6 +173,12 @@ void Planner::prepare(const Eigen::MatrixXd& covariance) {
       {.mean = Eigen::VectorXd::Zero(dynamics_.state_dim()), .covariance = covariance}, unused);
 }
 
+std::optional<double> Planner::way_to_target(const Eigen::VectorXd& state) {
+  std::optional<Guide>& guide = evaluator_.guide();
+  if (!guide) return std::nullopt;
+  return guide->aim(state).way;
+}
+
 PredictedMotion motion_of(const Planner& planner, const Gaussian& belief, const Plan& plan) {
   return {.dynamics = planner.dynamics(),
           .noise_covariance = planner.settings().noise_covariance,

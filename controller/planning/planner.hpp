@@ -12,6 +12,7 @@
 
 #include <array>
 #include <chrono>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -38,7 +39,7 @@ struct PlanRequest {
 class Planner {
  public:
   /// `dynamics` must outlive the planner. Throws std::invalid_argument on settings that make no
-  /// sense: sizes, non-finite entries, unknown names, a horizon below 1.
+  /// sense: sizes, non-finite entries, unknown names, a horizon below 1, a guide without a plane.
   Planner(const models::Dynamics& dynamics, PlannerSettings settings);
   Planner(const Planner&) = delete;
   Planner& operator=(const Planner&) = delete;
@@ -71,6 +72,9 @@ class Planner {
     kept_inputs_.resize(0, 0);
     effort_.reset();
   }
+
+  /// How far it is from `state` to the target the way that the guide knows, m; empty without one.
+  [[nodiscard]] std::optional<double> way_to_target(const Eigen::VectorXd& state);
 
   [[nodiscard]] const PlannerSettings& settings() const { return settings_; }
   [[nodiscard]] const Propagator& propagator() const { return evaluator_.propagator(); }

@@ -53,6 +53,9 @@ struct PlannerSettings {
   /// How far the plant is from the model; what is certified then holds for the plant.
   std::optional<ModelError> model_error;
   InputBounds bounds;
+  /// Whether plans aim along the cheapest way round obstacles (guide/guide.hpp), and not straight
+  /// at the target.
+  bool guide = false;
   Executor run = run_in_turn;  ///< what loops over many particles go through
 };
 

@@ -29,6 +29,7 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
   controller::PlannerSettings settings;
   settings.horizon = controller.horizon;
   settings.closed_loop = controller.policy == "closed_loop";
+  settings.guide = controller.guide == "grid";
   settings.feedback_gain = controller.feedback_gain;
   if (controller.feedback_effort > 0.0) settings.feedback_effort = controller.feedback_effort;
   settings.optimise_gain = controller.optimise_gain;

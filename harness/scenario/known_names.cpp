@@ -95,6 +95,11 @@ const std::vector<std::string>& policy_names() {
   return names;
 }
 
+const std::vector<std::string>& guide_names() {
+  static const std::vector<std::string> names{"none", "grid"};
+  return names;
+}
+
 const std::vector<std::string>& penalty_shape_names() {
   static const std::vector<std::string> names{"smooth", "thesis"};
   return names;

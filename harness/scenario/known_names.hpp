@@ -28,6 +28,8 @@ namespace qsmpc::harness {
 [[nodiscard]] const std::vector<std::string>& propagator_names();
 [[nodiscard]] const std::vector<std::string>& quantiser_names();
 [[nodiscard]] const std::vector<std::string>& policy_names();
+/// What plans aim along.
+[[nodiscard]] const std::vector<std::string>& guide_names();
 [[nodiscard]] const std::vector<std::string>& penalty_shape_names();
 [[nodiscard]] const std::vector<std::string>& plant_kind_names();
 [[nodiscard]] const std::vector<std::string>& disturbance_kind_names();

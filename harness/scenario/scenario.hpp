@@ -101,6 +101,7 @@ struct Scenario {
     std::string lqr_about = "path";  ///< or "target": about what "lqr" linearises
     int horizon = 8;
     std::string policy = "closed_loop";            ///< or "open_loop"
+    std::string guide = "none";                    ///< or "grid": what plans aim along
     std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
     /// Weight of the input in that LQR, relative to the cost's; 0 where it is not given: 1, and
     /// with limits of the risk what the planner finds best.

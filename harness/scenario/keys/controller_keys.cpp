@@ -37,6 +37,31 @@ void check_lqr_about(const ScenarioReading& reading, Section& section) {
   }
 }
 
+/// The way is looked for in the plane of position, within bounds.
+void check_guide(const ScenarioReading& reading, Section& section) {
+  const Scenario::Controller& controller = reading.scenario.controller;
+  if (controller.guide == defaults().guide) return;
+  const std::vector<controller::ControllerEntry>& known = controller::controllers();
+  const bool takes_it = std::any_of(known.begin(), known.end(), [&](const auto& entry) {
+    return entry.name == controller.kind && entry.takes_guide;
+  });
+  if (!takes_it) section.note("guide", "none, or controller.kind: quantised or nominal");
+  const models::SystemDescription& system = reading.system();
+  const controller::Box& bounds = reading.scenario.safe_set.bounds;
+  for (const int axis : {system.position_x, system.position_y}) {
+    if (axis < 0) {
+      section.note("guide", "none: " + system.name + " has no position in the plane");
+      return;
+    }
+    const Eigen::Index i = axis;
+    if (i < bounds.lower.size() &&
+        !(std::isfinite(bounds.lower[i]) && std::isfinite(bounds.upper[i]))) {
+      section.note("guide", "none, or finite safe_set.bounds of " +
+                                system.states[static_cast<std::size_t>(i)].name);
+    }
+  }
+}
+
 void check_optimise_gain(const ScenarioReading& reading, Section& section) {
   const Scenario::Controller& controller = reading.scenario.controller;
   if (controller.optimise_gain && controller.policy != "closed_loop") {
@@ -124,6 +149,14 @@ std::vector<ScenarioKey> plan_keys() {
        .member = [](Scenario& scenario) -> int& { return scenario.controller.horizon; }},
       {.about = {.name = "policy", .values = {NameValue{policy_names()}}, .words = "{names}"},
        .member = [](Scenario& scenario) -> std::string& { return scenario.controller.policy; }},
+      {.about = {.name = "guide",
+                 .values = {NameValue{guide_names()}},
+                 .words = "what plans aim at: the target (`none`), or the farthest point in sight "
+                          "on the cheapest way round obstacles (`grid`)",
+                 .see = "[below](#guide)"},
+       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.guide; },
+       .check = check_guide,
+       .is_written = [](const Scenario& scenario) { return scenario.controller.guide != "none"; }},
       {.about = {.name = "feedback_gain",
                  .values = {MatrixValue{.rows = Dimension::kInputs, .cols = Dimension::kStates}},
                  .words = "*m* × *n* matrix of the closed-loop policy",

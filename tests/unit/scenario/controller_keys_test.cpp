@@ -54,6 +54,18 @@ TEST(ControllerKeys, gains_can_be_optimised_and_another_solver_be_named) {
   expect_round_trip(other);
 }
 
+TEST(ControllerKeys, a_guide_needs_a_controller_that_follows_it_and_bounds_of_the_plane) {
+  const std::string bounded = minimal_text + "safe_set: {bounds: {x: [-1, 9], y: [-1, 9]}}\n";
+  const Scenario scenario =
+      parse_scenario(bounded, {.file = "t.yaml", .overrides = {"controller.guide=grid"}});
+  EXPECT_EQ(scenario.controller.guide, "grid");
+  expect_round_trip(scenario);
+  EXPECT_EQ(refusal_of(bounded, {"controller.guide=grid", "controller.kind=lqr"}).key,
+            "controller.guide");
+  EXPECT_THAT(refusal_of(minimal_text, {"controller.guide=grid"}).expected,
+              HasSubstr("finite safe_set.bounds of x"));
+}
+
 TEST(ControllerKeys, every_bounding_of_the_inputs_can_be_named) {
   for (const controller::InputBoundingEntry& entry : controller::input_boundings()) {
     const Scenario scenario = minimal_with({"controller.input_bounding=" + entry.name});

@@ -59,6 +59,16 @@ TEST(MissionBudget, gives_the_next_stage_what_is_left_and_a_plan_its_share) {
 }
 
 // Of plans whose late stages bear their risk little is spent, as they are planned anew before.
+TEST(MissionBudget, a_known_way_counts_for_as_long_as_it_is) {
+  const auto car = dubins_car();
+  MissionBudget budget(*car, 0.02, Eigen::Vector3d(100.0, 0.0, 0.0));
+  budget.spend(straight_plan(1e-4));
+  const Eigen::VectorXd start = Eigen::Vector3d::Zero();
+  const double straight = budget.limits(start, 10, 6000).plan;
+  EXPECT_DOUBLE_EQ(budget.limits(start, 10, 6000, 120.0).plan, straight);
+  EXPECT_LT(budget.limits(start, 10, 6000, 1200.0).plan, straight);
+}
+
 TEST(MissionBudget, gives_plans_more_where_little_of_what_they_are_certified_is_spent) {
   const auto car = dubins_car();
   MissionBudget budget(*car, 0.02, Eigen::Vector3d(100.0, 0.0, 0.0));
