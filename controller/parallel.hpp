@@ -11,6 +11,8 @@
 #include <memory>
 #include <type_traits>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Refers to something callable with a task's number; must not outlive it. Never allocates.
@@ -71,3 +73,5 @@ void for_chunks(const Executor& run, std::ptrdiff_t particles, const Task& task)
 }
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -6,6 +6,8 @@
 #include <new>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Gives out memory from the beginning of a cache line on, so that vectors as wide as a line never
@@ -79,3 +81,5 @@ class Arena {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <string>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// A wrong input: a file that does not say what it should. Exit code 2.
@@ -38,3 +40,5 @@ class IoError : public std::runtime_error {
 };
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

@@ -1,6 +1,8 @@
 // Colours of pictures: named ones in palette.hpp, and the ramp of the horizon's stages.
 #pragma once
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::render {
 
 /// sRGB and opacity, each in [0, 1].
@@ -42,3 +44,5 @@ inline constexpr double kCalmClearance = 1.0;
 [[nodiscard]] Colour clearance_colour(double clearance);
 
 }  // namespace qsmpc::render
+
+#pragma GCC visibility pop

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::render {
 
 struct PlanarPoint {
@@ -119,3 +121,5 @@ struct Image {
 };
 
 }  // namespace qsmpc::render
+
+#pragma GCC visibility pop

@@ -5,6 +5,8 @@
 
 #include "render/frame.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::render {
 
 /// What is chosen for a picture as a whole.
@@ -39,3 +41,5 @@ struct RenderOptions {
 };
 
 }  // namespace qsmpc::render
+
+#pragma GCC visibility pop

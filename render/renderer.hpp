@@ -16,6 +16,8 @@
 #include "render/hud/canvas.hpp"
 #include "render/render_options.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::render {
 
 /// Use and destroy it on the thread that made it; at most one a thread at a time. Different threads
@@ -54,3 +56,5 @@ class Renderer {
 };
 
 }  // namespace qsmpc::render
+
+#pragma GCC visibility pop

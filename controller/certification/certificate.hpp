@@ -16,6 +16,8 @@
 #include "controller/prediction/prediction.hpp"
 #include "controller/regions/unsafe_set.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// How far each bound is worked out.
@@ -74,3 +76,5 @@ struct StageCertificate {
 [[nodiscard]] double horizon_bound(const std::vector<StageCertificate>& certificates);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -7,6 +7,8 @@
 
 #include "controller/prediction/prediction.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// W2 error of one stage. `total` bounds the distance between the law of the state and the
@@ -39,3 +41,5 @@ struct StageBudget {
 [[nodiscard]] std::vector<StageBudget> error_budget(const PredictedMotion& motion);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

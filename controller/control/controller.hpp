@@ -26,6 +26,8 @@
 #include "controller/prediction/prediction.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// What is known when an input is to be chosen; refers to objects of the caller.
@@ -132,3 +134,5 @@ struct ControllerEntry {
                                                           const ControllerSettings& settings);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

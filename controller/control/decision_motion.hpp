@@ -12,6 +12,8 @@
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 class DecisionMotion {
@@ -44,3 +46,5 @@ class DecisionMotion {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

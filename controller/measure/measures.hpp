@@ -3,6 +3,8 @@
 
 #include <Eigen/Core>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Points of a discrete measure: one coordinate a row, one point a column.
@@ -38,3 +40,5 @@ void check_measure(const DiscreteMeasure& measure);
 [[nodiscard]] Eigen::MatrixXd covariance_of(const DiscreteMeasure& measure);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

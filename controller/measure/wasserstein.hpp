@@ -5,6 +5,8 @@
 
 #include "controller/measure/measures.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// W2 of two discrete measures in the same space: the transport problem is solved by the network
@@ -30,3 +32,5 @@ inline constexpr Eigen::Index kTransportPairs = 20'000'000;
 [[nodiscard]] double wasserstein2(const Gaussian& first, const Gaussian& second);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -7,6 +7,8 @@
 #include "controller/measure/measures.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 class BeliefQuantiser {
@@ -29,3 +31,5 @@ class BeliefQuantiser {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

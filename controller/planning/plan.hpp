@@ -4,11 +4,13 @@
 #include <Eigen/Core>
 
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
-#include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/cost/cost_parts.hpp"
 #include "controller/planning/risk/risk_limits.hpp"
-#include "controller/planning/solvers/ocp_solver.hpp"
+#include "controller/planning/solvers/solver_status.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
+
+#pragma GCC visibility push(default)
 
 namespace qsmpc::controller {
 
@@ -45,3 +47,5 @@ inline constexpr double kConstraintTolerance = 1e-6;
 [[nodiscard]] bool better(const Plan& plan, const Plan& other);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

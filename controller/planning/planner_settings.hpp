@@ -10,13 +10,15 @@
 
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/parallel.hpp"
-#include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/cost/quadratic_cost.hpp"
 #include "controller/planning/risk/risk_limits.hpp"
 #include "controller/prediction/model_error.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "models/dynamics/dynamics.hpp"
+
+#pragma GCC visibility push(default)
 
 namespace qsmpc::controller {
 
@@ -67,3 +69,5 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
 [[nodiscard]] std::vector<int> speeds_of(const models::Dynamics& dynamics);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

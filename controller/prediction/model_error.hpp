@@ -15,6 +15,8 @@
 
 #include "controller/measure/normal/norm_orders.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 struct ModelError {
@@ -51,3 +53,5 @@ struct ModelError {
 [[nodiscard]] ModelError widened(ModelError error, double factor);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

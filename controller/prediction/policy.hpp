@@ -11,6 +11,8 @@
 #include "controller/measure/measures.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Closed interval of each input.
@@ -82,3 +84,5 @@ void lqr_gains(const models::Dynamics& dynamics, const Eigen::Ref<const Eigen::M
                LqrScratch& scratch, std::vector<Eigen::MatrixXd>& gains);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -11,6 +11,8 @@
 #include "controller/prediction/propagator.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// The measures along the horizon under one policy.
@@ -63,3 +65,5 @@ struct PredictedMotion {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

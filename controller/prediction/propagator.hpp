@@ -17,6 +17,8 @@
 #include "controller/parallel.hpp"
 #include "controller/prediction/stage_map.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 class Propagator {
@@ -68,3 +70,5 @@ struct PropagatorEntry {
                                                           const PropagatorSettings& settings);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -8,6 +8,8 @@
 #include "controller/parallel.hpp"
 #include "controller/storage.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Row n has the entries begin[n] … begin[n + 1] − 1. Storage is reused where one is written again.
@@ -44,3 +46,5 @@ void pack(const Points& points, Eigen::Index begin, Eigen::Index end, PackedPoin
 void multiply(const SparseMatrix& a, const PackedPoints& points, int begin, int end, Points& out);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -12,6 +12,8 @@
 #include "controller/measure/measures.hpp"
 #include "controller/prediction/sparse_matrix.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// c̃_n = m + S (Σ_i A_ni f_i + b_n − m), with the weights ρ̃_n of the c̃_n and their mean
@@ -52,3 +54,5 @@ void pullback_shares(const StageMap& map, const Points& adjoint, const PackedPoi
                      Eigen::Index begin, Eigen::Index end, Points& stepped_adjoint);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

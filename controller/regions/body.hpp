@@ -5,6 +5,8 @@
 
 #include <Eigen/Core>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// A disc that is fixed to the body.
@@ -26,3 +28,5 @@ struct Body {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -7,6 +7,8 @@
 #include "controller/parallel.hpp"
 #include "controller/regions/body.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// x ↦ x with p + R(φ) o in place of its position p, where φ is the heading and o the disc's
@@ -48,3 +50,5 @@ class DiscPlacement {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -12,6 +12,8 @@
 
 #include "controller/regions/body.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// An axis-aligned box; ±infinity where a coordinate is not restricted.
@@ -63,3 +65,5 @@ struct AxisInterval {
 [[nodiscard]] std::vector<AxisInterval> bounded_axes(const Box& box);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -7,6 +7,8 @@
 
 #include <Eigen/Core>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Φ(−z), continued below z = 0, where Φ(−z) is flat, by the exponential with the same value and
@@ -36,3 +38,5 @@ class TailSum {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -17,6 +17,8 @@
 #include "controller/parallel.hpp"
 #include "controller/regions/tail_sum.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Particles that a penalty is taken at, and what it is like: scale · h(signed distance / length),
@@ -111,3 +113,5 @@ class UnsafeRegion {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -17,6 +17,8 @@
 #include "controller/regions/safe_set.hpp"
 #include "controller/regions/unsafe_region.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 using RegionPointer = std::shared_ptr<const UnsafeRegion>;
@@ -118,3 +120,5 @@ class UnsafeSet {
                                          Eigen::Index stage = 0);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

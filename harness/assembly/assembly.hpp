@@ -10,6 +10,8 @@
 #include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// The planner's model of `scenario`.
@@ -44,3 +46,5 @@ enum class BeliefOf {
 [[nodiscard]] int certified_stages(const controller::DecisionParts& parts);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

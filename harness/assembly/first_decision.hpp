@@ -10,6 +10,8 @@
 #include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// The decision at the initial belief, its mean standing for the observation, and what follows from
@@ -32,3 +34,5 @@ class FirstDecision {
 };
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

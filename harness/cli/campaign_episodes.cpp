@@ -23,6 +23,7 @@
 #include "harness/trace/ending.hpp"
 #include "harness/trace/hdf5_file.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/video/episode_painter.hpp"
 
 namespace qsmpc::harness {
 namespace {

@@ -36,6 +36,7 @@ int parse_and_run(int argc, char** argv) {
   add_list_command(app, exit_code);
   add_schema_command(app, exit_code);
   add_validate_command(app, exit_code);
+  add_completion_command(app, exit_code);
   add_help_command(app, exit_code);
   try {
     app.parse(argc, argv);

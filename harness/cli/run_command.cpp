@@ -29,6 +29,8 @@
 #include "harness/text/printable.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_writer.hpp"
+#include "harness/video/episode_painter.hpp"
 #include "render/gl/gl_library.hpp"
 
 namespace qsmpc::harness {

@@ -20,7 +20,7 @@
 #include "harness/threads/interruption.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/residuals.hpp"
-#include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_writer.hpp"
 #include "harness/version.hpp"
 #include "models/constants.hpp"
 

@@ -18,6 +18,8 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 class TraceWriter;
@@ -64,3 +66,5 @@ class EpisodeDriver {
 [[nodiscard]] Trace run_episode(const Scenario& scenario, const EpisodeOptions& options);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

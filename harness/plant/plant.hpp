@@ -12,6 +12,8 @@
 
 #include "models/constants.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// Where the vehicle was between two control instants, for drawing.
@@ -57,3 +59,5 @@ class Plant {
 };
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

@@ -10,6 +10,8 @@
 #include <variant>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// Where in a MuJoCo model a number stands.
@@ -140,3 +142,5 @@ struct PlantMapping {
 };
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

@@ -17,6 +17,8 @@
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 struct Scenario {
@@ -154,3 +156,5 @@ struct Scenario {
 };
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

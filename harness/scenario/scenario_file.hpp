@@ -10,6 +10,8 @@
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// What the resolved scenario is called among the files that a command leaves.
@@ -66,3 +68,5 @@ struct ScenarioSource {
 [[nodiscard]] std::string to_yaml(const Scenario& scenario);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

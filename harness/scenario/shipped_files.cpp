@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <system_error>
 
+#include <dlfcn.h>
+
 #include "harness/errors.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/yaml_tree.hpp"
@@ -30,10 +32,30 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
+// The object file that this code is in: a program, or the shared library in someone else's.
+fs::path own_object() {
+  std::error_code error;
+  Dl_info object{};
+  if (dladdr(kScenarios, &object) != 0 && object.dli_fname != nullptr) {
+    const fs::path path = object.dli_fname;
+    // Of a program it is what it was called by.
+    const bool is_library = path.filename().string().find(".so") != std::string::npos;
+    if (path.is_absolute() || is_library) return normal(path);
+  }
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? fs::path() : program;
+}
+
+// PREFIX/share/qsmpc/models, as seen from PREFIX/bin/qsmpc or PREFIX/lib/ARCHITECTURE/libqsmpc.so.
 fs::path installed_models_folder() {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? fs::path() : program.parent_path().parent_path() / "share" / "qsmpc" / "models";
+  fs::path prefix = own_object().parent_path();
+  for (int level = 0; level < 2; ++level) {
+    prefix = prefix.parent_path();
+    fs::path models = prefix / "share" / "qsmpc" / "models";
+    if (fs::is_directory(models, error)) return models;
+  }
+  return {};
 }
 
 // The files with the given extension in a folder of the shipped models, by name.
@@ -88,7 +110,7 @@ std::string shipped_models_folder() {
   std::error_code error;
   if (given != nullptr && *given != '\0') return normal(fs::absolute(given, error)).string();
   const fs::path installed = installed_models_folder();
-  if (!installed.empty() && fs::is_directory(installed, error)) return normal(installed).string();
+  if (!installed.empty()) return normal(installed).string();
   return normal(QSMPC_SOURCE_MODELS_DIR).string();
 }
 

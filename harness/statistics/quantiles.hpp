@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// Quantiles by nearest rank: the smallest value that at least the share q of the values do not
@@ -74,3 +76,5 @@ class RunningMean {
 };
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

@@ -15,6 +15,8 @@
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// Refers to the trace, which must outlive it.
@@ -61,3 +63,5 @@ class EpisodeView {
 };
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

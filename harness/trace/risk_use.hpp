@@ -5,6 +5,8 @@
 
 #include "harness/trace/trace.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// One limit, and what is certified of what it limits.
@@ -40,3 +42,5 @@ struct RiskUse {
 [[nodiscard]] bool exceeds_limits(const StepRecord& step, const Scenario::Risk& limits);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

@@ -11,6 +11,8 @@
 #include "harness/trace/risk_use.hpp"
 #include "harness/trace/trace.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 struct Summary {
@@ -67,3 +69,5 @@ struct SummaryOptions {
 [[nodiscard]] std::string summary_json(const EpisodeView& view, const SummaryOptions& options = {});
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

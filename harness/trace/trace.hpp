@@ -11,11 +11,13 @@
 #include "controller/certification/certificate.hpp"
 #include "controller/certification/error_budget.hpp"
 #include "controller/measure/measures.hpp"
-#include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/planning/cost/cost_parts.hpp"
 #include "harness/plant/plant.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "models/constants.hpp"
 #include "models/dynamics/dynamics.hpp"
+
+#pragma GCC visibility push(default)
 
 namespace qsmpc::harness {
 
@@ -111,3 +113,5 @@ struct Trace {
 [[nodiscard]] Eigen::Index completed_periods(const Trace& trace);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

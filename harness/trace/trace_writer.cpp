@@ -13,6 +13,7 @@
 #include "harness/trace/rows.hpp"
 #include "harness/trace/system_group.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_writer.hpp"
 #include "harness/trace/trace_layout.hpp"
 
 namespace qsmpc::harness {

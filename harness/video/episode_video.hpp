@@ -7,10 +7,11 @@
 #include <string>
 
 #include "harness/trace/episode_view.hpp"
-#include "harness/video/episode_painter.hpp"
 #include "harness/video/overlays.hpp"
 #include "harness/video/video_timings.hpp"
 #include "render/media/video_format.hpp"
+
+#pragma GCC visibility push(default)
 
 namespace qsmpc::harness {
 
@@ -45,3 +46,5 @@ void write_episode_still(const EpisodeView& view, const EpisodeVideoOptions& opt
                          const std::string& path);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

@@ -5,6 +5,8 @@
 #include <string_view>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 struct Overlays {
@@ -25,3 +27,5 @@ struct Overlays {
 [[nodiscard]] Overlays parse_overlays(std::string_view text, std::string_view option);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

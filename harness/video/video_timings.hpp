@@ -3,6 +3,8 @@
 
 #include <string>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::harness {
 
 /// Times are wall-clock times, so that they are longer where other work shares the processor.
@@ -38,3 +40,5 @@ struct VideoTimings {
 [[nodiscard]] VideoTimings read_video_timings(const std::string& path);
 
 }  // namespace qsmpc::harness
+
+#pragma GCC visibility pop

@@ -17,6 +17,8 @@
 
 #include <Eigen/Core>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::models {
 
 /// A batch of vectors, one coordinate a row and one particle a column, so that a coordinate of all
@@ -145,3 +147,5 @@ struct SystemEntry {
                                                             double time_step);
 
 }  // namespace qsmpc::models
+
+#pragma GCC visibility pop

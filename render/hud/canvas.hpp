@@ -14,6 +14,8 @@
 #include "render/colour.hpp"
 #include "render/frame.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::render {
 
 /// A place in an image: pixels from its upper left corner, x to the right and y down.
@@ -82,3 +84,5 @@ class Canvas {
 };
 
 }  // namespace qsmpc::render
+
+#pragma GCC visibility pop

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::render {
 
 enum class VideoFormat { kMp4, kWebm, kGif, kWebp };
@@ -37,3 +39,5 @@ inline constexpr int kBestQuality = 100;
 [[nodiscard]] bool is_animated_picture(VideoFormat format);
 
 }  // namespace qsmpc::render
+
+#pragma GCC visibility pop

@@ -6,6 +6,8 @@ target_compile_features(qsmpc_options INTERFACE cxx_std_20)
 target_compile_options(qsmpc_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wnull-dereference -Wdouble-promotion -Werror
+  # The shared library exports what the public headers declare, between pragmas, and nothing else.
+  -fvisibility=hidden -fvisibility-inlines-hidden
   # A contraction into a fused multiply-add would make results depend on the processor.
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 inline constexpr std::array<int, 2> kHigherOrders = {4, 8};
@@ -23,3 +25,5 @@ using HigherNorms = std::array<Eigen::VectorXd, kHigherOrders.size()>;
 }
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

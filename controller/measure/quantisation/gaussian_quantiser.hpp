@@ -17,6 +17,8 @@
 
 #include "controller/measure/measures.hpp"
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 enum class QuantiserKind {
@@ -71,3 +73,5 @@ struct GaussianQuantisation {
                                             QuantiserKind kind = QuantiserKind::kProduct);
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// What one or more terms of the cost (cost_terms.hpp) add up to, as files, pages and charts name
@@ -54,3 +56,5 @@ class CostParts {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

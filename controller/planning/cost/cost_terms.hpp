@@ -9,22 +9,12 @@
 
 #include "controller/planning/cost/cost_parts.hpp"
 #include "controller/planning/cost/penalty.hpp"
+#include "controller/planning/cost/quadratic_cost.hpp"
 #include "controller/planning/cost/stage_term.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::controller {
-
-/// Weights of Eq. 4-18 and 4-19 about a target state r.
-struct QuadraticCost {
-  Eigen::MatrixXd state;     ///< Q, state_dim x state_dim
-  Eigen::MatrixXd input;     ///< R, input_dim x input_dim
-  Eigen::MatrixXd terminal;  ///< Q_term, state_dim x state_dim
-  Eigen::VectorXd target;    ///< r, state_dim
-  /// States whose target is meant modulo 2π. A planner shifts the target, for each plan, to what is
-  /// nearest to the belief's mean; HorizonCost takes it as it is.
-  std::vector<int> angles{};
-};
 
 /// What the cost depends on besides the prediction; refers to objects that must outlive it.
 struct HorizonCostTerms {

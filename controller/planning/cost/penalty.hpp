@@ -11,6 +11,8 @@
 // gradient points the way out from everywhere.
 #pragma once
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 enum class PenaltyShape { kSmooth, kThesis };
@@ -23,3 +25,5 @@ struct Penalty {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

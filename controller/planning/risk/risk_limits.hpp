@@ -6,6 +6,8 @@
 #include <string_view>
 #include <vector>
 
+#pragma GCC visibility push(default)
+
 namespace qsmpc::controller {
 
 /// Upper limits of certified probabilities; infinite where there is none.
@@ -49,3 +51,5 @@ struct PlanRisk {
 };
 
 }  // namespace qsmpc::controller
+
+#pragma GCC visibility pop

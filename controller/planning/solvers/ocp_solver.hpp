@@ -18,21 +18,9 @@
 
 #include <Eigen/Core>
 
+#include "controller/planning/solvers/solver_status.hpp"
+
 namespace qsmpc::controller {
-
-enum class SolverStatus {
-  kConverged,         ///< a tolerance was met
-  kIterationLimit,    ///< best point within the allowed evaluations
-  kStalled,           ///< the line search found no further descent; best point so far
-  kDeadline,          ///< the time was up; best point so far
-  kInfeasible,        ///< the best point violates a constraint by more than the tolerance
-  kRiskExceeded,      ///< of a plan: its certificate is above a limit, and no better one was found
-  kNumericalTrouble,  ///< something was not finite; best finite point so far
-};
-
-/// "converged", "iteration_limit", "stalled", "deadline", "infeasible", "risk_exceeded" or
-/// "numerical_trouble".
-[[nodiscard]] const char* solver_status_name(SolverStatus status);
 
 /// Value at `z` (n); overwrites the gradient, which comes with n entries.
 using CostFunction = std::function<double(const Eigen::VectorXd& z, Eigen::VectorXd& gradient)>;

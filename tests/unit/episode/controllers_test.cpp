@@ -13,6 +13,7 @@
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/trace/trace_matchers.hpp"
 

@@ -12,6 +12,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_writer.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/unit/trace/trace_folder.hpp"
 #include "tests/unit/trace/trace_matchers.hpp"

@@ -1,4 +1,5 @@
 #include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_writer.hpp"
 
 #include <algorithm>
 #include <bit>

@@ -1,3 +1,4 @@
+#include "harness/video/episode_painter.hpp"
 #include "harness/video/episode_video.hpp"
 
 #include <algorithm>

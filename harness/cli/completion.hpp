@@ -1,0 +1,19 @@
+// Completion of command lines for shells, made from the commands.
+#pragma once
+
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace qsmpc::harness {
+
+/// A script for bash, to be sourced, or to stand as "qsmpc" in its folder of completions. Names of
+/// scenarios and campaigns are asked of the program when they are wanted.
+[[nodiscard]] std::string bash_completion(const CLI::App& app);
+
+/// The same for zsh: "_qsmpc" in a folder of its $fpath.
+[[nodiscard]] std::string zsh_completion(const CLI::App& app);
+
+}  // namespace qsmpc::harness
