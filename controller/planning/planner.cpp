@@ -33,6 +33,12 @@ Planner::Planner(const models::Dynamics& dynamics, PlannerSettings settings)
       effort_(settings_, evaluator_) {
   require(settings_.otherwise != RiskOtherwise::kBrake || !speeds_of(dynamics_).empty(),
           "a system without a speed among its states cannot brake");
+  if (settings_.otherwise == RiskOtherwise::kModel && settings_.model_error) {
+    PlannerSettings errorless = settings_;
+    errorless.model_error.reset();
+    errorless.otherwise = RiskOtherwise::kLeastRisk;
+    errorless_ = std::make_unique<Planner>(dynamics_, std::move(errorless));
+  }
 }
 
 void Planner::set_limits(const PlanRequest& request) {
@@ -68,7 +74,7 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
   }
   stopwatch.add_to(plan.timing.propagate);
   rounds_.optimise(plan);
-  if (evaluator_.risk() != nullptr) settle(plan);
+  if (evaluator_.risk() != nullptr) settle(plan, belief, request);
   Plan& made = *plan.current;
   made.fallback = (plan.failed || !std::isfinite(made.cost.total())) && last_ != nullptr;
   if (made.fallback) fall_back(made);
@@ -87,19 +93,22 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
 
 /// Where a limit of the risk is exceeded: looks for a plan within it once more, and else does what
 /// the settings say. Then notes how the plan goes on.
-void Planner::settle(PlanInProgress& plan) {
+void Planner::settle(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request) {
   if (kept_inputs_.size() > 0) shift_inputs(Eigen::MatrixXd(kept_inputs_), kept_inputs_);
   const bool usable = !plan.failed && std::isfinite(plan.current->cost.total());
   if (usable && !plan.current->risk.kept && !plan.late()) {
     if (kept_inputs_.size() > 0) try_tail(plan, false);
     if (!plan.current->risk.kept) choose_effort(plan);
-    if (!plan.current->risk.kept && plan.current->risk.severity > 0.0) rounds_.reduce_risk(plan);
+    if (!plan.current->risk.kept && plan.current->risk.severity > 0.0 && !errorless_) {
+      rounds_.reduce_risk(plan);
+    }
     const bool exceeded = !plan.current->risk.kept;
     if (exceeded && settings_.otherwise == RiskOtherwise::kPrevious && kept_inputs_.size() > 0) {
       try_tail(plan, true);
     }
     if (exceeded && settings_.otherwise == RiskOtherwise::kBrake) rounds_.brake(plan);
   }
+  if (errorless_) plan_without_error(plan, belief, request);
   if (!plan.current->risk.kept) {
     if (!plan.stopped()) plan.status = SolverStatus::kRiskExceeded;
   } else {
@@ -136,6 +145,29 @@ void Planner::try_tail(PlanInProgress& plan, bool in_any_case) {
   evaluator_.predict_and_evaluate(*plan.candidate);
   if (in_any_case || better(*plan.candidate, *plan.current)) plan.accept_candidate();
   stopwatch.add_to(plan.timing.propagate);
+}
+
+/// Where a limit is exceeded, makes the plan for the model alone the current one, certified with
+/// the error.
+void Planner::plan_without_error(PlanInProgress& plan, const Gaussian& belief,
+                                 const PlanRequest& request) {
+  const bool wanted = !plan.failed && !plan.current->risk.kept && !plan.late();
+  if (wanted) {
+    if (!errorless_goes_on_) errorless_->reset();
+    PlanRequest same = request;
+    same.deadline = plan.deadline;
+    const Plan& other = errorless_->plan(belief, same);
+    if (std::isfinite(other.cost.total())) {
+      PlanStopwatch stopwatch;
+      plan.candidate->policy = other.policy;
+      plan.candidate->gain_change = other.gain_change;
+      evaluator_.predict_and_evaluate(*plan.candidate);
+      plan.accept_candidate();
+      plan.evaluations += other.evaluations;
+      stopwatch.add_to(plan.timing.propagate);
+    }
+  }
+  errorless_goes_on_ = wanted;
 }
 
 /// Nothing usable came out: goes on with what was planned before.

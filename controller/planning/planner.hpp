@@ -12,6 +12,7 @@
 
 #include <array>
 #include <chrono>
+#include <memory>
 #include <optional>
 
 #include <Eigen/Core>
@@ -71,6 +72,7 @@ class Planner {
     failed_ = false;
     kept_inputs_.resize(0, 0);
     effort_.reset();
+    if (errorless_) errorless_->reset();
   }
 
   /// How far it is from `state` to the target the way that the guide knows, m; empty without one.
@@ -83,10 +85,11 @@ class Planner {
  private:
   void set_limits(const PlanRequest& request);
   void fall_back(Plan& plan);
-  void settle(PlanInProgress& plan);
+  void settle(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request);
   [[nodiscard]] bool begin_effort(const Plan& plan);
   void choose_effort(PlanInProgress& plan);
   void try_tail(PlanInProgress& plan, bool in_any_case);
+  void plan_without_error(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request);
 
   const models::Dynamics& dynamics_;
   PlannerSettings settings_;
@@ -99,6 +102,8 @@ class Planner {
   bool failed_ = false;          // the last plan fell back, or its solver met numerical trouble
   Eigen::MatrixXd kept_inputs_;  // of the last plan within its limits, as they go on now; or empty
   Plan prescribed_;
+  std::unique_ptr<Planner> errorless_;  // as this one, for the model alone; only for kModel
+  bool errorless_goes_on_ = false;      // whether it made the last plan
 };
 
 /// What `plan`, which `planner` made for `belief`, predicts; refers to all three.

@@ -85,7 +85,7 @@ struct Scenario {
     double stage = std::numeric_limits<double>::infinity();    ///< of each stage of a plan
     double plan = std::numeric_limits<double>::infinity();     ///< of any stage of a plan
     double mission = std::numeric_limits<double>::infinity();  ///< of the whole drive
-    std::string otherwise = "least_risk";  ///< "least_risk", "brake" or "previous"
+    std::string otherwise = "least_risk";  ///< a fallback of risk_otherwise_entries()
 
     [[nodiscard]] bool any() const {
       return stage < std::numeric_limits<double>::infinity() ||

@@ -14,6 +14,8 @@ const std::vector<RiskOtherwiseEntry>& risk_otherwise_entries() {
       {"least_risk", "the plan with the least certificate", RiskOtherwise::kLeastRisk},
       {"brake", "the plan that comes to rest soonest", RiskOtherwise::kBrake},
       {"previous", "the last plan within its limits goes on", RiskOtherwise::kPrevious},
+      {"model", "the plan within the limits for the model without its error",
+       RiskOtherwise::kModel},
   };
   return table;
 }

@@ -24,6 +24,7 @@ enum class RiskOtherwise {
   kLeastRisk,  ///< the plan with the least certificate
   kBrake,      ///< the plan that comes to rest soonest
   kPrevious,   ///< the last plan within its limits goes on
+  kModel,      ///< the plan within the limits for the model alone, without its error
 };
 
 struct RiskOtherwiseEntry {

@@ -11,6 +11,9 @@ namespace {
 constexpr NumberRange kProbability{.least = 0.0, .most = 1.0};
 
 void check_otherwise(const ScenarioReading& reading, Section& section) {
+  if (reading.scenario.risk.otherwise == "model" && !reading.scenario.model_error) {
+    section.note("otherwise", "least_risk, brake or previous, or a model_error to plan without");
+  }
   if (reading.scenario.risk.otherwise != "brake" || reading.dynamics == nullptr) return;
   if (controller::speeds_of(*reading.dynamics).empty()) {
     section.note("otherwise",

@@ -76,6 +76,46 @@ TEST(PlannerRisk, limits_are_kept_and_used_by_every_solver_and_policy) {
   }
 }
 
+/// What no plan is certified with.
+ModelError hopeless_error() { return model_error_of_size(Eigen::Vector3d(0.3, 0.3, 0.1)); }
+
+TEST(PlannerRisk, the_model_alone_is_planned_for_where_its_error_leaves_no_plan) {
+  const auto car = dubins_car();
+  const PlannerSettings without = limited(0.05);
+  PlannerSettings with = without;
+  with.model_error = hopeless_error();
+  with.otherwise = RiskOtherwise::kModel;
+  Planner planner(*car, with);
+  Planner errorless(*car, without);
+  for (int period = 0; period < 3; ++period) {
+    SCOPED_TRACE(period);
+    Gaussian belief = near_start();
+    belief.mean[0] += 0.1 * period;
+    const Plan& plan = planner.plan(belief, {.period = period});
+    const Plan& expected = errorless.plan(belief, {.period = period});
+    EXPECT_EQ(plan.policy.inputs, expected.policy.inputs);
+    EXPECT_EQ(plan.policy.gains, expected.policy.gains);
+    // What is certified is of the plant, and what is driven does not keep it.
+    EXPECT_TRUE(expected.risk.kept);
+    EXPECT_FALSE(plan.risk.kept);
+    EXPECT_GT(plan.risk.plan, expected.risk.plan);
+    EXPECT_EQ(plan.status, SolverStatus::kRiskExceeded);
+  }
+}
+
+TEST(PlannerRisk, the_error_counts_where_a_plan_keeps_its_limit_with_it) {
+  const auto car = dubins_car();
+  PlannerSettings settings = limited(0.05);
+  settings.model_error = model_error_of_size(Eigen::Vector3d(1e-4, 1e-4, 1e-4));
+  settings.otherwise = RiskOtherwise::kModel;
+  Planner planner(*car, settings);
+  settings.otherwise = RiskOtherwise::kLeastRisk;
+  Planner usual(*car, settings);
+  const Plan& plan = planner.plan(near_start());
+  EXPECT_TRUE(plan.risk.kept);
+  EXPECT_EQ(plan.policy.inputs, usual.plan(near_start()).policy.inputs);
+}
+
 TEST(PlannerRisk, every_bounding_of_the_inputs_keeps_limits) {
   const auto car = dubins_car();
   for (const InputBoundingEntry& bounding : input_boundings()) {
