@@ -1,7 +1,7 @@
 # The library as others use it: one shared library, its public headers, and the files by which CMake
 # and pkg-config find it.
 #
-# Components: program, models (what ships with the program), library, development.
+# Components, each a Debian package: program (with what it ships), library, development, documentation.
 
 set(qsmpc_rooms
   qsmpc_models qsmpc_controller qsmpc_render
@@ -59,4 +59,114 @@ install(CODE "
     COMMAND_ERROR_IS_FATAL ANY)" COMPONENT development)
 
 install(DIRECTORY models/campaigns models/mjcf models/scenarios
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/qsmpc/models COMPONENT models)
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/qsmpc/models COMPONENT program)
+
+# Manual pages and completion, which the program makes of its own commands.
+set(pages ${CMAKE_BINARY_DIR}/manual)
+add_custom_command(
+  OUTPUT ${pages}/made
+  DEPENDS qsmpc
+  COMMAND ${CMAKE_COMMAND} -E rm -rf ${pages}
+  COMMAND ${CMAKE_COMMAND} -E make_directory ${pages}/man1
+  COMMAND qsmpc help --write-manual ${pages}/man1
+  COMMAND sh -c "gzip -9n ${pages}/man1/*.1"
+  COMMAND sh -c "$<TARGET_FILE:qsmpc> completion bash > ${pages}/qsmpc"
+  COMMAND sh -c "$<TARGET_FILE:qsmpc> completion zsh > ${pages}/_qsmpc"
+  COMMAND ${CMAKE_COMMAND} -E touch ${pages}/made
+  VERBATIM)
+if(NOT QSMPC_SANITIZE)
+  add_custom_target(manual ALL DEPENDS ${pages}/made)
+  install(DIRECTORY ${pages}/man1 DESTINATION ${CMAKE_INSTALL_MANDIR} COMPONENT program)
+  install(FILES ${pages}/qsmpc
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT program)
+  install(FILES ${pages}/_qsmpc
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions COMPONENT program)
+endif()
+
+# The reference of the public headers, by Doxygen, for those who ask for the target.
+find_program(DOXYGEN doxygen)
+if(DOXYGEN)
+  set(reference ${CMAKE_BINARY_DIR}/reference)
+  configure_file(${CMAKE_SOURCE_DIR}/scripts/cmake/Doxyfile.in ${CMAKE_BINARY_DIR}/Doxyfile @ONLY)
+  add_custom_target(reference
+    COMMAND ${CMAKE_COMMAND} -E rm -rf ${reference} ${CMAKE_BINARY_DIR}/public
+    COMMAND ${CMAKE_COMMAND} -D SOURCE=${CMAKE_SOURCE_DIR} -D GENERATED=${CMAKE_BINARY_DIR}/generated
+      -D OUTPUT=${CMAKE_BINARY_DIR}/public/qsmpc -P ${CMAKE_SOURCE_DIR}/scripts/cmake/install_headers.cmake
+    COMMAND ${DOXYGEN} ${CMAKE_BINARY_DIR}/Doxyfile
+    VERBATIM)
+  install(DIRECTORY ${reference}/html DESTINATION ${CMAKE_INSTALL_DOCDIR}-doc/reference
+    COMPONENT documentation OPTIONAL)
+endif()
+install(DIRECTORY docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR}-doc COMPONENT documentation)
+
+# Debian packages: cpack --config build/…/CPackConfig.cmake
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME qsmpc)
+set(CPACK_PACKAGE_CONTACT "qsmpc developers <qsmpc@example.org>")
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL program library development documentation)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_COMPONENTS_GROUPING ONE_PER_GROUP)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS_PRIVATE_DIRS ${CMAKE_BINARY_DIR})
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+  OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+set(library_package libqsmpc${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME qsmpc)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME ${library_package})
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libqsmpc-dev)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_NAME qsmpc-doc)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SECTION doc)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_DOCUMENTATION_PACKAGE_SHLIBDEPS OFF)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF)
+# Loaded at run time, where something is drawn.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libosmesa6, fonts-dejavu-core, fonts-liberation")
+# The shipped scenarios, which the library finds by name.
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "qsmpc, libosmesa6, fonts-dejavu-core")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} (= ${PROJECT_VERSION}-1), libeigen3-dev")
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/debian/triggers)
+file(WRITE ${CMAKE_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
+file(CHMOD ${CMAKE_BINARY_DIR}/debian/triggers PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+string(CONCAT what
+  "Plans under uncertainty: turns a Gaussian belief into particles, certifies\n"
+  "the probability of being unsafe, and drives MuJoCo vehicles to see whether\n"
+  "that holds.")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "certified stochastic model predictive control on MuJoCo\n${what}")
+set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
+  "certified stochastic model predictive control - library\n${what}\n.\nThis package has the shared library.")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+  "certified stochastic model predictive control - headers\n${what}\n.\nThis package has what programs are built with.")
+set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
+  "certified stochastic model predictive control - documents\n${what}\n.\nThis package has the documents and the reference of the library.")
+# Each package says the licences of what it is linked with, and what has changed.
+find_program(GZIP gzip REQUIRED)
+execute_process(COMMAND ${GZIP} -9nc INPUT_FILE ${CMAKE_SOURCE_DIR}/CHANGELOG.md
+  OUTPUT_FILE ${CMAKE_BINARY_DIR}/debian/changelog.gz COMMAND_ERROR_IS_FATAL ANY)
+string(TIMESTAMP date "%a, %d %b %Y %H:%M:%S +0000" UTC)
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/debian/changelog CONTENT "qsmpc (@PROJECT_VERSION@-1) unstable; urgency=medium
+
+  * What has changed is in changelog.gz.
+
+ -- @CPACK_PACKAGE_CONTACT@  @date@
+" @ONLY)
+execute_process(COMMAND ${GZIP} -9nc INPUT_FILE ${CMAKE_BINARY_DIR}/debian/changelog
+  OUTPUT_FILE ${CMAKE_BINARY_DIR}/debian/changelog.Debian.gz COMMAND_ERROR_IS_FATAL ANY)
+foreach(pair program:qsmpc library:${library_package} development:libqsmpc-dev documentation:qsmpc-doc)
+  string(REPLACE ":" ";" pair ${pair})
+  list(GET pair 0 component)
+  list(GET pair 1 package)
+  install(FILES ${CMAKE_SOURCE_DIR}/scripts/packages/copyright ${CMAKE_BINARY_DIR}/debian/changelog.gz
+                ${CMAKE_BINARY_DIR}/debian/changelog.Debian.gz
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+endforeach()
+include(CPack)
