@@ -54,6 +54,18 @@ DerivativeBounds unknown_derivative_bounds(int state_dim, int input_dim) {
   return bounds;
 }
 
+void check_box(const SystemDescription& system, const Eigen::Ref<const Eigen::VectorXd>& lower,
+               const Eigen::Ref<const Eigen::VectorXd>& upper) {
+  const Eigen::Index arguments = std::ssize(system.states) + std::ssize(system.inputs);
+  if (lower.size() != arguments || upper.size() != arguments) {
+    throw std::invalid_argument(system.name + ": a box must bound every state and input");
+  }
+  if (!(lower.array() <= upper.array()).all() || !(lower.array() < kInfinity).all() ||
+      !(upper.array() > -kInfinity).all()) {
+    throw std::invalid_argument(system.name + ": a box must have lower ≤ upper");
+  }
+}
+
 DerivativeBounds Dynamics::derivative_bounds(
     const Eigen::Ref<const Eigen::VectorXd>& /*lower*/,
     const Eigen::Ref<const Eigen::VectorXd>& /*upper*/) const {

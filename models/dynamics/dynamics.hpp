@@ -75,6 +75,11 @@ struct DerivativeBounds {
 /// Bounds that say nothing, for f with these dimensions.
 [[nodiscard]] DerivativeBounds unknown_derivative_bounds(int state_dim, int input_dim);
 
+/// Throws std::invalid_argument unless lower ≤ upper is a box of (x, u) of `system` with a point in
+/// it.
+void check_box(const SystemDescription& system, const Eigen::Ref<const Eigen::VectorXd>& lower,
+               const Eigen::Ref<const Eigen::VectorXd>& upper);
+
 /// x⁺ = f(x, u) over one control period. Implementations hold constants only: every function is
 /// const, thread-safe and, but for results returned by value, allocates nothing.
 class Dynamics {

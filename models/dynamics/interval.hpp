@@ -161,4 +161,91 @@ inline Interval tan(const Interval& angle) {
                            interval_detail::kLibraryRoundings);
 }
 
+/// Monotone; its values are above 0 even where they underflow.
+inline Interval exp(const Interval& a) {
+  const Interval range = Interval::rounded(std::exp(a.lower()), std::exp(a.upper()),
+                                           interval_detail::kLibraryRoundings);
+  return {std::max(range.lower(), 0.0),
+          std::max(range.upper(), std::numeric_limits<double>::denorm_min())};
+}
+
+/// Of the part of the interval that is above zero; everything where there is none.
+inline Interval log(const Interval& a) {
+  if (!(a.upper() > 0.0)) return Interval::everything();
+  return Interval::rounded(std::log(std::max(a.lower(), 0.0)), std::log(a.upper()),
+                           interval_detail::kLibraryRoundings);
+}
+
+inline Interval atan(const Interval& a) {
+  return Interval::rounded(std::atan(a.lower()), std::atan(a.upper()),
+                           interval_detail::kLibraryRoundings);
+}
+
+/// Everything where the interval leaves [-1, 1].
+inline Interval asin(const Interval& a) {
+  if (!(a.lower() >= -1.0 && a.upper() <= 1.0)) return Interval::everything();
+  return Interval::rounded(std::asin(a.lower()), std::asin(a.upper()),
+                           interval_detail::kLibraryRoundings);
+}
+inline Interval acos(const Interval& a) {
+  if (!(a.lower() >= -1.0 && a.upper() <= 1.0)) return Interval::everything();
+  return Interval::rounded(std::acos(a.upper()), std::acos(a.lower()),
+                           interval_detail::kLibraryRoundings);
+}
+
+inline Interval sinh(const Interval& a) {
+  return Interval::rounded(std::sinh(a.lower()), std::sinh(a.upper()),
+                           interval_detail::kLibraryRoundings);
+}
+inline Interval cosh(const Interval& a) {
+  const double low = std::abs(a.lower());
+  const double high = std::abs(a.upper());
+  const double least = a.contains(0.0) ? 0.0 : std::min(low, high);
+  return Interval::rounded(std::cosh(least), std::cosh(std::max(low, high)),
+                           interval_detail::kLibraryRoundings);
+}
+inline Interval tanh(const Interval& a) {
+  const Interval range = Interval::rounded(std::tanh(a.lower()), std::tanh(a.upper()),
+                                           interval_detail::kLibraryRoundings);
+  return {std::max(range.lower(), -1.0), std::min(range.upper(), 1.0)};
+}
+
+inline Interval abs(const Interval& a) {
+  if (a.lower() >= 0.0) return a;
+  if (a.upper() <= 0.0) return -a;
+  return {0.0, std::max(-a.lower(), a.upper())};
+}
+inline Interval min(const Interval& a, const Interval& b) {
+  return {std::min(a.lower(), b.lower()), std::min(a.upper(), b.upper())};
+}
+inline Interval max(const Interval& a, const Interval& b) {
+  return {std::max(a.lower(), b.lower()), std::max(a.upper(), b.upper())};
+}
+/// The smallest interval that holds both.
+inline Interval hull(const Interval& a, const Interval& b) {
+  return {std::min(a.lower(), b.lower()), std::max(a.upper(), b.upper())};
+}
+/// What is in both, where it is known that something is.
+inline Interval intersection(const Interval& a, const Interval& b) {
+  return {std::max(a.lower(), b.lower()), std::min(a.upper(), b.upper())};
+}
+
+/// Whether atan2 is continuous over the box: neither the origin nor the cut, where y = 0 and
+/// x ≤ 0, is in it.
+inline bool atan2_is_continuous(const Interval& y, const Interval& x) {
+  return x.lower() > 0.0 || !y.contains(0.0);
+}
+
+/// The whole turn where atan2 is not continuous over the box. Else the box is convex without the
+/// origin, so that the extreme angles are at its corners.
+inline Interval atan2(const Interval& y, const Interval& x) {
+  const Interval turn = Interval::rounded(-std::numbers::pi, std::numbers::pi);
+  if (!atan2_is_continuous(y, x)) return turn;
+  const double corners[] = {std::atan2(y.lower(), x.lower()), std::atan2(y.lower(), x.upper()),
+                            std::atan2(y.upper(), x.lower()), std::atan2(y.upper(), x.upper())};
+  return Interval::rounded(*std::min_element(corners, corners + 4),
+                           *std::max_element(corners, corners + 4),
+                           interval_detail::kLibraryRoundings);
+}
+
 }  // namespace qsmpc::models

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 
@@ -98,6 +99,109 @@ class SecondOrderJet {
     const Interval slope = Interval(1.0) + square(tangent);
     return compose(f, tangent, slope, Interval(2.0) * tangent * slope);
   }
+  friend SecondOrderJet square(const SecondOrderJet& f) {
+    return compose(f, square(f.value_), Interval(2.0) * f.value_, Interval(2.0));
+  }
+  friend SecondOrderJet exp(const SecondOrderJet& f) {
+    const Interval power = exp(f.value_);
+    return compose(f, power, power, power);
+  }
+  friend SecondOrderJet log(const SecondOrderJet& f) {
+    const Interval slope = inverse(f.value_);
+    return compose(f, log(f.value_), slope, -square(slope));
+  }
+  friend SecondOrderJet asin(const SecondOrderJet& f) {
+    const Interval slope = inverse(sqrt(Interval(1.0) - square(f.value_)));
+    return compose(f, asin(f.value_), slope, f.value_ * (slope * square(slope)));
+  }
+  friend SecondOrderJet acos(const SecondOrderJet& f) {
+    const Interval slope = -inverse(sqrt(Interval(1.0) - square(f.value_)));
+    return compose(f, acos(f.value_), slope, f.value_ * (slope * square(slope)));
+  }
+  /// |h''| = |2x/(1 + x²)²| is at most 3√3/8 < 0.65.
+  friend SecondOrderJet atan(const SecondOrderJet& f) {
+    const Interval slope = inverse(Interval(1.0) + square(f.value_));
+    const Interval curvature = -(Interval(2.0) * f.value_ * square(slope));
+    return compose(f, atan(f.value_), slope, intersection(curvature, Interval(-0.65, 0.65)));
+  }
+  friend SecondOrderJet sinh(const SecondOrderJet& f) {
+    const Interval sine = sinh(f.value_);
+    return compose(f, sine, cosh(f.value_), sine);
+  }
+  friend SecondOrderJet cosh(const SecondOrderJet& f) {
+    const Interval cosine = cosh(f.value_);
+    return compose(f, cosine, sinh(f.value_), cosine);
+  }
+  friend SecondOrderJet tanh(const SecondOrderJet& f) {
+    const Interval tangent = tanh(f.value_);
+    const Interval slope = Interval(1.0) - square(tangent);
+    return compose(f, tangent, slope, Interval(-2.0) * tangent * slope);
+  }
+  /// At a kink the slope is between those of the two sides, and no second derivative is known.
+  friend SecondOrderJet abs(const SecondOrderJet& f) {
+    if (f.value_.lower() >= 0.0) return f;
+    if (f.value_.upper() <= 0.0) return -f;
+    return compose(f, abs(f.value_), Interval(-1.0, 1.0), Interval::everything());
+  }
+  friend SecondOrderJet min(const SecondOrderJet& f, const SecondOrderJet& g) {
+    if (f.value_.upper() <= g.value_.lower()) return f;
+    if (g.value_.upper() <= f.value_.lower()) return g;
+    return either(f, g, min(f.value_, g.value_));
+  }
+  friend SecondOrderJet max(const SecondOrderJet& f, const SecondOrderJet& g) {
+    if (f.value_.lower() >= g.value_.upper()) return f;
+    if (g.value_.lower() >= f.value_.upper()) return g;
+    return either(f, g, max(f.value_, g.value_));
+  }
+  /// With r² = x² + y²: ∂/∂y = x/r², ∂/∂x = −y/r²; nothing is known across the cut and at 0.
+  friend SecondOrderJet atan2(const SecondOrderJet& y, const SecondOrderJet& x) {
+    const Interval value = atan2(y.value_, x.value_);
+    if (!atan2_is_continuous(y.value_, x.value_)) return unknown(y, x, value);
+    const Interval by_square = inverse(square(x.value_) + square(y.value_));
+    const Interval by_y = x.value_ * by_square;
+    const Interval by_x = -(y.value_ * by_square);
+    const Interval mixed = square(by_x) - square(by_y);
+    const Interval twice = Interval(2.0) * (by_x * by_y);  // ∂²/∂y² = −∂²/∂x²
+    SecondOrderJet result;
+    result.variables_ = y.variables_ | x.variables_;
+    result.value_ = value;
+    for_each(result.variables_,
+             [&](int a) { result.gradient_[a] = by_y * y.gradient_[a] + by_x * x.gradient_[a]; });
+    for_each_pair(result.variables_, [&](int a, int b, int ab) {
+      const Interval& ya = y.gradient_[a];
+      const Interval& yb = y.gradient_[b];
+      const Interval& xa = x.gradient_[a];
+      const Interval& xb = x.gradient_[b];
+      result.hessian_[ab] = by_y * y.hessian_[ab] + by_x * x.hessian_[ab] +
+                            twice * (a == b ? square(ya) - square(xa) : ya * yb - xa * xb) +
+                            mixed * (ya * xb + yb * xa);
+    });
+    return result;
+  }
+  /// Whole exponents of any base; others of a base above 0.
+  friend SecondOrderJet pow(const SecondOrderJet& f, double exponent) {
+    constexpr double kMostFactors = 64.0;
+    if (exponent < 0.0) return inverse(pow(f, -exponent));
+    if (exponent != std::floor(exponent) || exponent > kMostFactors) {
+      return exponent == 0.5 ? sqrt(f) : exp(exponent * log(f));
+    }
+    if (exponent == 0.0) return 1.0;
+    if (exponent == 1.0) return f;
+    const SecondOrderJet half = square(pow(f, std::floor(0.5 * exponent)));
+    return std::fmod(exponent, 2.0) == 0.0 ? half : f * half;
+  }
+  friend SecondOrderJet pow(const SecondOrderJet& f, int exponent) {
+    return pow(f, static_cast<double>(exponent));
+  }
+  friend SecondOrderJet pow(const SecondOrderJet& f, const SecondOrderJet& exponent) {
+    return exp(exponent * log(f));
+  }
+
+  SecondOrderJet& operator+=(const SecondOrderJet& other) { return *this = *this + other; }
+  SecondOrderJet& operator-=(const SecondOrderJet& other) { return *this = *this - other; }
+  SecondOrderJet& operator*=(const SecondOrderJet& other) { return *this = *this * other; }
+  SecondOrderJet& operator/=(const SecondOrderJet& other) { return *this = *this / other; }
+
   friend SecondOrderJet sqrt(const SecondOrderJet& f) {
     const Interval root = sqrt(f.value_);
     const Interval slope = Interval(0.5) * inverse(root);
@@ -147,6 +251,26 @@ class SecondOrderJet {
     for_each_pair(result.variables_, [&](int, int, int ab) {
       result.hessian_[ab] = function(f.hessian_[ab], g.hessian_[ab]);
     });
+    return result;
+  }
+
+  /// f or g, where either may be the one: a kink, at which no second derivative is known.
+  static SecondOrderJet either(const SecondOrderJet& f, const SecondOrderJet& g,
+                               const Interval& value) {
+    SecondOrderJet result = unknown(f, g, value);
+    for_each(result.variables_,
+             [&](int a) { result.gradient_[a] = hull(f.gradient_[a], g.gradient_[a]); });
+    return result;
+  }
+  /// A function of f and g of which the values alone are known.
+  static SecondOrderJet unknown(const SecondOrderJet& f, const SecondOrderJet& g,
+                                const Interval& value) {
+    SecondOrderJet result;
+    result.variables_ = f.variables_ | g.variables_;
+    result.value_ = value;
+    for_each(result.variables_, [&](int a) { result.gradient_[a] = Interval::everything(); });
+    for_each_pair(result.variables_,
+                  [&](int, int, int ab) { result.hessian_[ab] = Interval::everything(); });
     return result;
   }
 

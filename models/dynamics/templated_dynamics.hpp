@@ -10,14 +10,12 @@
 // override `step` and `pullback`; the tests hold the overrides against what is derived here.
 #pragma once
 
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 #include <unsupported/Eigen/AutoDiff>
 
-#include "models/constants.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "models/dynamics/interval.hpp"
 #include "models/dynamics/second_order_jet.hpp"
@@ -71,7 +69,7 @@ class TemplatedDynamics : public Dynamics {
   [[nodiscard]] DerivativeBounds derivative_bounds(
       const Eigen::Ref<const Eigen::VectorXd>& lower,
       const Eigen::Ref<const Eigen::VectorXd>& upper) const final {
-    check_box(lower, upper);
+    check_box(description_, lower, upper);
     Jet z[kArguments];
     Jet next[kStateDim];
     for (int a = 0; a < kArguments; ++a) z[a] = Jet::variable(Interval(lower[a], upper[a]), a);
@@ -101,18 +99,6 @@ class TemplatedDynamics : public Dynamics {
   using Jacobian = Eigen::Matrix<double, kStateDim, kArguments>;
   using Jet = SecondOrderJet<kArguments>;
   using Dual = Eigen::AutoDiffScalar<Eigen::Matrix<double, kArguments, 1>>;
-
-  /// Throws std::invalid_argument unless lower ≤ upper is a box of (x, u) with a point in it.
-  void check_box(const Eigen::Ref<const Eigen::VectorXd>& lower,
-                 const Eigen::Ref<const Eigen::VectorXd>& upper) const {
-    if (lower.size() != kArguments || upper.size() != kArguments) {
-      throw std::invalid_argument(description_.name + ": a box must bound every state and input");
-    }
-    if (!(lower.array() <= upper.array()).all() || !(lower.array() < kInfinity).all() ||
-        !(upper.array() > -kInfinity).all()) {
-      throw std::invalid_argument(description_.name + ": a box must have lower ≤ upper");
-    }
-  }
 
   /// [∂f/∂x, ∂f/∂u] by forward-mode differentiation.
   [[nodiscard]] Jacobian differentiate(const Eigen::Matrix<double, kStateDim, 1>& state,

@@ -140,6 +140,28 @@ TEST_P(Bounds, are_never_below_the_simulated_truth) {
   for (const auto& [system, count] : tally.systems) RecordProperty(system, count);
 }
 
+int own_problem_count() { return by_effort(96, 96, 2000); }
+
+class BoundsOfOwnSystems : public ::testing::TestWithParam<int> {};
+
+TEST_P(BoundsOfOwnSystems, are_never_below_the_simulated_truth) {
+  const int shard = GetParam();
+  Generator generator(104729 + static_cast<std::uint64_t>(shard));
+  Tally tally;
+  for (int index = shard; index < own_problem_count(); index += kShards) {
+    const Problem problem = random_own_problem(generator);
+    check_problem(problem, problem.system + " " + std::to_string(index), generator, tally);
+  }
+  EXPECT_GT(tally.informative, tally.stages / 8);
+  EXPECT_GT(tally.nontrivial, tally.informative / 3);
+  EXPECT_GT(tally.finite_w2, tally.stages / 2);
+  EXPECT_GE(tally.systems.size(), 2U);
+  RecordProperty("informative", tally.informative);
+  RecordProperty("nontrivial", tally.nontrivial);
+  for (const auto& [system, count] : tally.systems) RecordProperty(system, count);
+}
+
+INSTANTIATE_TEST_SUITE_P(shards, BoundsOfOwnSystems, ::testing::Range(0, kShards));
 INSTANTIATE_TEST_SUITE_P(shards, Bounds, ::testing::Range(0, kShards));
 
 }  // namespace certificate_soundness_test

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "models/constants.hpp"
+#include "tests/support/own_systems.hpp"
 
 namespace qsmpc::testing {
 
@@ -182,12 +183,14 @@ void random_policy(Generator& generator, Problem& problem) {
 
 }  // namespace
 
-Problem random_problem(Generator& generator) {
-  const Family family = random_family(generator);
+namespace {
+
+Problem random_problem_of(Generator& generator, const Family& family,
+                          std::unique_ptr<const models::Dynamics> dynamics) {
   const Eigen::Index dim = family.start.size();
   Problem problem;
   problem.system = family.system;
-  problem.dynamics = models::make_dynamics(family.system, family.parameters, kTimeStep);
+  problem.dynamics = std::move(dynamics);
   problem.belief = {
       .mean = family.start,
       .covariance = random_covariance(generator, dim, -2.5, std::log10(family.largest_deviation))};
@@ -210,6 +213,38 @@ Problem random_problem(Generator& generator) {
   settings.safe_set.body = random_body(generator, family, spread);
   if (chance(generator, 0.3)) settings.risk.plan = log_uniform(generator, -3.0, -0.3);
   return problem;
+}
+
+/// Either system, by equations or in C++.
+Family random_own_family(Generator& generator) {
+  const std::string how = chance(generator, 0.5) ? "" : "_by_equations";
+  if (chance(generator, 0.5)) {
+    Eigen::VectorXd start = uniform_vector(generator, 5, -0.5, 0.5);
+    start[3] = uniform(generator, 0.3, 2.0);
+    return {.system = "lag_unicycle" + how,
+            .parameters = {},
+            .start = start,
+            .walls = {0, 1, 2},
+            .largest_deviation = 0.2};
+  }
+  return {.system = "planar_quadrotor" + how,
+          .parameters = {},
+          .start = uniform_vector(generator, 6, -0.3, 0.3),
+          .walls = {0, 1},
+          .largest_deviation = 0.2};
+}
+
+}  // namespace
+
+Problem random_problem(Generator& generator) {
+  const Family family = random_family(generator);
+  return random_problem_of(generator, family,
+                           models::make_dynamics(family.system, family.parameters, kTimeStep));
+}
+
+Problem random_own_problem(Generator& generator) {
+  const Family family = random_own_family(generator);
+  return random_problem_of(generator, family, make_any_dynamics(family.system, kTimeStep));
 }
 
 }  // namespace qsmpc::testing

@@ -26,4 +26,7 @@ struct Problem {
 /// plan's risk.
 [[nodiscard]] Problem random_problem(Generator& generator);
 
+/// The same of a system of a user's: of tests/support/own_systems.hpp.
+[[nodiscard]] Problem random_own_problem(Generator& generator);
+
 }  // namespace qsmpc::testing

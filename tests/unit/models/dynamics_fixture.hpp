@@ -1,4 +1,4 @@
-// Every system of the table, for tests that each system must pass.
+// Every system of the table, and those of users, for tests that each system must pass.
 #pragma once
 
 #include <memory>
@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "models/dynamics/dynamics.hpp"
+#include "tests/support/own_systems.hpp"
 
 namespace qsmpc::testing {
 
@@ -22,7 +23,7 @@ inline models::StateBatch random_batch(std::mt19937_64& generator, Eigen::Index 
 
 class EverySystem : public ::testing::TestWithParam<std::string> {
  protected:
-  EverySystem() : dynamics_(models::make_dynamics(GetParam(), {}, kTimeStep)) {}
+  EverySystem() : dynamics_(make_any_dynamics(GetParam(), kTimeStep)) {}
 
   [[nodiscard]] const models::Dynamics& dynamics() const { return *dynamics_; }
   /// Within ±4 of zero in every coordinate, but for a car's speed, which is positive.
@@ -60,6 +61,7 @@ class EverySystem : public ::testing::TestWithParam<std::string> {
 inline std::vector<std::string> system_names() {
   std::vector<std::string> names;
   for (const models::SystemEntry& entry : models::systems()) names.push_back(entry.name);
+  names.insert(names.end(), own_system_names().begin(), own_system_names().end());
   return names;
 }
 

@@ -69,7 +69,17 @@ std::vector<Unary> unary_functions() {
       {"sqrt", [](const Interval& a) { return sqrt(a); }, [](double a) { return std::sqrt(a); }},
       {"sin", [](const Interval& a) { return sin(a); }, [](double a) { return std::sin(a); }},
       {"cos", [](const Interval& a) { return cos(a); }, [](double a) { return std::cos(a); }},
-      {"tan", [](const Interval& a) { return tan(a); }, [](double a) { return std::tan(a); }}};
+      {"tan", [](const Interval& a) { return tan(a); }, [](double a) { return std::tan(a); }},
+      {"exp", [](const Interval& a) { return exp(a); }, [](double a) { return std::exp(a); }},
+      {"log", [](const Interval& a) { return log(a); }, [](double a) { return std::log(a); }},
+      {"asin", [](const Interval& a) { return asin(a); }, [](double a) { return std::asin(a); }},
+      {"acos", [](const Interval& a) { return acos(a); }, [](double a) { return std::acos(a); }},
+      {"atan", [](const Interval& a) { return atan(a); }, [](double a) { return std::atan(a); }},
+      {"sinh", [](const Interval& a) { return sinh(a); }, [](double a) { return std::sinh(a); }},
+      {"cosh", [](const Interval& a) { return cosh(a); }, [](double a) { return std::cosh(a); }},
+      {"tanh", [](const Interval& a) { return tanh(a); }, [](double a) { return std::tanh(a); }},
+      {"abs", [](const Interval& a) { return abs(a); }, [](double a) { return std::abs(a); }},
+  };
 }
 
 TEST(Interval, functions_enclose_their_values_and_are_never_nan) {
@@ -96,7 +106,10 @@ TEST(Interval, operations_enclose_their_values_and_are_never_nan) {
       const Interval difference = a - b;
       const Interval product = a * b;
       const Interval quotient = a / b;
-      for (const Interval& range : {sum, difference, product, quotient}) {
+      const Interval angle = atan2(a, b);
+      const Interval least = min(a, b);
+      const Interval most = max(a, b);
+      for (const Interval& range : {sum, difference, product, quotient, angle, least, most}) {
         EXPECT_TRUE(range.lower() <= range.upper());
       }
       for (int sample = 0; sample < 10; ++sample) {
@@ -105,6 +118,9 @@ TEST(Interval, operations_enclose_their_values_and_are_never_nan) {
         EXPECT_TRUE(sum.contains(s + t));
         EXPECT_TRUE(difference.contains(s - t));
         EXPECT_TRUE(product.contains(s * t));
+        EXPECT_TRUE(angle.contains(std::atan2(s, t))) << s << ", " << t;
+        EXPECT_TRUE(least.contains(std::min(s, t)));
+        EXPECT_TRUE(most.contains(std::max(s, t)));
         if (t != 0.0) {
           EXPECT_TRUE(quotient.contains(s / t));
         }

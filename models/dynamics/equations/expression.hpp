@@ -1,0 +1,70 @@
+// Formulas as users write them, read into a list of steps: "x + time_step * v * cos(heading)".
+//
+//   const Expression formula = parse_expression("-x^2 + 3");
+//   // names: x; steps: x 2 power negate 3 add
+//
+// + - * / and ^ (or **) with their usual precedence: -x^2 is -(x^2), and 2^3^2 is 2^(3^2).
+#pragma once
+
+#include <cstddef>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace qsmpc::models {
+
+/// What a formula does not say as it should.
+class ExpressionError : public std::invalid_argument {
+ public:
+  /// column: of the character in the formula, from 1; 0 where it is of the whole of it.
+  ExpressionError(std::size_t column, const std::string& found, const std::string& expected);
+  /// Of a name (or "the function '…'") that is none of `known`.
+  ExpressionError(std::size_t column, const std::string& found, std::string unknown,
+                  std::vector<std::string> known);
+
+  [[nodiscard]] std::size_t column() const { return column_; }
+  [[nodiscard]] const std::string& found() const { return found_; }
+  [[nodiscard]] const std::string& expected() const { return expected_; }
+  /// The name that is not known, and those that are; empty where it is something else.
+  [[nodiscard]] const std::string& unknown() const { return unknown_; }
+  [[nodiscard]] const std::vector<std::string>& known() const { return known_; }
+
+ private:
+  std::size_t column_;
+  std::string found_;
+  std::string expected_;
+  std::string unknown_;
+  std::vector<std::string> known_;
+};
+
+/// What a formula may call.
+struct ExpressionFunction {
+  const char* name;
+  int arguments;
+};
+[[nodiscard]] const std::vector<ExpressionFunction>& expression_functions();
+
+/// The ratio of a circle's circumference to its diameter, in formulas.
+inline constexpr const char* kPiName = "pi";
+
+/// A formula's steps in the order in which they are done, each on the results of those before it.
+struct Expression {
+  enum class Kind { kNumber, kName, kNegate, kAdd, kSubtract, kMultiply, kDivide, kPower, kCall };
+  struct Step {
+    Kind kind;
+    double number = 0.0;     ///< of a number
+    std::string name{};      ///< of a name or a function
+    std::size_t column = 0;  ///< where it begins, from 1
+  };
+  std::vector<Step> steps;
+};
+
+/// Throws ExpressionError on what is no formula, on an unknown function or on a wrong number of
+/// arguments.
+[[nodiscard]] Expression parse_expression(std::string_view text);
+
+/// Whether `text` is a letter or _, then letters, digits and _.
+[[nodiscard]] bool is_expression_name(std::string_view text);
+
+}  // namespace qsmpc::models
