@@ -33,6 +33,13 @@ class SimulatorError : public InputError {
   using InputError::InputError;
 };
 
+/// A controller outside of the program that does not do what it should: it ended, was late or
+/// answered wrongly. An episode takes it as a fault of its controller.
+class ControllerError : public InputError {
+ public:
+  using InputError::InputError;
+};
+
 /// A file or folder that cannot be read or written. Exit code 3.
 class IoError : public std::runtime_error {
  public:

@@ -9,6 +9,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -83,8 +84,13 @@ class Controller {
   /// numbers that are not finite.
   virtual const Decision& decide(const Situation& situation) = 0;
 
-  /// Forgets the periods so far: the next one is the first of another drive.
-  virtual void reset() {}
+  /// Forgets the periods so far: the next one is the first of another drive. `seed`: of that drive,
+  /// for controllers that draw random numbers.
+  virtual void reset(std::uint64_t seed) { (void)seed; }
+  void reset() { reset(0); }
+
+  /// What it has to say to people about the drive so far; most say nothing.
+  [[nodiscard]] virtual std::string log() const { return {}; }
 };
 
 /// About what "lqr" linearises.

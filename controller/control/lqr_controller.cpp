@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "controller/control/controller.hpp"
+#include "controller/control/path_cost.hpp"
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/start/first_guess.hpp"
 #include "models/constants.hpp"
@@ -96,18 +97,21 @@ class PathRegulator final : public Controller {
         target_(problem.cost.target) {
     policy_.bounds = problem.bounds;
     trial_.bounds = problem.bounds;
-    reset();
+    reset(0);
   }
 
   const Decision& decide(const Situation& situation) override;
 
-  void reset() override {
+  using Controller::reset;
+  void reset(std::uint64_t /*seed*/) override {
     policy_.inputs = resting_input(problem_.bounds).replicate(1, problem_.horizon);
     under_way_ = false;
   }
 
  private:
-  [[nodiscard]] CostParts cost_of(const Policy& path);
+  [[nodiscard]] CostParts cost_of(const Policy& path) {
+    return path_cost(path, problem_.cost, target_, cost_scratch_);
+  }
   /// Scratch of the sweeps, so that no period but the first allocates.
   struct Sweep {
     Eigen::MatrixXd a;
@@ -141,27 +145,9 @@ class PathRegulator final : public Controller {
   Eigen::MatrixXd steps_;  // input_dim x horizon: what a sweep adds to the inputs
   LqrScratch scratch_;
   Sweep sweep_;
+  PathCostScratch cost_scratch_;
   Decision decision_;
 };
-
-CostParts PathRegulator::cost_of(const Policy& path) {
-  double state = 0.0;
-  double input = 0.0;
-  double terminal = 0.0;
-  for (Eigen::Index k = 0; k <= path.horizon(); ++k) {
-    sweep_.away = path.states.col(k) - target_;
-    if (k == path.horizon()) {
-      sweep_.next_slope.noalias() = problem_.cost.terminal * sweep_.away;
-      terminal = sweep_.away.dot(sweep_.next_slope);
-    } else {
-      sweep_.next_slope.noalias() = problem_.cost.state * sweep_.away;
-      state += 0.5 * sweep_.away.dot(sweep_.next_slope);
-      sweep_.by_input.noalias() = problem_.cost.input * path.inputs.col(k);
-      input += path.inputs.col(k).dot(sweep_.by_input);
-    }
-  }
-  return {{"state", state}, {"input", input}, {"terminal", terminal}};
-}
 
 /// The backward sweep about the path: gains, and the steps of the affine problem's inputs.
 void PathRegulator::linearise() {
@@ -246,7 +232,7 @@ const Decision& PathRegulator::decide(const Situation& situation) {
     shift_inputs(policy_.inputs, trial_.inputs);
     std::swap(policy_.inputs, trial_.inputs);
   } else {
-    reset();
+    reset(0);
   }
   nominal_states(dynamics_, situation.belief.mean, policy_.inputs, policy_.states);
   cost_ = cost_of(policy_);

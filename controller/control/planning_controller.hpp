@@ -24,7 +24,8 @@ class PlanningController final : public Controller {
   }
 
   const Decision& decide(const Situation& situation) override;
-  void reset() override {
+  using Controller::reset;
+  void reset(std::uint64_t /*seed*/) override {
     planner_.reset();
     mission_.reset();
   }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "harness/control/outside_controller.hpp"
 #include "harness/scenario/model_dynamics.hpp"
+#include "harness/scenario/outside_controllers.hpp"
 #include "harness/threads/executor.hpp"
 #include "harness/threads/interruption.hpp"
 
@@ -72,7 +74,17 @@ controller::ControllerSettings controller_settings(const Scenario& scenario) {
           .mission = scenario.risk.mission};
 }
 
+std::unique_ptr<controller::Controller> make_controller(const Scenario& scenario,
+                                                        const models::Dynamics& dynamics) {
+  if (is_outside(scenario.controller)) {
+    return std::make_unique<OutsideController>(scenario, dynamics);
+  }
+  return controller::make_controller(scenario.controller.kind, dynamics,
+                                     controller_settings(scenario));
+}
+
 controller::DecisionParts decision_parts(const Scenario& scenario) {
+  if (is_outside(scenario.controller)) return outside_parts(scenario.controller);
   return controller::controller_entry(scenario.controller.kind)
       .parts(controller_settings(scenario));
 }
@@ -80,7 +92,9 @@ controller::DecisionParts decision_parts(const Scenario& scenario) {
 std::string controller_words(const Scenario& scenario) {
   const Scenario::Controller& controller = scenario.controller;
   std::string words;
-  if (controller.kind == "lqr") {
+  if (is_outside(controller)) {
+    words = controller.kind + ", " + outside_controller_name(controller);
+  } else if (controller.kind == "lqr") {
     words = "lqr about the " + controller.lqr_about;
   } else {
     if (controller.kind != controller::controllers().front().name) words = controller.kind + ", ";

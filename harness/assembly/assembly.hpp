@@ -36,6 +36,12 @@ enum class BeliefOf {
 /// What the controller of `scenario` is made from.
 [[nodiscard]] controller::ControllerSettings controller_settings(const Scenario& scenario);
 
+/// The controller of `scenario`, one outside of the program included. `dynamics` must
+/// outlive it. Throws std::invalid_argument on settings that make
+/// no sense.
+[[nodiscard]] std::unique_ptr<controller::Controller> make_controller(
+    const Scenario& scenario, const models::Dynamics& dynamics);
+
 /// What decisions of the controller of `scenario` have.
 [[nodiscard]] controller::DecisionParts decision_parts(const Scenario& scenario);
 

@@ -7,8 +7,8 @@ namespace qsmpc::harness {
 FirstDecision::FirstDecision(const Scenario& scenario, const models::Dynamics& dynamics)
     : belief_{.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance},
       motions_(dynamics, planner_settings(scenario)),
-      controller_(controller::make_controller(scenario.controller.kind, dynamics,
-                                              controller_settings(scenario))) {
+      controller_(make_controller(scenario, dynamics)) {
+  controller_->reset(scenario.seed);
   const controller::Situation situation{.belief = belief_, .observation = belief_.mean};
   decision_ = &controller_->decide(situation);
   motion_.emplace(motions_.of(situation, *decision_, belief_));

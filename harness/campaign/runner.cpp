@@ -159,6 +159,7 @@ class CampaignRun {
     const std::lock_guard lock(trace_mutex_);
     make_durable_folder(target, folder_);
     write_trace(target + "/" + kTraceFile, trace);
+    write_controller_log(trace, target);
   }
 
   void count(const EpisodeRow& row, bool again) {

@@ -15,6 +15,7 @@
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/plant/plant_registry.hpp"
+#include "harness/scenario/outside_controllers.hpp"
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/text/json_text.hpp"
@@ -54,9 +55,13 @@ std::vector<Table> tables() {
   for (const ShippedCampaign& campaign : shipped_campaigns()) {
     campaigns.items.push_back({campaign.name, campaign.description});
   }
+  Table all_controllers = make_table("controllers", controller::controllers());
+  for (const OutsideControllerEntry& entry : outside_controllers()) {
+    all_controllers.items.push_back({entry.name, entry.summary});
+  }
   return {make_table("systems", models::systems()),
           all_plants,
-          make_table("controllers", controller::controllers()),
+          all_controllers,
           make_table("estimators", controller::estimators()),
           make_table("solvers", controller::solvers()),
           make_table("boundings", controller::input_boundings()),

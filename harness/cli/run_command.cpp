@@ -102,8 +102,11 @@ int run(const RunArguments& arguments) {
   discard_artefacts(folder);  // those of an earlier run, which this trace is not the source of
   const EpisodeView view(trace);
   write_summary(view, folder, /*with_video=*/false);
+  write_controller_log(trace, folder);
   if (trace.outcome == Outcome::kFault) {
-    std::cerr << "qsmpc: the plant broke: " << printable(trace.fault, 1000) << '\n';
+    const bool is_plant = trace.fault_of == FaultOf::kPlant;
+    std::cerr << (is_plant ? "qsmpc: the plant broke: " : "qsmpc: the controller failed: ")
+              << printable(trace.fault, 1000) << '\n';
   }
   // An episode that ended before it began, e.g. because its plant's file is broken, shows nothing.
   std::string no_video = why_not_drawn(view);

@@ -16,6 +16,7 @@
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/random/random_numbers.hpp"
+#include "harness/scenario/outside_controllers.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/interruption.hpp"
 #include "harness/trace/ending.hpp"
@@ -70,7 +71,7 @@ class EpisodeDriver::Loop {
         unsafe_(scenario.safe_set),
         model_(model_of(scenario)),
         settings_(controller_settings(scenario)),
-        controller_(controller::make_controller(scenario.controller.kind, *model_, settings_)),
+        controller_(make_controller(scenario, *model_)),
         estimator_(controller::make_estimator(scenario.estimator.kind,
                                               {.dynamics = *model_,
                                                .noise_covariance = scenario.disturbance.covariance,
@@ -79,18 +80,19 @@ class EpisodeDriver::Loop {
         disturbance_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.covariance),
         sensor_(Eigen::VectorXd::Zero(model_->state_dim()), scenario.disturbance.sensor),
         belief_(first_belief()) {
-    rehearse();
+    // Those outside of the program start with the drive, and know of no other situations.
+    if (!is_outside(scenario.controller)) rehearse();
   }
 
   Trace run(const EpisodeOptions& options) {
     options_ = options;
-    controller_->reset();
     unsafe_outcome_.reset();
     belief_ = first_belief();
     Trace trace = header_of(scenario_, model_->description(), options_.seed);
     const GaussianSampler initial(belief_.mean, belief_.covariance);
     state_ = initial.sample({.seed = options_.seed, .stream = RandomStream::kInitialState});
     try {
+      controller_->reset(options_.seed);
       plant_ = make_plant(scenario_, draw_variation(scenario_.disturbance,
                                                     options_.plant_seed.value_or(options_.seed)));
       trace.outcome = drive(trace);
@@ -99,7 +101,12 @@ class EpisodeDriver::Loop {
     } catch (const SimulatorError& error) {
       trace.outcome = Outcome::kFault;
       trace.fault = error.what();
+    } catch (const ControllerError& error) {
+      trace.outcome = Outcome::kFault;
+      trace.fault = error.what();
+      trace.fault_of = FaultOf::kController;
     }
+    trace.controller_log = controller_->log();
     trace.final_state = state_;
     plant_.reset();
     if (options_.writer != nullptr) options_.writer->finish(trace);

@@ -52,7 +52,8 @@ class EpisodeDriver {
   EpisodeDriver& operator=(EpisodeDriver&&) noexcept;
   ~EpisodeDriver();
 
-  /// Runs one episode. A plant that breaks ends it with the outcome `fault`; numerical trouble of
+  /// Runs one episode. A plant that breaks, or a controller outside of the program that
+  /// fails, ends it with the outcome `fault`; numerical trouble of
   /// the planner is in the steps' solver status. Throws InputError for what is wrong with the
   /// plant's file and IoError from the writer.
   [[nodiscard]] Trace run(const EpisodeOptions& options);

@@ -207,6 +207,11 @@ struct Ending {
   std::string text;
 };
 
+std::string failed_words(const EpisodeView& view) {
+  return view.trace().fault_of == FaultOf::kController ? "The controller failed"
+                                                       : "The simulator failed";
+}
+
 Ending ending_of(const EpisodeView& view) {
   const Summary& summary = view.summary();
   const double end = view.duration();
@@ -222,8 +227,7 @@ Ending ending_of(const EpisodeView& view) {
     case Outcome::kTimeout:
       return {Verdict::kWarn, "Target not reached: time ran out" + after};
     case Outcome::kFault:
-      return {Verdict::kBad, summary.steps == 0 ? "The simulator failed at the start"
-                                                : "The simulator failed" + after};
+      return {Verdict::kBad, failed_words(view) + (summary.steps == 0 ? " at the start" : after)};
     case Outcome::kInterrupted:
       break;
   }

@@ -12,6 +12,7 @@
 #include "controller/planning/risk/risk_limits.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
+#include "harness/scenario/outside_controllers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -45,7 +46,11 @@ const std::vector<std::string>& system_names() {
 }
 
 const std::vector<std::string>& controller_names() {
-  static const std::vector<std::string> names = names_of(controller::controllers());
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = names_of(controller::controllers());
+    for (std::string& name : names_of(outside_controllers())) all.push_back(std::move(name));
+    return all;
+  }();
   return names;
 }
 

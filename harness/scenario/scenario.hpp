@@ -102,9 +102,19 @@ struct Scenario {
     /// else "last_measurement".
     std::string kind = "exact";
   };
+  /// A controller that is no part of the program: kinds "external" and "library".
+  struct OutsideController {
+    std::vector<std::string> command;  ///< of "external": the program and its arguments
+    std::string folder;                ///< of "external", absolute: where the process works
+    std::string library;               ///< of "library": absolute path of the shared library
+    std::string options = "{}";        ///< for the controller, as one JSON object
+    bool plans = false;                ///< whether it answers a plan of `horizon` stages, too
+    double start_deadline = 60.0;      ///< s, from its start until it is ready
+  };
   struct Controller {
     std::string kind = "quantised";  ///< a name from `qsmpc list controllers`
     std::string lqr_about = "path";  ///< or "target": about what "lqr" linearises
+    OutsideController outside;
     int horizon = 8;
     std::string policy = "closed_loop";            ///< or "open_loop"
     std::string guide = "none";                    ///< or "grid": what plans aim along

@@ -117,6 +117,9 @@ class Section {
   /// [lower, upper], lower < upper; ±infinity is allowed unless `finite`.
   [[nodiscard]] std::optional<NumberInterval> interval(const std::string& key, bool finite);
 
+  /// The value of `key` as it is in the tree; nullptr without one.
+  [[nodiscard]] const YamlNode* tree(const std::string& key) { return take(key); }
+
   /// Notes a problem with what `key` holds (or with this section, if it holds nothing); `found`
   /// defaults to a description of it.
   void note(const std::string& key, const std::string& expected, std::string found = "");

@@ -170,6 +170,7 @@ Summary summarise(const EpisodeView& view) {
   summary.estimator = trace.scenario.estimator.kind;
   summary.outcome = outcome_name(trace.outcome);
   summary.fault = trace.fault;
+  if (trace.outcome == Outcome::kFault) summary.fault_of = fault_of_name(trace.fault_of);
   summary.steps = static_cast<int>(trace.steps.size());
   summary.no_bound = why_no_bound(trace.scenario);
   if (ended_at_target(trace)) {
@@ -194,6 +195,7 @@ std::string summary_json(const EpisodeView& view, const SummaryOptions& options)
   json["estimator"] = summary.estimator;
   json["outcome"] = summary.outcome;
   if (!summary.fault.empty()) json["fault"] = summary.fault;
+  if (!summary.fault_of.empty()) json["fault_of"] = summary.fault_of;
   json["steps"] = summary.steps;
   json["time_to_target"] = nullptr;
   if (summary.time_to_target) json["time_to_target"] = *summary.time_to_target;

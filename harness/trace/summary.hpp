@@ -22,7 +22,8 @@ struct Summary {
   std::string controller;  ///< its kind
   std::string estimator;   ///< its kind
   std::string outcome;
-  std::string fault;  ///< the simulator's words; empty without a fault
+  std::string fault;     ///< the words of what broke; empty without a fault
+  std::string fault_of;  ///< "plant" or "controller"; empty without a fault
   int steps = 0;
   std::optional<double> time_to_target;  ///< s; also of a drive that was unsafe on its way
   bool collision = false;                ///< the true state entered the unsafe set

@@ -53,6 +53,10 @@ Outcome outcome_from_name(const std::string& name) {
   throw std::invalid_argument("\"" + name + "\" is no outcome: " + outcome_list());
 }
 
+const char* fault_of_name(FaultOf fault_of) {
+  return fault_of == FaultOf::kController ? "controller" : "plant";
+}
+
 Eigen::MatrixXd true_states(const Trace& trace) {
   const bool ended = trace.final_state.size() > 0;
   const auto steps = static_cast<Eigen::Index>(trace.steps.size());
@@ -69,7 +73,9 @@ Eigen::MatrixXd true_states(const Trace& trace) {
 
 Eigen::Index completed_periods(const Trace& trace) {
   const auto steps = static_cast<Eigen::Index>(trace.steps.size());
-  const bool end_is_known = trace.final_state.size() > 0 && trace.outcome != Outcome::kFault;
+  // A controller fails before its period begins.
+  const bool plant_broke = trace.outcome == Outcome::kFault && trace.fault_of == FaultOf::kPlant;
+  const bool end_is_known = trace.final_state.size() > 0 && !plant_broke;
   return end_is_known || steps == 0 ? steps : steps - 1;
 }
 

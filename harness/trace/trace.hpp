@@ -74,7 +74,7 @@ enum class Outcome {
   kCollision,   ///< it entered an obstacle
   kLeftBounds,  ///< it left the bounds, in no obstacle at that instant
   kTimeout,     ///< it was safe all the time, and did not arrive
-  kFault,       ///< the simulator gave up
+  kFault,       ///< the simulator gave up, or a controller outside of the program failed
   kInterrupted
 };
 
@@ -85,6 +85,12 @@ enum class Outcome {
 [[nodiscard]] std::string outcome_list();
 /// The inverse of `outcome_name`; throws std::invalid_argument.
 [[nodiscard]] Outcome outcome_from_name(const std::string& name);
+
+/// Who broke a drive that ended as a fault.
+enum class FaultOf { kPlant, kController };
+
+/// "plant" or "controller".
+[[nodiscard]] const char* fault_of_name(FaultOf fault_of);
 
 /// A trace is whole: whoever reads it needs no model to say what its numbers are.
 struct Trace {
@@ -97,7 +103,11 @@ struct Trace {
   Eigen::VectorXd final_state;  ///< true state after the last period, state_dim; empty if not known
   std::vector<MotionSample> motion;  ///< of the whole episode, oldest first
   Outcome outcome = Outcome::kTimeout;
-  std::string fault;  ///< the simulator's words where the outcome is kFault
+  std::string fault;  ///< what happened where the outcome is kFault, e.g. the simulator's words
+  FaultOf fault_of = FaultOf::kPlant;  ///< who broke it there
+  /// What a controller outside of the program wrote to its standard error in this drive, cut where
+  /// it is long. Not in the trace's file.
+  std::string controller_log{};
 };
 
 /// The true states at the control instants, in their units: state_dim x (steps + 1), or as many

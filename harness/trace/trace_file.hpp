@@ -14,6 +14,13 @@
 
 namespace qsmpc::harness {
 
+/// What a controller outside of the program wrote to its standard error, beside the trace.
+inline constexpr const char* kControllerLog = "controller.log";
+
+/// Writes it into `folder` where there is any, and else removes what an earlier drive left there.
+/// Throws IoError.
+void write_controller_log(const Trace& trace, const std::string& folder);
+
 /// What the trace of an episode is called within its folder.
 inline constexpr const char* kTraceFile = "episode.h5";
 

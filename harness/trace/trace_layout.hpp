@@ -31,6 +31,9 @@ inline constexpr const char* kContactTimePath = "/plant/contact_time";
 /// Of the policies' gains.
 inline constexpr const char* kGainsPath = "/plan/gains";
 
+/// The root's attribute that says who broke a drive; empty where nothing did.
+inline constexpr const char* kFaultOf = "fault_of";
+
 /// The datasets of a trace of `scenario` and `system`, which describes its model. A dataset whose
 /// first axis is "step" has one row a control period; what the scenario's controller does not have
 /// is not among them.

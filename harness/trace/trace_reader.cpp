@@ -102,6 +102,11 @@ void TraceReader::read_header() {
   trace_.scenario_text = file_.text("/", "scenario");
   trace_.seed = file_.unsigned_integer("/", "seed");
   trace_.fault = file_.text("/", "fault");
+  // Earlier versions had controllers of their own only.
+  if (file_.has_attribute("/", kFaultOf) &&
+      file_.text("/", kFaultOf) == fault_of_name(FaultOf::kController)) {
+    trace_.fault_of = FaultOf::kController;
+  }
   const std::string outcome = file_.text("/", "outcome");
   try {
     // Which part of the unsafe set it was is told by the states, which are read later.

@@ -32,6 +32,7 @@ void write_trace_header(Hdf5File& file, const Trace& header) {
   // What a reader shall see if nothing is ever added.
   file.set_text("/", "outcome", outcome_name(Outcome::kInterrupted));
   file.set_text("/", "fault", "");
+  file.set_text("/", kFaultOf, "");
 }
 
 }  // namespace
@@ -191,8 +192,19 @@ void TraceWriter::finish(const Trace& trace) {
   file_.end_streaming();
   file_.set_text("/", "outcome", outcome_name(trace.outcome));
   file_.set_text("/", "fault", trace.fault);
+  if (trace.outcome == Outcome::kFault)
+    file_.set_text("/", kFaultOf, fault_of_name(trace.fault_of));
   file_.close();
   commit_partial_file(path_);
+}
+
+void write_controller_log(const Trace& trace, const std::string& folder) {
+  const std::string path = folder + "/" + kControllerLog;
+  if (trace.controller_log.empty()) {
+    remove_file(path);
+  } else {
+    write_file(path, trace.controller_log);
+  }
 }
 
 void write_trace(const std::string& path, const Trace& trace) {

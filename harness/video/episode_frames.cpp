@@ -56,7 +56,8 @@ void add_banner(const EpisodeView& view, double time, render::Frame& frame) {
       frame.banner = fmt::format("target not reached in {:.1f} s", time);
       break;
     case Outcome::kFault:
-      frame.banner = "simulator fault";
+      frame.banner =
+          view.trace().fault_of == FaultOf::kController ? "controller fault" : "simulator fault";
       frame.alarm = true;
       break;
     case Outcome::kInterrupted:

@@ -1,11 +1,13 @@
-# Installs the public headers: ROOM/ROOM.hpp as ROOM.hpp, what they include, and so on. In them,
+# Installs the public headers: ROOM/ROOM.hpp as ROOM.hpp, those that systems and controllers outside of the
+# tree are made with, what these include, and so on. In them,
 # "controller/…" becomes "qsmpc/controller/…". Run with:
 #
 #   cmake -D SOURCE=FOLDER -D GENERATED=FOLDER -D OUTPUT=FOLDER -P install_headers.cmake
 
 cmake_minimum_required(VERSION 3.25)
 set(rooms models controller harness render)
-set(to_do "")
+# For systems and controllers of one's own.
+set(to_do models/dynamics/own_dynamics.hpp controller/control/own_controller.hpp)
 foreach(room IN LISTS rooms)
   list(APPEND to_do ${room}/${room}.hpp)
 endforeach()

@@ -6,7 +6,7 @@
 set(qsmpc_rooms
   qsmpc_models qsmpc_controller qsmpc_render
   qsmpc_text qsmpc_errors qsmpc_files qsmpc_statistics qsmpc_random qsmpc_threads qsmpc_mujoco
-  qsmpc_scenario qsmpc_assembly qsmpc_plant qsmpc_trace qsmpc_episode qsmpc_video)
+  qsmpc_scenario qsmpc_control qsmpc_assembly qsmpc_plant qsmpc_trace qsmpc_episode qsmpc_video)
 
 # Made of what the rooms were compiled to. Their archives are linked for the libraries that they need.
 list(TRANSFORM qsmpc_rooms REPLACE "(.+)" "$<TARGET_OBJECTS:\\1>" OUTPUT_VARIABLE objects)

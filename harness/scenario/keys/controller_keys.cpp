@@ -332,10 +332,11 @@ std::vector<ScenarioKey> effort_keys() {
   return {
       {.about = {.name = "deadline",
                  .values = {NumberValue{kDeadlineRange}},
-                 .words = "time after which a plan is cut short",
+                 .words = "time after which a plan is cut short, and a controller that is no part "
+                          "of the program has failed",
                  .see = "[below](#deadline-and-threads)",
                  .unit = "s",
-                 .fallback_words = "none"},
+                 .fallback_words = "none; 10 for `external` and `library`"},
        .member = [](Scenario& scenario) -> double& { return scenario.controller.deadline; },
        .is_written =
            [](const Scenario& scenario) { return std::isfinite(scenario.controller.deadline); }},
@@ -361,6 +362,7 @@ void append(std::vector<ScenarioKey>& keys, std::vector<ScenarioKey> more) {
 
 ScenarioKey controller_key() {
   std::vector<ScenarioKey> keys = kind_keys();
+  append(keys, outside_controller_keys());
   append(keys, plan_keys());
   keys.push_back(quantisation_key());
   append(keys, propagation_keys());

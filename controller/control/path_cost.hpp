@@ -1,0 +1,24 @@
+// The cost of a noise-free path, for controllers that plan one.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/planning/cost/cost_parts.hpp"
+#include "controller/planning/cost/horizon_cost.hpp"
+#include "controller/prediction/policy.hpp"
+
+namespace qsmpc::controller {
+
+/// Scratch, so that no path but the first allocates.
+struct PathCostScratch {
+  Eigen::VectorXd away;
+  Eigen::VectorXd weighted_state;
+  Eigen::VectorXd weighted_input;
+};
+
+/// The parts "state", "input" and "terminal" of the cost of a policy's nominal states and inputs,
+/// about `target` (state_dim).
+[[nodiscard]] CostParts path_cost(const Policy& path, const QuadraticCost& cost,
+                                  const Eigen::VectorXd& target, PathCostScratch& scratch);
+
+}  // namespace qsmpc::controller

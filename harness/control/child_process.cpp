@@ -1,0 +1,341 @@
+#include "harness/control/child_process.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <thread>
+#include <utility>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "harness/control/host_program.hpp"
+#include "harness/errors.hpp"
+#include "harness/threads/interruption.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+using Clock = ChildProcess::Clock;
+
+constexpr std::size_t kLongestLine = std::size_t{16} << 20U;  // bytes
+constexpr std::size_t kLogHalf = std::size_t{128} << 10U;     // bytes
+constexpr std::size_t kChunk = std::size_t{64} << 10U;        // bytes
+// How long signals to stop may go unheard.
+constexpr std::chrono::milliseconds kSlice{50};
+// How long a process may take to end by itself once it is told to.
+constexpr std::chrono::milliseconds kGrace{1000};
+// How long the words of a process that has gone may be on their way.
+constexpr std::chrono::milliseconds kLastWords{200};
+// When the host, which kills what does not go, must have ended.
+constexpr std::chrono::milliseconds kHostGrace{6000};
+// Above the standard ones and the leash, so that none is overwritten while these are put in place.
+constexpr int kLeast = 10;
+constexpr int kLeash = 3;
+
+[[noreturn]] void fail(const char* what) {
+  throw IoError(
+      fmt::format("a controller's process cannot be started: {}: {}", what, std::strerror(errno)));
+}
+
+Descriptor moved_up(const Descriptor& low) {
+  Descriptor high(::fcntl(low.get(), F_DUPFD_CLOEXEC, kLeast));
+  if (!high.is_open()) fail("fcntl");
+  return high;
+}
+
+/// Two ends that no other process inherits: of the host, and ours, which never waits.
+struct Ends {
+  Descriptor theirs;
+  Descriptor ours;
+};
+
+Ends ends_of(const Descriptor& theirs, const Descriptor& ours) {
+  Ends ends{.theirs = moved_up(theirs), .ours = moved_up(ours)};
+  if (::fcntl(ends.ours.get(), F_SETFL, O_NONBLOCK) != 0) fail("fcntl");
+  return ends;
+}
+
+Ends pipe_to_read() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("pipe");
+  return ends_of(Descriptor(ends[1]), Descriptor(ends[0]));
+}
+
+Ends pipe_to_write() {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail("pipe");
+  return ends_of(Descriptor(ends[0]), Descriptor(ends[1]));
+}
+
+Ends leash() {
+  std::array<int, 2> ends{};
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) fail("socketpair");
+  return ends_of(Descriptor(ends[0]), Descriptor(ends[1]));
+}
+
+/// Keeps SIGPIPE from the thread while it lives: a reader that went away is an error of the write.
+class NoSigpipe {
+ public:
+  NoSigpipe() {
+    sigemptyset(&pipe_);
+    sigaddset(&pipe_, SIGPIPE);
+    pthread_sigmask(SIG_BLOCK, &pipe_, &before_);
+  }
+  NoSigpipe(const NoSigpipe&) = delete;
+  NoSigpipe& operator=(const NoSigpipe&) = delete;
+  ~NoSigpipe() {
+    const timespec now{};
+    if (sigismember(&before_, SIGPIPE) == 0) sigtimedwait(&pipe_, nullptr, &now);
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+
+ private:
+  sigset_t pipe_{};
+  sigset_t before_{};
+};
+
+/// posix_spawn's own objects, freed with it.
+class SpawnSettings {
+ public:
+  SpawnSettings() {
+    posix_spawn_file_actions_init(&actions);
+    posix_spawnattr_init(&attributes);
+    sigset_t signals;
+    sigemptyset(&signals);
+    posix_spawnattr_setsigmask(&attributes, &signals);
+    for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGCHLD}) sigaddset(&signals, number);
+    posix_spawnattr_setsigdefault(&attributes, &signals);
+    // Ctrl-C on the terminal is for the program, which decides what becomes of its controllers.
+    posix_spawnattr_setpgroup(&attributes, 0);
+    posix_spawnattr_setflags(
+        &attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+  }
+  SpawnSettings(const SpawnSettings&) = delete;
+  SpawnSettings& operator=(const SpawnSettings&) = delete;
+  ~SpawnSettings() {
+    posix_spawn_file_actions_destroy(&actions);
+    posix_spawnattr_destroy(&attributes);
+  }
+
+  posix_spawn_file_actions_t actions{};
+  posix_spawnattr_t attributes{};
+};
+
+/// Reads what is there into `take`; closes at the end.
+template <class Take>
+void read_some(Descriptor& from, const Take& take) {
+  std::array<char, kChunk> chunk;  // NOLINT(cppcoreguidelines-pro-type-member-init)
+  for (;;) {
+    const ssize_t count = ::read(from.get(), chunk.data(), chunk.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno == EAGAIN) return;
+    if (count <= 0) {
+      from.close();
+      return;
+    }
+    if (!take(std::string_view(chunk.data(), static_cast<std::size_t>(count)))) return;
+  }
+}
+
+std::string end_words(const ChildEnd& end) {
+  switch (end.how) {
+    case ChildEnd::kExit:
+      return fmt::format("its end with exit code {}", end.value);
+    case ChildEnd::kSignal: {
+      const char* const name = ::sigdescr_np(end.value);
+      return fmt::format("its end by signal {} ({})", end.value,
+                         name == nullptr ? "unknown" : name);
+    }
+    case ChildEnd::kNoStart:
+      return fmt::format("no process: {}", std::strerror(end.value));
+  }
+  return {};
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& host_arguments) : log_(kLogHalf) {
+  std::vector<std::string> words{host_program()};
+  words.insert(words.end(), host_arguments.begin(), host_arguments.end());
+  std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
+  for (std::string& word : words) arguments.push_back(word.data());
+  arguments.push_back(nullptr);
+
+  Ends input = pipe_to_write();
+  Ends output = pipe_to_read();
+  Ends errors = pipe_to_read();
+  Ends leash = harness::leash();
+  SpawnSettings settings;
+  const std::array<std::pair<const Ends*, int>, 4> places = {{{&input, STDIN_FILENO},
+                                                              {&output, STDOUT_FILENO},
+                                                              {&errors, STDERR_FILENO},
+                                                              {&leash, kLeash}}};
+  for (const auto& [ends, place] : places) {
+    posix_spawn_file_actions_adddup2(&settings.actions, ends->theirs.get(), place);
+  }
+  errno = ::posix_spawn(&host_, words.front().c_str(), &settings.actions, &settings.attributes,
+                        arguments.data(), environ);
+  if (errno != 0) fail(words.front().c_str());
+  input_ = std::move(input.ours);
+  output_ = std::move(output.ours);
+  errors_ = std::move(errors.ours);
+  leash_ = std::move(leash.ours);
+}
+
+ChildProcess::~ChildProcess() { end_host(); }
+
+bool ChildProcess::send(const std::string& line, Clock::time_point deadline) {
+  to_write_ += line;
+  to_write_ += '\n';
+  write_some();
+  while (!to_write_.empty()) {
+    check_interrupts();
+    if (!input_.is_open()) read_last_words();
+    check_alive();
+    if (Clock::now() >= deadline) return false;
+    turn(deadline);
+  }
+  return true;
+}
+
+std::optional<std::string> ChildProcess::receive(Clock::time_point deadline) {
+  for (;;) {
+    check_interrupts();
+    if (std::optional<std::string> line = take_line()) return line;
+    if (received_.size() > kLongestLine) {
+      throw ChildFailure(fmt::format("a line of more than {} bytes", kLongestLine));
+    }
+    if (!output_.is_open() && !end_) read_last_words();
+    check_alive();
+    if (Clock::now() >= deadline) return std::nullopt;
+    turn(deadline);
+  }
+}
+
+std::optional<std::string> ChildProcess::unasked() {
+  turn(Clock::time_point::min());
+  if (received_.empty()) return std::nullopt;
+  return std::exchange(received_, {});
+}
+
+std::optional<std::string> ChildProcess::take_line() {
+  const std::size_t end = received_.find('\n', searched_);
+  searched_ = received_.size();
+  if (end == std::string::npos) return std::nullopt;
+  std::string line = received_.substr(0, end);
+  received_.erase(0, end + 1);
+  searched_ = 0;
+  return line;
+}
+
+void ChildProcess::check_alive() const {
+  if (end_) throw ChildFailure(end_words(*end_));
+  if (!leash_.is_open()) throw ChildFailure("the end of the process that watches over it");
+  if (!output_.is_open()) throw ChildFailure("the end of its standard output");
+}
+
+void ChildProcess::turn(Clock::time_point until) {
+  std::array<pollfd, 4> at{
+      {{.fd = to_write_.empty() ? -1 : input_.get(), .events = POLLOUT, .revents = 0},
+       {.fd = output_.get(), .events = POLLIN, .revents = 0},
+       {.fd = errors_.get(), .events = POLLIN, .revents = 0},
+       {.fd = leash_.get(), .events = POLLIN, .revents = 0}}};
+  const auto now = Clock::now();
+  const std::chrono::nanoseconds patience =
+      until <= now ? std::chrono::nanoseconds(0)
+                   : std::min<std::chrono::nanoseconds>(until - now, kSlice);
+  const timespec wait{.tv_sec = 0, .tv_nsec = patience.count()};
+  if (::ppoll(at.data(), at.size(), &wait, nullptr) <= 0) return;
+  if (at[0].revents != 0) write_some();
+  if (at[1].revents != 0) read_output();
+  if (at[2].revents != 0) read_errors();
+  if (at[3].revents != 0) read_leash();
+}
+
+void ChildProcess::write_some() {
+  const NoSigpipe quiet;
+  while (!to_write_.empty() && input_.is_open()) {
+    const ssize_t count = ::write(input_.get(), to_write_.data(), to_write_.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 && errno == EAGAIN) return;
+    if (count < 0) {
+      input_.close();
+      return;
+    }
+    to_write_.erase(0, static_cast<std::size_t>(count));
+  }
+}
+
+void ChildProcess::read_output() {
+  read_some(output_, [this](std::string_view text) {
+    received_ += text;
+    return received_.size() <= kLongestLine;
+  });
+}
+
+void ChildProcess::read_errors() {
+  read_some(errors_, [this](std::string_view text) {
+    log_.add(text);
+    return false;  // one that never stops shall not keep us
+  });
+}
+
+void ChildProcess::read_leash() {
+  ChildEnd end;
+  const ssize_t count = ::recv(leash_.get(), &end, sizeof end, 0);
+  if (count < 0 && (errno == EAGAIN || errno == EINTR)) return;
+  if (count != sizeof end) {
+    leash_.close();
+    return;
+  }
+  end_ = end;
+  // What it said before is on its way no longer.
+  if (output_.is_open()) read_output();
+}
+
+void ChildProcess::read_last_words() {
+  const auto until = Clock::now() + kLastWords;
+  while (Clock::now() < until && (errors_.is_open() || !end_) && leash_.is_open()) turn(until);
+}
+
+void ChildProcess::finish(const std::string& line) noexcept {
+  try {
+    to_write_ += line;
+    to_write_ += '\n';
+    write_some();
+    input_.close();
+    const auto until = Clock::now() + kGrace;
+    while (!end_ && leash_.is_open() && Clock::now() < until) turn(until);
+    read_last_words();
+  } catch (...) {  // no memory for its last words: it is ended all the same
+    log_.clear();
+  }
+}
+
+void ChildProcess::end_host() noexcept {
+  input_.close();
+  if (leash_.is_open()) ::shutdown(leash_.get(), SHUT_WR);
+  const auto until = Clock::now() + kHostGrace;
+  std::chrono::microseconds pause{100};
+  for (;;) {
+    const pid_t ended = ::waitpid(host_, nullptr, WNOHANG);
+    if (ended == host_ || (ended < 0 && errno != EINTR)) return;
+    if (Clock::now() >= until) break;
+    std::this_thread::sleep_for(pause);
+    pause = std::min<std::chrono::microseconds>(2 * pause, std::chrono::milliseconds(5));
+  }
+  ::kill(host_, SIGKILL);  // its controller goes with it
+  while (::waitpid(host_, nullptr, 0) < 0 && errno == EINTR) {
+  }
+}
+
+}  // namespace qsmpc::harness

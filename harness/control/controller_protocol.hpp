@@ -1,0 +1,67 @@
+// What is said between the program and a controller outside of it: lines of JSON.
+// docs/controllers.md is the reference.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "controller/control/controller.hpp"
+#include "harness/scenario/scenario.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::harness {
+
+/// Grows with every change that an older controller would misread.
+inline constexpr int kProtocolVersion = 1;
+
+// Types of messages.
+inline constexpr const char* kScenarioMessage = "scenario";
+inline constexpr const char* kResetMessage = "reset";
+inline constexpr const char* kSituationMessage = "situation";
+inline constexpr const char* kEndMessage = "end";
+
+/// The first message. Limits and bounds that there are not are null.
+[[nodiscard]] std::string scenario_message(const Scenario& scenario,
+                                           const models::SystemDescription& system);
+
+/// Before the first period of each drive.
+[[nodiscard]] std::string reset_message(std::uint64_t seed);
+
+/// One a period. deadline: s from now.
+[[nodiscard]] std::string situation_message(const controller::Situation& situation,
+                                            double deadline);
+
+/// The last message.
+[[nodiscard]] std::string end_message();
+
+/// An answer that is not what it should be, in the words of an error.
+struct WrongAnswer {
+  std::string found;
+  std::string expected;
+};
+
+/// Throws WrongAnswer unless `line` answers the scenario with this version of the protocol.
+void check_greeting(const std::string& line);
+
+/// What an answer must be.
+struct AnswerShape {
+  const models::SystemDescription& system;
+  const controller::InputBounds& bounds;
+  int stages = 0;  ///< of the plan; 0: an input is asked for, and no plan
+};
+
+/// An answer to a situation.
+struct ControllerAnswer {
+  Eigen::VectorXd input;      ///< within the bounds; empty where a plan is asked for
+  controller::Policy policy;  ///< its inputs, within the bounds, and gains; nothing else
+  controller::SolverStatus status = controller::SolverStatus::kConverged;  ///< of the plan
+  int evaluations = 0;
+};
+
+/// Reads the answer of period `period`. Throws WrongAnswer.
+[[nodiscard]] ControllerAnswer read_answer(const std::string& line, std::int64_t period,
+                                           const AnswerShape& shape);
+
+}  // namespace qsmpc::harness

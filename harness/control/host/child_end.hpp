@@ -1,0 +1,15 @@
+// How a controller's process ended, as its host tells the program.
+#pragma once
+
+#include <cstdint>
+
+namespace qsmpc::harness {
+
+struct ChildEnd {
+  enum How : std::int32_t { kExit, kSignal, kNoStart };
+
+  How how = kExit;
+  std::int32_t value = 0;  ///< exit code, signal, or errno
+};
+
+}  // namespace qsmpc::harness

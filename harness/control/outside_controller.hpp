@@ -1,0 +1,73 @@
+// A controller that is no part of the program: a process of the user's, or one that holds a shared
+// library of the user's, asked over lines of JSON.
+//
+// It is started for the first drive and kept for the next ones. What fails ends it, and a new one
+// is started for the next drive.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "controller/control/controller.hpp"
+#include "controller/control/path_cost.hpp"
+#include "harness/control/child_process.hpp"
+#include "harness/control/controller_protocol.hpp"
+#include "harness/scenario/scenario.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::harness {
+
+/// What its decisions have.
+[[nodiscard]] controller::DecisionParts outside_parts(const Scenario::Controller& controller);
+
+class OutsideController final : public controller::Controller {
+ public:
+  /// Starts nothing yet. `dynamics` must outlive it.
+  OutsideController(const Scenario& scenario, const models::Dynamics& dynamics);
+  ~OutsideController() override;
+
+  /// Throws ControllerError where there is no answer by the deadline, or a wrong one; IoError where
+  /// no process can be had; Interrupted. The process has ended then.
+  const controller::Decision& decide(const controller::Situation& situation) override;
+
+  /// Starts the process where none is there. Throws as `decide`.
+  using Controller::reset;
+  void reset(std::uint64_t seed) override;
+
+  [[nodiscard]] std::string log() const override;
+
+ private:
+  using Clock = ChildProcess::Clock;
+
+  void start();
+  void ask(const controller::Situation& situation);
+  [[nodiscard]] std::string answer_to(const std::string& message, double patience,
+                                      const char* deadline_key);
+  void tell(const std::string& message, double patience, const char* deadline_key);
+  void take(const ControllerAnswer& answer, const controller::Situation& situation);
+  /// Does `work`; ends the process where that throws. place: "period 3".
+  template <class Work>
+  void guarded(const std::string& place, const Work& work);
+  [[noreturn]] void fail(const std::string& place, const std::string& found,
+                         const std::string& expected);
+  void end();
+
+  const models::Dynamics& dynamics_;
+  const Scenario::Controller settings_;
+  const controller::DecisionParts parts_;
+  const controller::InputBounds bounds_;
+  const std::string scenario_message_;
+  std::unique_ptr<ChildProcess> process_;
+  std::uint64_t seed_ = 0;
+  bool is_reset_ = false;  // whether the process knows of the drive
+  std::string log_;        // of a process that has ended
+  controller::Policy policy_;
+  controller::QuadraticCost cost_;
+  controller::PathCostScratch cost_scratch_;
+  Eigen::VectorXd nearest_;  // what means the target, nearest to the belief
+  Eigen::VectorXd offset_;
+  controller::Decision decision_;
+};
+
+}  // namespace qsmpc::harness

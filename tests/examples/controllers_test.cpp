@@ -1,0 +1,67 @@
+// The examples of controllers, run as their pages say.
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/integration/process.hpp"
+
+namespace qsmpc::testing {
+namespace example_controllers_test {
+
+const std::string kExamples = std::string(QSMPC_SOURCE_DIR) + "/examples/";
+
+/// The summary of an example's drive on the model itself, which is to arrive.
+nlohmann::json drive(const std::string& example, const std::vector<std::string>& settings) {
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments = {"run",        kExamples + example + "/scenario.yaml",
+                                        "--no-video", "--quiet",
+                                        "--out",      folder / "out",
+                                        "--set",      "plant.kind=analytic"};
+  for (const std::string& setting : settings) {
+    arguments.emplace_back("--set");
+    arguments.push_back(setting);
+  }
+  const ProcessResult result = run_qsmpc(arguments);
+  EXPECT_EQ(result.exit_code, 0) << result.errors << result.output;
+  auto summary = nlohmann::json::parse(read_text(folder / "out/summary.json"), nullptr, false);
+  EXPECT_EQ(summary["outcome"], "reached") << read_text(folder / "out/controller.log");
+  return summary;
+}
+
+TEST(Examples, pure_pursuit_in_python_arrives) {
+  const auto summary = drive("pure_pursuit_python", {});
+  EXPECT_LT(summary["certificate"]["next_step"]["max"], 1e-3);
+  EXPECT_GT(summary["min_clearance"], 0.3);
+}
+
+TEST(Examples, scenario_mpc_with_casadi_arrives_with_certified_plans) {
+  const std::string python = std::string(QSMPC_BINARY_DIR) + "/tests/examples/venv/bin/python3";
+  const auto summary =
+      drive("casadi_scenario_mpc", {"controller.command=[" + python + ", " + kExamples +
+                                    "casadi_scenario_mpc/scenario_mpc.py]"});
+  EXPECT_LT(summary["certificate"]["next_step"]["max"], 0.5);
+  EXPECT_TRUE(summary["certificate"]["horizon"]["max"].is_number());
+}
+
+TEST(Examples, mpc_in_cpp_builds_outside_of_the_tree_and_arrives_with_certified_plans) {
+  const TemporaryFolder folder;
+  // A folder in which the headers stand as they do when they are installed.
+  const std::string source = QSMPC_SOURCE_DIR;
+  const std::string command = "mkdir -p '" + folder / "include" + "' && ln -s '" + source + "' '" +
+                              (folder / "include/qsmpc") + "' && cmake -S '" + kExamples +
+                              "cpp_mpc' -B '" + (folder / "build") + "' -D QSMPC_INCLUDE_DIR='" +
+                              (folder / "include") + "' -D CMAKE_CXX_FLAGS='-I" + source + "' > '" +
+                              (folder / "log") + "' 2>&1 && cmake --build '" + (folder / "build") +
+                              "' >> '" + (folder / "log") + "' 2>&1";
+  ASSERT_EQ(std::system(command.c_str()), 0) << read_text(folder / "log");
+  const auto summary = drive("cpp_mpc", {"controller.library=" + (folder / "build/mpc.so")});
+  EXPECT_LT(summary["certificate"]["next_step"]["max"], 0.5);
+  EXPECT_TRUE(summary["certificate"]["horizon"]["max"].is_number());
+}
+
+}  // namespace example_controllers_test
+}  // namespace qsmpc::testing

@@ -1,0 +1,168 @@
+// The processes of controllers outside of the program: how they begin, how they are ended, and what
+// is heard of them.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "harness/control/child_process.hpp"
+#include "harness/episode/episode.hpp"
+#include "harness/trace/trace.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/control/outside_fixture.hpp"
+
+namespace qsmpc::harness {
+namespace outside_process_test {
+
+using ::testing::HasSubstr;
+
+Trace failed(const std::string& mode, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides = {"controller.options.mode=" + mode};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return run_episode(outside_scenario(OutsideKind::kExternal, overrides), {.seed = 1});
+}
+
+TEST(OutsideProcess, what_its_answers_may_not_be_is_said_with_what_was_found) {
+  const std::vector<std::pair<std::string, std::string>> modes = {
+      {"text", "found an answer that is not JSON: steer straight on, expected {\"input\": […]}"},
+      {"list", "found the answer [0.0]"},
+      {"other", "found the answer {\"output\":[0.0]}"},
+      {"word", "found input [\"0\"], expected 1 finite numbers"},
+      {"period", "found an answer to period 1, expected one to period 2"},
+      {"silence", "found an answer that is not JSON: "},
+      {"long", "found a line of more than 16777216 bytes"},
+      {"half", "found its end with exit code 0"}};
+  for (const auto& [mode, reason] : modes) {
+    SCOPED_TRACE(mode);
+    const Trace trace = failed(mode);
+    EXPECT_EQ(trace.fault_of, FaultOf::kController);
+    EXPECT_THAT(trace.fault, HasSubstr("responder.py: period 2: "));
+    EXPECT_THAT(trace.fault, HasSubstr(reason));
+    EXPECT_EQ(trace.steps.size(), 2U);
+  }
+}
+
+TEST(OutsideProcess, answers_that_nothing_had_asked_for_end_the_drive) {
+  const Trace twice = failed("twice");
+  EXPECT_THAT(twice.fault, HasSubstr("an answer that nothing had asked for"));
+  EXPECT_EQ(twice.steps.size(), 3U);
+  // Before the first period, if it has come by then, or else instead of the answer to a later one.
+  const Trace early = failed("early");
+  EXPECT_EQ(early.outcome, Outcome::kFault);
+  EXPECT_LE(early.steps.size(), 2U);
+}
+
+TEST(OutsideProcess, what_reads_nothing_any_more_is_not_waited_for_longer_than_the_deadline) {
+  const Trace trace = failed("deaf", {"controller.deadline=1"});
+  EXPECT_EQ(trace.fault_of, FaultOf::kController);
+  EXPECT_EQ(trace.steps.size(), 3U);
+  EXPECT_THAT(trace.fault, HasSubstr("period 3"));
+}
+
+TEST(OutsideProcess, that_does_not_begin_is_a_fault_of_the_controller) {
+  EXPECT_THAT(failed("old").fault,
+              HasSubstr("found version 7 of the protocol, expected version 1"));
+  EXPECT_THAT(failed("no_greeting", {"controller.start_deadline=1"}).fault,
+              HasSubstr("its start: found no answer within 1 s"));
+  Scenario gone = outside_scenario(OutsideKind::kExternal);
+  gone.controller.outside.command = {"./no_such_program"};
+  EXPECT_THAT(run_episode(gone, {}).fault, HasSubstr("no process: No such file or directory"));
+  gone.controller.outside.folder = "/no/such/folder";
+  EXPECT_THAT(run_episode(gone, {}).fault, HasSubstr("No such file or directory"));
+}
+
+TEST(OutsideProcess, of_a_library_that_does_not_begin_says_why) {
+  for (const OutsideKind kind : {OutsideKind::kLibrary, OutsideKind::kOwnClass}) {
+    const Scenario scenario = outside_scenario(kind, {"controller.options.mode=no_start"});
+    const Trace trace = run_episode(scenario, {});
+    EXPECT_TRUE(trace.steps.empty());
+    EXPECT_THAT(trace.fault, HasSubstr("its start: found its error: no horizon of "));
+  }
+  Scenario scenario = outside_scenario(OutsideKind::kLibrary);
+  std::string& library = scenario.controller.outside.library;
+  library = library_file("other_version");
+  EXPECT_THAT(run_episode(scenario, {}).fault,
+              HasSubstr("has version 2 of the controller interface, this program version 1"));
+  library = data_folder() + "/responder.py";
+  EXPECT_THAT(run_episode(scenario, {}).fault, HasSubstr("its error: "));
+  library = "libm.so.6";
+  EXPECT_THAT(run_episode(scenario, {}).fault, HasSubstr("exports no function qsmpc_controller"));
+}
+
+TEST(OutsideProcess, has_its_standard_error_in_the_log_and_its_last_line_in_the_reason) {
+  const Trace trace = failed("exit");
+  EXPECT_THAT(trace.fault, HasSubstr("after \"ZeroDivisionError: division by zero\""));
+  EXPECT_EQ(trace.controller_log,
+            "controller of dubins_obstacles\ndrive 1\nTraceback\nZeroDivisionError: division by "
+            "zero\n");
+  const Scenario scenario = outside_scenario(OutsideKind::kLibrary);
+  EXPECT_THAT(run_episode(scenario, {}).controller_log,
+              HasSubstr("what a library prints is in the log\n"));
+}
+
+/// The numbers that a responder with the option `pids` has written down.
+std::vector<pid_t> written_pids(const std::string& path) {
+  std::ifstream file(path);
+  return {std::istream_iterator<pid_t>(file), {}};
+}
+
+bool is_there(pid_t process) { return ::kill(process, 0) == 0; }
+
+TEST(OutsideProcess, ends_with_all_of_its_children_however_the_drive_ends) {
+  for (const char* mode : {"good", "crash", "hang", "stubborn", "exit", "no_greeting"}) {
+    SCOPED_TRACE(mode);
+    const testing::TemporaryFolder folder;
+    const std::string pids = folder / "pids";
+    (void)failed(mode, {"controller.options.pids=" + pids, "controller.deadline=1",
+                        "controller.start_deadline=3"});
+    const std::vector<pid_t> started = written_pids(pids);
+    ASSERT_EQ(started.size(), 2U);
+    for (const pid_t process : started) EXPECT_FALSE(is_there(process));
+    EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a zombie";
+  }
+}
+
+TEST(OutsideProcess, leaves_no_descriptor_open) {
+  const auto open_descriptors = [] {
+    return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
+  };
+  (void)failed("good");
+  const auto before = open_descriptors();
+  for (const char* mode : {"good", "crash", "old"}) (void)failed(mode);
+  EXPECT_EQ(open_descriptors(), before);
+}
+
+TEST(OutsideProcess, ends_with_its_children_where_the_program_is_killed) {
+  const testing::TemporaryFolder folder;
+  const std::string pids = folder / "pids";
+  const pid_t program = ::fork();
+  ASSERT_GE(program, 0);
+  if (program == 0) {
+    (void)failed("hang", {"controller.options.pids=" + pids, "controller.deadline=600"});
+    ::_exit(0);
+  }
+  std::vector<pid_t> started;
+  while (started.size() < 2) started = written_pids(pids);
+  ::kill(program, SIGKILL);
+  ::waitpid(program, nullptr, 0);
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  for (const pid_t process : started) {
+    while (is_there(process) && std::chrono::steady_clock::now() < until) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_FALSE(is_there(process));
+  }
+}
+
+}  // namespace outside_process_test
+}  // namespace qsmpc::harness
