@@ -2,11 +2,14 @@
 
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <unistd.h>
 
 #include "harness/errors.hpp"
+#include "harness/files/installation.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -27,10 +30,13 @@ std::string host_program() {
     if (is_program(given)) return given;
     throw IoError(std::string(given) + ": no program, but QSMPC_HOST names it");
   }
-  std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  for (const fs::path& path : {folder / kName, folder.parent_path() / "libexec" / "qsmpc" / kName,
-                               fs::path(QSMPC_BUILD_FOLDER) / kName}) {
+  // Beside the program in a build folder, else where both are installed.
+  std::vector<fs::path> places{fs::path(own_object_file()).parent_path() / kName};
+  for (const std::string& prefix : installation_prefixes()) {
+    places.push_back(fs::path(prefix) / "libexec" / "qsmpc" / kName);
+  }
+  places.push_back(fs::path(QSMPC_BUILD_FOLDER) / kName);
+  for (const fs::path& path : places) {
     if (is_program(path)) return path.string();
   }
   throw IoError(std::string(kName) + ", which starts controllers, is not installed");

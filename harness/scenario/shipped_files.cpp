@@ -5,9 +5,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include <dlfcn.h>
-
 #include "harness/errors.hpp"
+#include "harness/files/installation.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 #include "harness/text/printable.hpp"
@@ -32,27 +31,11 @@ bool is_file(const fs::path& path) {
   return fs::is_regular_file(path, error);
 }
 
-// The object file that this code is in: a program, or the shared library in someone else's.
-fs::path own_object() {
-  std::error_code error;
-  Dl_info object{};
-  if (dladdr(kScenarios, &object) != 0 && object.dli_fname != nullptr) {
-    const fs::path path = object.dli_fname;
-    // Of a program it is what it was called by.
-    const bool is_library = path.filename().string().find(".so") != std::string::npos;
-    if (path.is_absolute() || is_library) return normal(path);
-  }
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  return error ? fs::path() : program;
-}
-
-// PREFIX/share/qsmpc/models, as seen from PREFIX/bin/qsmpc or PREFIX/lib/ARCHITECTURE/libqsmpc.so.
+// PREFIX/share/qsmpc/models; empty where nothing is installed.
 fs::path installed_models_folder() {
   std::error_code error;
-  fs::path prefix = own_object().parent_path();
-  for (int level = 0; level < 2; ++level) {
-    prefix = prefix.parent_path();
-    fs::path models = prefix / "share" / "qsmpc" / "models";
+  for (const std::string& prefix : installation_prefixes()) {
+    fs::path models = fs::path(prefix) / "share" / "qsmpc" / "models";
     if (fs::is_directory(models, error)) return models;
   }
   return {};

@@ -1,0 +1,42 @@
+#include "harness/files/installation.hpp"
+
+#include <filesystem>
+#include <system_error>
+
+#include <dlfcn.h>
+
+namespace qsmpc::harness {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+std::string own_object_file() {
+  std::error_code error;
+  Dl_info object{};
+  if (dladdr(reinterpret_cast<const void*>(&own_object_file), &object) != 0 &&
+      object.dli_fname != nullptr) {
+    const fs::path path = object.dli_fname;
+    // Of a program it is what it was called by.
+    const bool is_library = path.filename().string().find(".so") != std::string::npos;
+    if (is_library || path.is_absolute()) {
+      const fs::path canonical = fs::weakly_canonical(path, error);
+      if (!error) return canonical.string();
+    }
+  }
+  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  return error ? std::string() : program.string();
+}
+
+std::vector<std::string> installation_prefixes() {
+  std::vector<std::string> prefixes;
+  fs::path folder = fs::path(own_object_file()).parent_path();
+  for (int level = 0; level < 2 && folder.has_relative_path(); ++level) {
+    folder = folder.parent_path();
+    prefixes.push_back(folder.string());
+  }
+  return prefixes;
+}
+
+}  // namespace qsmpc::harness
