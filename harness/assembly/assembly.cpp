@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
+#include "harness/scenario/model_dynamics.hpp"
 #include "harness/threads/executor.hpp"
 #include "harness/threads/interruption.hpp"
 
 namespace qsmpc::harness {
 
 std::unique_ptr<const models::Dynamics> model_of(const Scenario& scenario) {
-  return models::make_dynamics(scenario.model.system, scenario.model.parameters,
-                               scenario.time_step);
+  return make_model(scenario.model, scenario.time_step);
 }
 
 controller::PredictedMotion of_plant(controller::PredictedMotion motion, const Scenario& scenario,

@@ -8,6 +8,7 @@
 #include "harness/mujoco/mujoco_model.hpp"
 #include "harness/plant/analytic_plant.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
+#include "harness/scenario/model_dynamics.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -45,23 +46,20 @@ std::unique_ptr<Plant> make_analytic(const Scenario& scenario, const PlantVariat
                       .found = "true",
                       .expected = "false, as an analytic plant has no body to stop"});
   }
-  models::ParameterMap parameters = scenario.model.parameters;
+  Scenario::Model model = scenario.model;
+  models::ParameterMap& parameters = model.parameters;
   vary(parameters, "friction", variation.friction, {"front_tyre_stiffness", "rear_tyre_stiffness"});
   vary(parameters, "mass", variation.mass, {"mass", "yaw_inertia", "cart_mass", "pole_mass"});
   vary(parameters, "wheelbase", variation.wheelbase, {"front_axle_distance", "rear_axle_distance"});
-  return make_analytic_plant(
-      models::make_dynamics(scenario.model.system, parameters, scenario.time_step),
-      scenario.time_step);
+  return make_analytic_plant(make_model(model, scenario.time_step), scenario.time_step);
 }
 
 std::unique_ptr<Plant> make_mujoco(const Scenario& scenario, const PlantVariation& variation) {
-  const auto model =
-      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
   const bool pushed = scenario.disturbance.kind == "force";
   return make_mujoco_plant(
       {.mjcf = scenario.plant.mjcf,
        .control_period = scenario.time_step,
-       .system = model->description(),
+       .system = system_of(scenario),
        .parameters = scenario.model.parameters,
        .mapping = scenario.plant.mapping,
        .time_step = scenario.plant.time_step,

@@ -14,6 +14,10 @@ bool has_feedback(const Scenario::Controller& controller) {
 }  // namespace
 
 std::string why_no_bound(const Scenario& scenario) {
+  if (scenario.model.own && !scenario.model.own->differentiable) {
+    return "the library of " + scenario.model.system +
+           " gives steps without derivatives: plans use finite differences, and certificates say 1";
+  }
   if (scenario.disturbance.sensor.isZero(0.0) || !has_feedback(scenario.controller)) return {};
   return "with measurement noise (disturbance.sensor) the feedback acts on what is seen";
 }

@@ -16,13 +16,17 @@
 #include "controller/regions/safe_set.hpp"
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
+#include "models/dynamics/equations/equation_system.hpp"
 
 namespace qsmpc::harness {
 
 struct Scenario {
   struct Model {
-    std::string system;               ///< a name from `qsmpc list systems`
+    std::string system;               ///< a name from `qsmpc list systems`, or the own system's
     models::ParameterMap parameters;  ///< all of them, defaults filled in
+    /// A system of the user's: by equations, or as its library describes it.
+    std::optional<models::EquationSystem> own{};
+    std::string library{};  ///< absolute path of the shared library that it is from
   };
   struct Plant {
     std::string kind = "mujoco";  ///< a name from `qsmpc list plants`: "analytic" or "mujoco"

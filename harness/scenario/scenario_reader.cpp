@@ -120,7 +120,7 @@ class ScenarioReader {
   void read_key(Section& section, const ScenarioKey& key) {
     const KeyDescription& about = key.about;
     const std::size_t before = reading_.problems.size();
-    if (about.required) {
+    if (about.required && !about.values.empty()) {
       section.require(about.name, std::visit(ExpectedValue{reading_}, about.values.front()));
     }
     if (key.read != nullptr) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/yaml_text.hpp"
 
@@ -42,9 +43,7 @@ std::string member_text(const ScenarioKey& key, Scenario& scenario) {
 class ScenarioWriter {
  public:
   explicit ScenarioWriter(const Scenario& scenario)
-      : scenario_(scenario),
-        dynamics_(models::make_dynamics(scenario.model.system, scenario.model.parameters,
-                                        scenario.time_step)) {}
+      : scenario_(scenario), system_(system_of(scenario)) {}
 
   /// A line for each key, more where the value has several, after `indent`.
   std::string lines(const std::vector<ScenarioKey>& keys, const std::string& indent) {
@@ -61,7 +60,7 @@ class ScenarioWriter {
  private:
   std::optional<std::string> value(const ScenarioKey& key, const std::string& indent) {
     if (key.is_written != nullptr && !key.is_written(scenario_)) return std::nullopt;
-    if (key.write != nullptr) return key.write(scenario_, dynamics_->description());
+    if (key.write != nullptr) return key.write(scenario_, system_);
     if (key.keys.empty()) return member_text(key, scenario_);
     if (key.layout == SectionLayout::kFlow) return braces(key.keys);
     std::string block = "\n" + lines(key.keys, indent);
@@ -82,7 +81,7 @@ class ScenarioWriter {
   }
 
   Scenario scenario_;  // a copy: members are reached by references that could change them
-  std::unique_ptr<const models::Dynamics> dynamics_;
+  models::SystemDescription system_;
 };
 
 }  // namespace

@@ -12,8 +12,8 @@
 #include "controller/regions/unsafe_set.hpp"
 #include "harness/scenario/certificate_scope.hpp"
 #include "harness/scenario/error_origin.hpp"
+#include "harness/scenario/model_dynamics.hpp"
 #include "models/constants.hpp"
-#include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -51,9 +51,7 @@ void warn_of_limits(const Scenario& scenario, std::vector<std::string>& warnings
 
 /// A turn and more is no heading that anybody writes in radians.
 void warn_of_degrees(const Scenario& scenario, std::vector<std::string>& warnings) {
-  const auto model =
-      models::make_dynamics(scenario.model.system, scenario.model.parameters, scenario.time_step);
-  const std::vector<models::Coordinate>& states = model->description().states;
+  const std::vector<models::Coordinate> states = system_of(scenario).states;
   const auto question = [&](const std::string& key, const Eigen::VectorXd& values) {
     for (Eigen::Index i = 0; i < values.size(); ++i) {
       const models::Coordinate& state = states[static_cast<std::size_t>(i)];

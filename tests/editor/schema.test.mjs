@@ -27,6 +27,21 @@ test("every shipped scenario is taken as it is", async () => {
   }
 });
 
+test("a system of the user's is taken, by equations and from a library", async () => {
+  for (const example of ["lag_unicycle", "planar_quadrotor"]) {
+    for (const file of ["scenario.yaml", "scenario_cpp.yaml"]) {
+      const text = readFileSync(join(source, "examples", example, file), "utf8");
+      assert.deepEqual(await server.diagnose("scenario", text), [], `${example}/${file}`);
+    }
+  }
+});
+
+test("a wrong key of a user's system is marked", async () => {
+  const text = readFileSync(join(source, "examples/lag_unicycle/scenario.yaml"), "utf8");
+  const found = await server.diagnose("scenario", text.replace("  define:", "  defines:"));
+  assert.match(found.map((one) => one.message).join("\n"), /Valid values: "system", "library"/);
+});
+
 test("every shipped campaign is taken as it is", async () => {
   const campaigns = shipped("models/campaigns");
   assert.ok(campaigns.length > 3);
@@ -55,8 +70,8 @@ for (const [right, wrong, says] of [
   ["max_iterations: 100", "deadline: 0", /exclusive minimum of 0/],
   ["max_iterations: 100", "threads: 1.5", /Incorrect type/],
   ["steps: 200", "steps: 0", /minimum of 1/],
-  ["y: [-1, 3]", "z: [-1, 3]", /z is not allowed/],
   // Names and sizes of another system.
+  ["y: [-1, 3]", "z: [-1, 3]", /Valid values: "x", "y", "heading"/],
   ["y: [-1, 3]", "pole_angle: [-1, 3]", /Valid values: "x", "y", "heading"/],
   ["speed: 1.5", "gravity: 9.8", /Valid values: "system", "speed"/],
   ["covariance: [0.01, 0.01, 0.001]", "covariance: [0.01, 0.01]", /too few items/],

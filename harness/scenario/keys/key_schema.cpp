@@ -38,9 +38,8 @@ struct ValueSchema {
     return schema;
   }
   Json operator()(const NameValue& name) const { return {{"enum", name.known}}; }
-  Json operator()(const SystemNameValue& name) const {
-    return {{"enum", names_of_family(name.family)}};
-  }
+  /// Which ones a system has is said by the conditions; one of the user's may have any.
+  Json operator()(const SystemNameValue& /*name*/) const { return {{"type", "string"}}; }
   Json operator()(const NumberValue& number) const {
     Json schema{{"type", "number"}};
     put_range(schema, number.range);
@@ -140,6 +139,8 @@ void put_keys(Json& schema, const std::vector<KeyDescription>& keys) {
       for (const std::string& name : names_of_family(key.family)) {
         schema["properties"][name] = key_schema(key);
       }
+      // A system of the user's has other ones; which ones another has, the conditions say.
+      schema["additionalProperties"] = key_schema(key);
     } else {
       schema["properties"][key.name] = key_schema(key);
       if (key.required) schema["required"].push_back(key.name);

@@ -1,5 +1,4 @@
-// The keys of the system and of the plant that stands for it.
-#include <stdexcept>
+// The keys of the plant that stands for the system.
 #include <utility>
 
 #include <fmt/format.h>
@@ -17,59 +16,6 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr double kShortestSimulatorStep = 1e-6;  // s
-
-// make_dynamics with its refusal, if any, as text.
-std::unique_ptr<const models::Dynamics> try_dynamics(const Scenario::Model& model, double time_step,
-                                                     std::string& refusal) {
-  try {
-    return models::make_dynamics(model.system, model.parameters, time_step);
-  } catch (const std::invalid_argument& error) {
-    refusal = error.what();
-    return nullptr;
-  }
-}
-
-// A refusal is tied to the parameter that causes it by trying each alone among the defaults.
-void read_parameters(ScenarioReading& reading, Section& section, const models::SystemEntry& entry) {
-  const double time_step = reading.scenario.time_step;
-  Scenario::Model& model = reading.scenario.model;
-  std::string refusal;
-  model.parameters = entry.defaults;
-  for (const auto& [name, fallback] : entry.defaults) {
-    const double value = section.number(name, fallback);
-    Scenario::Model alone{.system = entry.name, .parameters = entry.defaults};
-    alone.parameters[name] = value;
-    if (value == fallback || try_dynamics(alone, time_step, refusal) != nullptr) {
-      model.parameters[name] = value;
-    } else {
-      section.note(name, "what the system accepts: " + refusal);
-    }
-  }
-  reading.dynamics = try_dynamics(model, time_step, refusal);
-  if (reading.dynamics == nullptr) {
-    section.note_here("what the system accepts: " + refusal, "parameters that do not go together");
-    model.parameters = entry.defaults;
-    reading.dynamics = try_dynamics(model, time_step, refusal);
-  }
-}
-
-void read_system(ScenarioReading& reading, Section& section, const KeyDescription& /*about*/) {
-  for (const models::SystemEntry& entry : models::systems()) {
-    if (entry.name != reading.scenario.model.system) continue;
-    read_parameters(reading, section, entry);
-    return;
-  }
-  for (const std::string& key : section.keys()) (void)section.holds_text(key);  // of what system?
-}
-
-std::optional<std::string> parameters_text(const Scenario& scenario,
-                                           const models::SystemDescription& /*system*/) {
-  std::string out;
-  for (const auto& [name, value] : scenario.model.parameters) {
-    out += fmt::format("{}{}: {}", out.empty() ? "" : ", ", name, yaml_number(value));
-  }
-  return out.empty() ? std::nullopt : std::optional(out);
-}
 
 // The vehicle that drives, or is drawn for, a system unless the scenario names another. One that
 // has no place in the plane cannot be drawn without its own simulation.
@@ -178,28 +124,6 @@ ScenarioKey mapping_key() {
 }
 
 }  // namespace
-
-ScenarioKey model_key() {
-  return {
-      .about = {.name = "model"},
-      .keys = {{.about = {.name = "system",
-                          .values = {NameValue{system_names()}},
-                          .words = "a name from `qsmpc list systems`",
-                          .required = true},
-                .member = [](Scenario& scenario) -> std::string& { return scenario.model.system; }},
-               {.about = {.name = "PARAMETER",
-                          .family = NameFamily::kParameters,
-                          .values = {NumberValue{}},
-                          .words = "a constant of the system",
-                          .see = "[systems](#systems)",
-                          .unit = "of the constant",
-                          .fallback_words = "the system's"},
-                .read = read_system,
-                .write = parameters_text}},
-      .layout = SectionLayout::kFlow,
-      .after = ReadAfter::kTimeStep,
-      .table = "plant"};
-}
 
 ScenarioKey plant_key() {
   return {

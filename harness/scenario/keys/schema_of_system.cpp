@@ -149,9 +149,32 @@ Json part_of_mapping(const std::vector<KeyDescription>& keys, const SystemNames&
   return part;
 }
 
+/// A model of the user's own.
+Json is_own() { return {{"anyOf", {{{"required", {"library"}}}, {{"required", {"equations"}}}}}}; }
+
 Json is_system(const std::string& name) {
-  const Json system{{"properties", {{"system", {{"const", name}}}}}, {"required", {"system"}}};
+  const Json system{
+      {"properties", {{"system", {{"const", name}}}}}, {"required", {"system"}}, {"not", is_own()}};
   return {{"properties", {{"model", system}}}, {"required", {"model"}}};
+}
+
+Json of_model(Json part) { return {{"properties", {{"model", std::move(part)}}}}; }
+
+/// A model has the keys of one's own or a name that is known.
+Json condition_of_own(const std::vector<KeyDescription>& keys) {
+  std::vector<std::string> own;
+  for (const KeyDescription& key : keys) {
+    if (key.name != "model") continue;
+    for (const KeyDescription& inner : mapping_of(key)->keys) {
+      if (inner.family == NameFamily::kNone) own.push_back(inner.name);
+    }
+  }
+  Json is_of_own = of_model(is_own());
+  is_of_own["required"] = {"model"};
+  return {{"if", std::move(is_of_own)},
+          {"then", of_model({{"propertyNames", {{"enum", own}}}})},
+          {"else", of_model({{"properties", {{"system", {{"enum", system_names()}}}}},
+                             {"required", {"system"}}})}};
 }
 
 }  // namespace
@@ -172,6 +195,7 @@ nlohmann::ordered_json conditions_of_systems(const std::vector<KeyDescription>& 
     conditions.push_back(
         {{"if", is_system(names.system.name)}, {"then", part_of_mapping(keys, names)}});
   }
+  conditions.push_back(condition_of_own(keys));
   return conditions;
 }
 

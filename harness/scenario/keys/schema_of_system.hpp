@@ -14,7 +14,7 @@ namespace qsmpc::harness {
 [[nodiscard]] std::vector<std::string> names_of_family(NameFamily family);
 
 /// For each system a condition: if `model.system` is it, then names and sizes in `keys` are its
-/// own.
+/// own. The last condition tells systems of the user's own from those.
 [[nodiscard]] nlohmann::ordered_json conditions_of_systems(const std::vector<KeyDescription>& keys);
 
 }  // namespace qsmpc::harness

@@ -1,0 +1,19 @@
+// The planner's model of a scenario, whether it comes with the program or from its user.
+#pragma once
+
+#include <memory>
+
+#include "harness/scenario/scenario.hpp"
+#include "models/dynamics/dynamics.hpp"
+
+namespace qsmpc::harness {
+
+/// The model for the control period `time_step` (s). Throws InputError where a library cannot be
+/// loaded, and std::invalid_argument where the system refuses its parameters.
+[[nodiscard]] std::unique_ptr<const models::Dynamics> make_model(const Scenario::Model& model,
+                                                                 double time_step);
+
+/// The names, units and bounds of the scenario's system. Loads no library.
+[[nodiscard]] models::SystemDescription system_of(const Scenario& scenario);
+
+}  // namespace qsmpc::harness
