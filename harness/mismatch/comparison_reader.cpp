@@ -7,6 +7,7 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/mismatch/comparison_file.hpp"
+#include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "models/constants.hpp"
 
@@ -93,7 +94,7 @@ void ComparisonReader::read_header() {
   comparison_.scenario = parse_scenario(
       comparison_.scenario_text,
       {.file = path, .folder = path.substr(0, path.rfind('/') + 1), .files_must_exist = false});
-  comparison_.system = model_of(comparison_.scenario)->description();
+  comparison_.system = system_of(comparison_.scenario);
   state_dim_ = comparison_.system.states.size();
   horizon_ = static_cast<std::size_t>(certified_stages(decision_parts(comparison_.scenario)));
   const std::vector<std::string> names = file_.texts("/plants", "names");

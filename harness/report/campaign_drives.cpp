@@ -12,9 +12,9 @@
 
 #include <fmt/format.h>
 
-#include "harness/assembly/assembly.hpp"
 #include "harness/figures/ground_map.hpp"
 #include "harness/figures/palette.hpp"
+#include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/trace/ending.hpp"
@@ -60,7 +60,7 @@ PlaneMap ground_of(const VariantStatistics& variant) {
   const Scenario scenario = parse_scenario(
       variant.scenario_text,
       {.file = "variant " + variant.name, .files_must_exist = false, .is_recorded = true});
-  return ground_map(scenario, model_of(scenario)->description());
+  return ground_map(scenario, system_of(scenario));
 }
 
 /// Drives that arrived lie below the others.

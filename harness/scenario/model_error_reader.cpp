@@ -13,7 +13,6 @@
 #include "harness/errors.hpp"
 #include "harness/files/text_file.hpp"
 #include "harness/scenario/error_origin.hpp"
-#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
 #include "harness/scenario/yaml_text.hpp"
 #include "harness/scenario/yaml_tree.hpp"
@@ -207,7 +206,7 @@ std::vector<KeyDescription> model_error_keys() {
                   .unit = "unit²",
                   .fallback_words = "unknown"});
   keys.push_back({.name = "system",
-                  .values = {NameValue{system_names()}},
+                  .values = {TextValue{.longest = kLongestName}},
                   .words = "a name from `qsmpc list systems`: the system that it was measured for; "
                            "another one is refused",
                   .fallback_words = "the scenario's"});

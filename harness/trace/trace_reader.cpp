@@ -11,6 +11,7 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
+#include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/certificate_fields.hpp"
 #include "harness/trace/cost_fields.hpp"
@@ -139,7 +140,7 @@ void TraceReader::read_outcome() {
 /// Of a trace from before it was recorded, from its scenario.
 void TraceReader::read_description() {
   const Scenario& scenario = trace_.scenario;
-  trace_.system = has_system(file_) ? read_system(file_) : model_of(scenario)->description();
+  trace_.system = has_system(file_) ? read_system(file_) : system_of(scenario);
   state_dim_ = std::ssize(trace_.system.states);
   input_dim_ = std::ssize(trace_.system.inputs);
   const auto expect = [this](const char* key, Eigen::Index found, Eigen::Index expected) {

@@ -72,9 +72,22 @@ TEST_P(OwnDynamics, drive_alike_by_equations_and_from_a_library_built_outside) {
   EXPECT_EQ(again.exit_code, 0) << again.errors;
   EXPECT_EQ(read_text(folder.path() + "/again/scenario.yaml"),
             read_text(in_cpp + "/scenario.yaml"));
+  const std::string compared = folder.path() + "/compared";
+  const ProcessResult comparison =
+      run_qsmpc({"compare", in_cpp + "/scenario.yaml", "--plant", "analytic", "--episodes", "2",
+                 "--set", "limit.steps=3", "--out", compared});
+  EXPECT_EQ(comparison.exit_code, 0) << comparison.errors;
+  const std::string campaign = folder.path() + "/campaign.yaml";
+  std::ofstream(campaign) << "name: two\nscenario: " << in_cpp << "/scenario.yaml\n"
+                          << "variants: {short: {limit.steps: 3}}\nseeds: {count: 2}\n";
+  const std::string driven = folder.path() + "/driven";
+  const ProcessResult drives = run_qsmpc({"campaign", campaign, "--out", driven});
+  EXPECT_EQ(drives.exit_code, 0) << drives.errors;
   std::filesystem::remove(library);
-  const ProcessResult report = run_qsmpc({"report", in_cpp});
-  EXPECT_EQ(report.exit_code, 0) << report.errors;
+  for (const std::string& results : {in_cpp, compared, driven}) {
+    const ProcessResult report = run_qsmpc({"report", results});
+    EXPECT_EQ(report.exit_code, 0) << results << ": " << report.errors;
+  }
   const ProcessResult gone =
       run_qsmpc({"run", in_cpp + "/scenario.yaml", "--no-video", "--out", folder.path() + "/gone"});
   EXPECT_EQ(gone.exit_code, 2);
@@ -110,6 +123,34 @@ TEST(OwnDynamicsCommands, take_a_system_by_equations) {
   const ProcessResult campaign =
       run_qsmpc({"campaign", grid, "--jobs", "2", "--out", folder.path() + "/g"});
   EXPECT_EQ(campaign.exit_code, 0) << campaign.errors;
+}
+
+/// The first block of `language` in the page about own dynamics.
+std::string documented(const std::string& language) {
+  const std::string page = read_text(std::string(QSMPC_SOURCE_DIR) + "/docs/dynamics.md");
+  const std::string fence = "```" + language + "\n";
+  const std::size_t begin = page.find(fence) + fence.size();
+  return page.substr(begin, page.find("```", begin) - begin);
+}
+
+TEST(OwnDynamicsCommands, take_what_the_page_about_them_shows) {
+  const TemporaryFolder folder;
+  const std::string boat = folder.path() + "/my_boat.yaml";
+  std::ofstream(boat) << documented("yaml");
+  const ProcessResult drive = run_qsmpc({"run", boat, "--no-video", "--out", folder.path() + "/b"});
+  EXPECT_EQ(drive.exit_code, 0) << drive.errors;
+  EXPECT_THAT(drive.output + drive.errors, HasSubstr("reached"));
+
+  std::ofstream(folder.path() + "/cart.cpp") << documented("cpp");
+  const std::string command = "c++ -std=c++20 -O1 -Wall -Wextra -Werror -shared -fPIC -I '" +
+                              std::string(QSMPC_PUBLIC_HEADERS) + "' '" + folder.path() +
+                              "/cart.cpp' -o '" + folder.path() + "/my_cart.so'";
+  ASSERT_EQ(std::system(command.c_str()), 0);  // NOLINT: fixed
+  std::ofstream(folder.path() + "/cart.yaml")
+      << "name: cart\nmodel: {library: my_cart.so, parameters: {mass: 3}}\n"
+         "plant: {kind: analytic}\ninitial_state: {mean: [0, 0]}\ntarget: {state: [1, 0]}\n";
+  const ProcessResult valid = run_qsmpc({"validate", folder.path() + "/cart.yaml"});
+  EXPECT_EQ(valid.exit_code, 0) << valid.errors << valid.output;
 }
 
 TEST(OwnDynamicsCommands, say_the_place_of_what_is_wrong_with_a_formula) {

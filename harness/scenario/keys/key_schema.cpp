@@ -139,8 +139,8 @@ void put_keys(Json& schema, const std::vector<KeyDescription>& keys) {
       for (const std::string& name : names_of_family(key.family)) {
         schema["properties"][name] = key_schema(key);
       }
-      // A system of the user's has other ones.
-      if (key.family != NameFamily::kParameters) schema["additionalProperties"] = key_schema(key);
+      // A system of the user's has other ones; which ones another has, the conditions say.
+      schema["additionalProperties"] = key_schema(key);
     } else {
       schema["properties"][key.name] = key_schema(key);
       if (key.required) schema["required"].push_back(key.name);
