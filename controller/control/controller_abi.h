@@ -18,6 +18,8 @@
 extern "C" {
 #endif
 
+/* NOLINTBEGIN(modernize-use-using, readability-identifier-naming): it is C. */
+
 /* Grows with every change of what follows. */
 #define QSMPC_CONTROLLER_ABI 1
 
@@ -122,6 +124,8 @@ typedef struct qsmpc_controller_table {
 __attribute__((visibility("default")))
 #endif
 const qsmpc_controller_table* qsmpc_controller(void);
+
+/* NOLINTEND(modernize-use-using, readability-identifier-naming) */
 
 #ifdef __cplusplus
 }

@@ -55,6 +55,12 @@ class ChildProcess {
   /// What it has said by now that nobody has received; nothing where that is nothing.
   [[nodiscard]] std::optional<std::string> unasked();
 
+  /// Reads what of its standard error has come by now.
+  void listen() { turn(Clock::time_point::min()); }
+
+  /// Whether it still can answer, as far as is known by now.
+  [[nodiscard]] bool is_alive() const { return !end_ && output_.is_open() && leash_.is_open(); }
+
   /// Sends `line`, closes its standard input and gives it a second to end by itself.
   void finish(const std::string& line) noexcept;
 

@@ -58,6 +58,10 @@ void OutsideController::reset(std::uint64_t seed) {
   seed_ = seed;
   is_reset_ = false;
   log_.clear();
+  if (process_ != nullptr) {
+    // What it did after its last answer was no part of this drive.
+    if (process_->unasked() || !process_->is_alive()) process_.reset();
+  }
   if (process_ != nullptr) process_->log().clear();
   guarded("its start", [&] { start(); });
 }
@@ -99,7 +103,9 @@ void OutsideController::fail(const std::string& place, const std::string& found,
 }
 
 std::string OutsideController::log() const {
-  return process_ == nullptr ? log_ : process_->log().text();
+  if (process_ == nullptr) return log_;
+  process_->listen();
+  return process_->log().text();
 }
 
 void OutsideController::end() {

@@ -148,6 +148,8 @@ void watch(pid_t controller, int signals, bool& told) {
 
 int run(const std::vector<std::string>& words) {
   ::fcntl(kLeash, F_SETFD, FD_CLOEXEC);
+  // Whatever else the program had open is none of the controller's business.
+  ::close_range(kLeash + 1, ~0U, 0);
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   std::signal(SIGPIPE, SIG_DFL);
   sigset_t child_ended;

@@ -56,6 +56,11 @@ def main():
         child.stdout.readline()
         with open(options["pids"], "a", encoding="utf-8") as file:
             print(os.getpid(), child.pid, file=file)
+    if "descriptors" in options:
+        numbers = os.listdir("/proc/self/fd")
+        still_open = [number for number in numbers if os.path.exists("/proc/self/fd/" + number)]
+        with open(options["descriptors"], "w", encoding="utf-8") as file:
+            print(*sorted(still_open), file=file)
     if mode == "no_greeting":
         time.sleep(1000)
     print("controller of", scenario["name"], file=sys.stderr, flush=True)
@@ -76,7 +81,11 @@ def main():
             stages = scenario["horizon"]
             answer = {"plan": {"inputs": [[0.1]] * stages, "gains": [[[0.0, -0.5, -1.0]]] * stages,
                                "status": "stalled", "evaluations": 3}}
-        if message["period"] == FAILS_IN and mode not in ("good", "early"):
+        if mode == "leaves":
+            say(answer)
+            if message["period"] == scenario["step_limit"] - 1:
+                os._exit(0)
+        elif message["period"] == FAILS_IN and mode not in ("good", "early"):
             misbehave(mode, answer)
         else:
             say(answer)

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -132,6 +133,44 @@ TEST(OutsideProcess, ends_with_all_of_its_children_however_the_drive_ends) {
   }
 }
 
+TEST(OutsideProcess, has_no_descriptor_of_the_programs_but_its_own_three) {
+  const testing::TemporaryFolder folder;
+  const int inherited = ::open("/dev/null", O_RDONLY);  // as by libraries that mind nothing
+  (void)failed("good", {"controller.options.descriptors=" + (folder / "list")});
+  ::close(inherited);
+  std::ifstream file(folder / "list");
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "0 1 2");
+}
+
+void wait_for_end(const std::vector<pid_t>& processes) {
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
+  for (const pid_t process : processes) {
+    while (is_there(process) && std::chrono::steady_clock::now() < until) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    EXPECT_FALSE(is_there(process));
+  }
+}
+
+TEST(OutsideProcess, that_left_after_its_last_answer_is_started_again_for_the_next_drive) {
+  const testing::TemporaryFolder folder;
+  const std::string pids = folder / "pids";
+  const Scenario scenario =
+      outside_scenario(OutsideKind::kExternal,
+                       {"controller.options.mode=leaves", "controller.options.pids=" + pids});
+  EpisodeDriver driver(scenario);
+  for (const std::size_t drives : {1U, 2U}) {
+    const Trace trace = driver.run({.seed = drives});
+    EXPECT_EQ(trace.outcome, Outcome::kTimeout) << trace.fault;
+    EXPECT_EQ(trace.steps.size(), 6U);
+    const std::vector<pid_t> started = written_pids(pids);
+    EXPECT_EQ(started.size(), 2 * drives);
+    wait_for_end(started);
+  }
+}
+
 TEST(OutsideProcess, leaves_no_descriptor_open) {
   const auto open_descriptors = [] {
     return std::distance(std::filesystem::directory_iterator("/proc/self/fd"), {});
@@ -155,13 +194,7 @@ TEST(OutsideProcess, ends_with_its_children_where_the_program_is_killed) {
   while (started.size() < 2) started = written_pids(pids);
   ::kill(program, SIGKILL);
   ::waitpid(program, nullptr, 0);
-  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(30);
-  for (const pid_t process : started) {
-    while (is_there(process) && std::chrono::steady_clock::now() < until) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    EXPECT_FALSE(is_there(process));
-  }
+  wait_for_end(started);
 }
 
 }  // namespace outside_process_test
