@@ -102,6 +102,9 @@ void TraceReader::read_header() {
   trace_.scenario_text = file_.text("/", "scenario");
   trace_.seed = file_.unsigned_integer("/", "seed");
   trace_.fault = file_.text("/", "fault");
+  if (file_.has_attribute("/", "vehicle_digest")) {
+    trace_.vehicle_digest = file_.text("/", "vehicle_digest");
+  }
   const std::string outcome = file_.text("/", "outcome");
   try {
     // Which part of the unsafe set it was is told by the states, which are read later.
