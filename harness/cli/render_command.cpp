@@ -145,6 +145,7 @@ int render(const RenderArguments& arguments) {
   check_times(arguments, view, options.beside);
   warn_of_changes(trace);
   if (other) warn_of_changes(*other);
+  refuse_without_memory_to_draw(options);
   choose_gl(arguments.gl);
   const std::string path = output_path(arguments, options);
   const VideoTalk talk{.quiet = arguments.quiet, .verbose = arguments.verbose};

@@ -80,9 +80,11 @@ bool asked_to_tell(const std::vector<std::string>& fail_on, const Summary& summa
 }
 
 int run(const RunArguments& arguments) {
-  if (arguments.video && arguments.gl != "auto")
-    choose_gl(arguments.gl);  // or fail before the work
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
+  if (arguments.video) {  // or fail before the work
+    refuse_without_memory_to_draw(video_options(scenario));
+    if (arguments.gl != "auto") choose_gl(arguments.gl);
+  }
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
   refuse_beyond_memory(scenario, arguments.scenario, arguments.overrides);
