@@ -18,6 +18,7 @@
 #include "harness/text/printable.hpp"
 #include "harness/trace/summary.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/video/drawing_memory.hpp"
 #include "render/gl/gl_library.hpp"
 
 namespace qsmpc::harness {
@@ -112,6 +113,12 @@ std::string why_no_gl() {
     return "";
   } catch (const std::runtime_error& error) {
     return error.what();
+  }
+}
+
+void refuse_without_memory_to_draw(const EpisodeVideoOptions& options) {
+  if (const auto reason = why_no_memory_to_draw(options, free_address_space())) {
+    throw IoError(*reason);
   }
 }
 

@@ -24,6 +24,10 @@ void choose_gl(const std::string& name);
 /// Why nothing can be drawn on this machine; empty where something can.
 [[nodiscard]] std::string why_no_gl();
 
+/// Throws IoError where the limit of the process leaves too little address space to draw with
+/// `options`. To be asked before anything is drawn or `choose_gl` and `why_no_gl` are called.
+void refuse_without_memory_to_draw(const EpisodeVideoOptions& options);
+
 /// What the scenario says of its video.
 [[nodiscard]] EpisodeVideoOptions video_options(const Scenario& scenario);
 

@@ -152,13 +152,17 @@ std::optional<Trace> drive_again(const StoredVariant& variant, const EpisodeRow&
   return trace;
 }
 
-/// Summary, page and video of an episode in the folder `target`.
-void make_artefacts(const EpisodeView& view, const std::string& target, bool quiet) {
+/// Summary, page and video of an episode in the folder `target`. `has_drawn`: whether a video was
+/// drawn before, so that there is memory to draw.
+void make_artefacts(const EpisodeView& view, const std::string& target, bool quiet,
+                    bool& has_drawn) {
   bool with_video = is_there(target + "/" + kVideoFile);
   const std::string no_video = why_not_drawn(view);
   if (!no_video.empty()) {
     std::cerr << "qsmpc: no video: " << no_video << '\n';
   } else if (!with_video && !view.trace().steps.empty()) {
+    if (!has_drawn) refuse_without_memory_to_draw(video_options(view.scenario()));
+    has_drawn = true;
     make_video(view,
                {.video = target + "/" + kVideoFile, .numbers = target + "/" + kVideoNumbersFile},
                video_options(view.scenario()), {.quiet = quiet});
@@ -183,12 +187,13 @@ bool make_worst_episodes(const std::string& folder, std::size_t count, bool quie
   const StoreReader store(folder);
   const FolderLock lock(folder);
   const std::vector<EpisodeRow> worst = worst_episodes(store, count);
+  bool has_drawn = false;
   for (std::size_t n = 0; n < worst.size(); ++n) {
     const EpisodeRow& row = worst[n];
     if (interrupts() > 0) return false;
     if (!quiet) {
       std::cerr << fmt::format("qsmpc: episode {} of {}: variant {}, seed {}\n", n + 1,
-                               worst.size(), row.variant + 1, row.seed);
+                               worst.size(), row.variant, row.seed);
     }
     const std::string target = folder + "/" + folder_of(row);
     const bool kept = has_trace(store, row, folder);
@@ -197,7 +202,7 @@ bool make_worst_episodes(const std::string& folder, std::size_t count, bool quie
     if (!trace) return false;
     const EpisodeView view(*trace);
     if (!kept) compare_with_store(view, row);
-    make_artefacts(view, target, quiet);
+    make_artefacts(view, target, quiet, has_drawn);
   }
   return interrupts() == 0;
 }

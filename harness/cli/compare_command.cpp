@@ -17,6 +17,7 @@
 #include "harness/cli/output.hpp"
 #include "harness/cli/plant_warnings.hpp"
 #include "harness/cli/progress.hpp"
+#include "harness/cli/result_folder.hpp"
 #include "harness/cli/scenario_arguments.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/files/atomic_file.hpp"
@@ -57,6 +58,7 @@ struct CompareArguments {
   std::vector<std::string> overrides;
   std::optional<std::uint64_t> seed;
   std::string out;
+  bool force = false;
   bool quiet = false;
   bool json = false;
   std::string error_file;
@@ -121,6 +123,7 @@ int compare(CompareArguments& arguments) {
   const std::string folder = arguments.out.empty()
                                  ? default_folder(scenario.name, "compare", arguments.overrides)
                                  : arguments.out;
+  refuse_other_result(folder, scenario, arguments.force);
 
   Progress progress("comparing", arguments.quiet);
   ComparisonOptions& options = arguments.options;
@@ -180,6 +183,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   add_seed_option(*command, arguments->seed,
                   "of the first episode and of the paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-compare");
+  add_force_option(*command, arguments->force);
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print comparison.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = compare(*arguments); });

@@ -10,21 +10,13 @@
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
+#include "harness/text/fnv1a.hpp"
 #include "harness/text/printable.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kLongestWarning = 2000;  // bytes
-
-/// FNV-1a of 32 bits: the same on every machine, so that the same command has the same folder.
-std::uint32_t fnv1a(const std::string& text) {
-  std::uint32_t hash = 0x811c9dc5U;
-  for (const char letter : text) {
-    hash = (hash ^ static_cast<unsigned char>(letter)) * 0x01000193U;
-  }
-  return hash;
-}
 
 }  // namespace
 
@@ -37,9 +29,10 @@ std::string default_folder(const std::string& name, const std::string& suffix,
   }
   std::string folder = "out/" + plain_name + "-" + suffix;
   if (plain_name == name && overrides.empty()) return folder;
-  std::string all = name;
-  for (const std::string& override : overrides) all += '\0' + override;
-  return fmt::format("{}-{:08x}", folder, fnv1a(all));
+  Fnv1a<std::uint32_t> digest;  // the same command has the same folder on every machine
+  digest.add(name);
+  for (const std::string& override : overrides) digest.add('\0' + override);
+  return fmt::format("{}-{:08x}", folder, digest.value());
 }
 
 void print_result(const std::string& text) {

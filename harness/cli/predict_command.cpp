@@ -14,6 +14,7 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
+#include "harness/cli/result_folder.hpp"
 #include "harness/cli/scenario_arguments.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/prediction/input_table.hpp"
@@ -49,6 +50,7 @@ struct PredictArguments {
   std::int64_t samples = 0;
   std::optional<std::uint64_t> seed;
   std::string out;
+  bool force = false;
   bool quiet = false;
   bool json = false;
 };
@@ -102,6 +104,7 @@ int predict(const PredictArguments& arguments) {
   const std::string folder = arguments.out.empty()
                                  ? default_folder(scenario.name, "predict", arguments.overrides)
                                  : arguments.out;
+  refuse_other_result(folder, scenario, arguments.force);
   make_output_folder(folder);
 
   Progress progress("simulating", arguments.quiet);
@@ -140,6 +143,7 @@ void add_predict_command(CLI::App& app, int& exit_code) {
       ->check(CLI::Range(std::int64_t{1}, kMostSamples));
   add_seed_option(*command, arguments->seed, "of the simulated paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-predict");
+  add_force_option(*command, arguments->force);
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print predict.json instead of the table");
   command->callback([arguments, &exit_code] { exit_code = predict(*arguments); });

@@ -17,6 +17,7 @@
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/trace/vehicle_change.hpp"
 #include "render/gl/gl_library.hpp"
 
 namespace qsmpc::harness {
@@ -127,6 +128,11 @@ void check_still(const RenderArguments& arguments) {
       {.key = "--out", .found = arguments.out, .expected = "a file name that ends with .png"});
 }
 
+/// On standard error: the vehicle's file is not what it was.
+void warn_of_changes(const Trace& trace) {
+  if (const std::string change = vehicle_change(trace); !change.empty()) print_warnings({change});
+}
+
 int render(const RenderArguments& arguments) {
   check_still(arguments);
   const Trace trace = read_folder(arguments.folder);
@@ -137,6 +143,9 @@ int render(const RenderArguments& arguments) {
   EpisodeVideoOptions options = chosen_options(arguments, view.scenario());
   if (beside) options.beside = &*beside;
   check_times(arguments, view, options.beside);
+  warn_of_changes(trace);
+  if (other) warn_of_changes(*other);
+  refuse_without_memory_to_draw(options);
   choose_gl(arguments.gl);
   const std::string path = output_path(arguments, options);
   const VideoTalk talk{.quiet = arguments.quiet, .verbose = arguments.verbose};

@@ -17,6 +17,7 @@
 #include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/progress.hpp"
+#include "harness/cli/result_folder.hpp"
 #include "harness/cli/scenario_arguments.hpp"
 #include "harness/doctor/diagnosis.hpp"
 #include "harness/episode/episode.hpp"
@@ -47,6 +48,7 @@ struct RunArguments {
   std::vector<std::string> overrides;
   std::optional<std::uint64_t> seed;
   std::string out;
+  bool force = false;
   bool video = true;
   std::string gl = "auto";
   bool verbose = false;
@@ -80,21 +82,24 @@ bool asked_to_tell(const std::vector<std::string>& fail_on, const Summary& summa
 }
 
 int run(const RunArguments& arguments) {
-  if (arguments.video && arguments.gl != "auto")
-    choose_gl(arguments.gl);  // or fail before the work
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
+  if (arguments.video) {  // or fail before the work
+    refuse_without_memory_to_draw(video_options(scenario));
+    if (arguments.gl != "auto") choose_gl(arguments.gl);
+  }
   const std::uint64_t seed = arguments.seed.value_or(scenario.seed);
   scenario.seed = seed;
   refuse_beyond_memory(scenario, arguments.scenario, arguments.overrides);
+  const std::string folder =
+      arguments.out.empty()
+          ? default_folder(scenario.name, fmt::format("{}", seed), arguments.overrides)
+          : arguments.out;
+  refuse_other_result(folder, scenario, arguments.force);
   if (const auto problem = plant_problem(scenario, arguments.scenario, arguments.overrides)) {
     throw InputError(*problem);
   }
   print_warnings(scenario_warnings(scenario));
   print_warnings(plant_warnings(scenario));
-  const std::string folder =
-      arguments.out.empty()
-          ? default_folder(scenario.name, fmt::format("{}", seed), arguments.overrides)
-          : arguments.out;
   make_output_folder(folder);
   write_file(folder + "/" + kScenarioFile, to_yaml(scenario));
 
@@ -139,6 +144,7 @@ void add_run_command(CLI::App& app, int& exit_code) {
   command->add_option("--out", arguments->out,
                       "output folder; default: out/NAME-SEED, with --set and digits that belong "
                       "to the settings");
+  add_force_option(*command, arguments->force);
   command->add_flag("--video,!--no-video", arguments->video, "make the video (default: yes)");
   // An interrupt has an exit code of its own.
   add_fail_on_option(*command, arguments->fail_on,

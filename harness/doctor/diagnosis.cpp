@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -21,6 +23,7 @@ constexpr double kNothing = 0.05;  // ratio
 constexpr double kLatePeriods = 1.5;
 constexpr double kForeseen = 0.25;           // of the state's scale
 constexpr double kMismatchDeviations = 3.0;  // of the planned noise
+constexpr double kTipped = 1.0;              // rad; slopes and soft springs tilt less
 
 constexpr std::array kVerdictNames{"ok", "none", "sign", "size", "late", "unforeseen", "mismatch"};
 
@@ -75,6 +78,22 @@ std::string warning(AnswerVerdict verdict, const Scenario& scenario, const Plant
                      number(planned_deviation(scenario, state), coordinate));
 }
 
+/// That the vehicle has tipped over, which explains whatever else is wrong.
+std::optional<std::string> tipping_warning(const PlantAnswers& answers) {
+  const auto degrees = [](double angle) { return std::round(angle * 180.0 / std::numbers::pi); };
+  if (answers.tilt_at_start > kTipped) {
+    return fmt::format(
+        "the vehicle tips over while it settles: where drives begin it is tilted by {}°",
+        degrees(answers.tilt_at_start));
+  }
+  if (answers.tilt > kTipped) {
+    return fmt::format(
+        "the vehicle tips over: after {} periods of small inputs it is tilted by {}°",
+        answers.periods, degrees(answers.tilt));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 const char* verdict_name(AnswerVerdict verdict) {
@@ -110,6 +129,7 @@ std::vector<std::string> answer_warnings(const Scenario& scenario, const PlantAn
   }
   const models::SystemDescription system = model_of(scenario)->description();
   std::vector<std::string> warnings;
+  if (auto tipping = tipping_warning(answers)) warnings.push_back(std::move(*tipping));
   for (const InputAnswer& answer : answers.inputs) {
     for (std::size_t i = 0; i < answer.states.size(); ++i) {
       const AnswerVerdict verdict = verdict_of(scenario, answers, answer, i);

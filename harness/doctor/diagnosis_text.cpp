@@ -187,6 +187,7 @@ std::string diagnosis_json(const Diagnosis& diagnosis) {
   json["period"] = answers.period;
   json["fault"] =
       answers.fault ? nlohmann::ordered_json(*answers.fault) : nlohmann::ordered_json(nullptr);
+  json["tilt"] = {{"start", answers.tilt_at_start}, {"end", answers.tilt}};
   json["answers"] = answers_json(diagnosis.scenario, answers);
   json["warnings"] = answer_warnings(diagnosis.scenario, answers);
   json["suggestion"] = nullptr;

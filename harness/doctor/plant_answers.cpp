@@ -29,6 +29,8 @@ using Path = Eigen::MatrixXd;
 struct Paths {
   Path model;
   Path plant;
+  double tilt_at_start = 0.0;  // rad, of the plant
+  double tilt = 0.0;           // rad, at the end
 };
 
 /// What both do from the same state under inputs that are held.
@@ -68,9 +70,13 @@ class Comparer {
 
   /// Throws SimulatorError where the plant breaks.
   [[nodiscard]] Paths drive(const Eigen::VectorXd& input) const {
-    Paths paths{.model = Path(start_.size(), periods_), .plant = Path(start_.size(), periods_)};
+    Paths paths{.model = Path(start_.size(), periods_),
+                .plant = Path(start_.size(), periods_),
+                .tilt_at_start = 0.0,
+                .tilt = 0.0};
     plant_->reset(start_);
     const Eigen::VectorXd start = plant_->state();  // sensors are not set
+    paths.tilt_at_start = plant_->tilt();
     models::StateBatch state = start;
     models::StateBatch next = state;
     const models::StateBatch held = input;
@@ -85,6 +91,7 @@ class Comparer {
       paths.model.col(k) = state - start;
       paths.plant.col(k) = step.state - start;
     }
+    paths.tilt = plant_->tilt();
     return paths;
   }
 
@@ -169,10 +176,13 @@ void judge(InputAnswer& answer, const PlantAnswers& all) {
 void drive_all(const Comparer& comparer, PlantAnswers& answers) {
   const Paths none = comparer.drive(comparer.neutral());
   answers.inputs.push_back(input_answer(-1, 0.0, none));
+  answers.tilt_at_start = none.tilt_at_start;
+  answers.tilt = none.tilt;
   for (int j = 0; j < comparer.model().input_dim(); ++j) {
     const double amplitude = comparer.amplitude(j);
     const Paths above = comparer.drive(comparer.moved(j, amplitude));
     const Paths below = comparer.drive(comparer.moved(j, -amplitude));
+    answers.tilt = std::max({answers.tilt, above.tilt, below.tilt});
     answers.inputs.push_back(input_answer(
         j, amplitude,
         {.model = 0.5 * (above.model - below.model), .plant = 0.5 * (above.plant - below.plant)}));

@@ -41,6 +41,8 @@ struct PlantAnswers {
   Eigen::VectorXd start;
   Eigen::VectorXd scale;               ///< the model's largest change of each state in these drives
   std::vector<InputAnswer> inputs;     ///< none first, then each input
+  double tilt_at_start = 0.0;          ///< rad, see Plant::tilt; where the drives begin
+  double tilt = 0.0;                   ///< rad, the largest at the end of a drive
   std::optional<std::string> fault{};  ///< how the plant broke; the drives are then not complete
 };
 

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "controller/certification/certificate.hpp"
@@ -38,6 +40,15 @@ constexpr double kMilliseconds = 1000.0;  // in a second
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// plant_digest; empty where the vehicle is not to be had.
+std::string digest_of(const Scenario& scenario) {
+  try {
+    return plant_digest(scenario);
+  } catch (const InputError&) {
+    return {};
+  }
 }
 
 Trace header_of(const Scenario& scenario, const models::SystemDescription& system,
@@ -89,6 +100,8 @@ class EpisodeDriver::Loop {
     unsafe_outcome_.reset();
     belief_ = first_belief();
     Trace trace = header_of(scenario_, model_->description(), options_.seed);
+    if (!vehicle_digest_) vehicle_digest_ = digest_of(scenario_);
+    trace.vehicle_digest = *vehicle_digest_;
     const GaussianSampler initial(belief_.mean, belief_.covariance);
     state_ = initial.sample({.seed = options_.seed, .stream = RandomStream::kInitialState});
     try {
@@ -284,12 +297,15 @@ class EpisodeDriver::Loop {
   EpisodeOptions options_;
   std::unique_ptr<Plant> plant_;
   controller::Gaussian belief_;
+  std::optional<std::string> vehicle_digest_;  // once it is known
   Eigen::VectorXd state_;
   std::optional<Outcome> unsafe_outcome_;  // what the first unsafe state of it makes of it
 };
 
 Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
-  return header_of(scenario, model_of(scenario)->description(), seed);
+  Trace header = header_of(scenario, model_of(scenario)->description(), seed);
+  header.vehicle_digest = digest_of(scenario);
+  return header;
 }
 
 EpisodeDriver::EpisodeDriver(const Scenario& scenario) : loop_(std::make_unique<Loop>(scenario)) {}

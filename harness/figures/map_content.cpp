@@ -151,7 +151,9 @@ std::vector<std::size_t> room_of(const std::vector<MapCloud>& clouds) {
 
 }  // namespace
 
-std::string colour_class(int colour) { return fmt::format("c{}", std::clamp(colour, 0, kGrey)); }
+std::string colour_class(int colour) {
+  return fmt::format("c{}", std::clamp(colour, 0, kLastStage));
+}
 
 std::string path_classes(const MapPath& path) {
   return std::string("way ") + (path.faint ? "faint " : "") + (path.dashed ? "broken " : "") +

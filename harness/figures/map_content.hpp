@@ -10,7 +10,7 @@
 
 namespace qsmpc::harness {
 
-/// "c0" … "c7", whatever number was given.
+/// "c0" … "c9", whatever number was given.
 [[nodiscard]] std::string colour_class(int colour);
 [[nodiscard]] std::string path_classes(const MapPath& path);
 [[nodiscard]] std::string body_classes(const MapBody& body);

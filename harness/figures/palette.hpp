@@ -1,4 +1,4 @@
-// The palette of charts and maps: numbers that become the classes c0 … c7 of the page's style
+// The palette of charts and maps: numbers that become the classes c0 … c9 of the page's style
 // (web/page.css).
 #pragma once
 
@@ -17,5 +17,10 @@ inline constexpr int kSky = 5;
 /// Classes c6 and c7, of maps only: the colours of text and of small print.
 inline constexpr int kInk = 6;
 inline constexpr int kGrey = 7;
+
+/// Classes c8 and c9, of maps only: a plan's first and last stage in the palette of stages that
+/// videos and pages share (render/colour.hpp, web/map.js).
+inline constexpr int kFirstStage = 8;
+inline constexpr int kLastStage = 9;
 
 }  // namespace qsmpc::harness

@@ -44,6 +44,7 @@ constexpr std::string_view kStyle =
     ".axis,.frame{stroke:#55636f;stroke-width:1}.grid-line{stroke:#e6ebef;stroke-width:1}"
     ".c0{stroke:#0072b2}.c1{stroke:#d98200}.c2{stroke:#009e73}.c3{stroke:#b8568f}"
     ".c4{stroke:#d55e00}.c5{stroke:#3a9bd1}.c6{stroke:#16202a}.c7{stroke:#55636f}"
+    ".c8{stroke:#0d0887}.c9{stroke:#fcbe2c}"
     ".unsafe{fill:#c9d0d7}.free{fill:#ffffff}.obstacle{fill:#8b97a2}"
     ".partial{fill:#8b97a2;fill-opacity:.3;stroke:#8b97a2;stroke-dasharray:5 4}"
     ".area{fill:#d55e00;fill-opacity:.1}"
@@ -184,10 +185,13 @@ std::vector<double> columns_of(const std::vector<Part>& parts, const FigureStyle
   return columns;
 }
 
-/// What is `width` x `height` units large, as wide as `style` says.
-std::string document(double width, double height, const FigureStyle& style,
+/// What is `width` x `height` units large and has `in_row` panels side by side, as wide as `style`
+/// says.
+std::string document(double width, double height, std::size_t in_row, const FigureStyle& style,
                      const std::string& body) {
-  const double shown = style.columns == 0 ? width : style.columns == 1 ? kOneColumn : kTwoColumns;
+  // One panel alone has the letters of panels side by side: it takes half of two columns.
+  const bool is_narrow = style.columns == 1 || in_row == 1;
+  const double shown = style.columns == 0 ? width : is_narrow ? kOneColumn : kTwoColumns;
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
@@ -233,7 +237,7 @@ std::string svg_figure(const std::vector<Panel>& panels, const FigureStyle& styl
     }
     y += head + drawing + (end < panels.size() ? kGap : 0.0);
   }
-  return document(columns.back(), y + kMargin, style, body);
+  return document(columns.back(), y + kMargin, in_row, style, body);
 }
 
 std::string panel_figure(const Panel& panel) {

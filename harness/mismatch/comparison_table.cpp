@@ -39,7 +39,8 @@ std::string by_state(const std::string& name, const Eigen::VectorXd& values,
   return row + "\n";
 }
 
-/// The head of what is certified.
+/// The head of what is certified for the drives. Along the plan the policy sees the state, and
+/// certificates are bounds in any case.
 const char* certified_head(const Comparison& comparison) {
   return why_no_bound(comparison.scenario).empty() ? "certified" : "NO BOUND";
 }
@@ -163,7 +164,7 @@ std::string horizon_section(const Comparison& comparison, const models::SystemDe
         plant.paths.faults > 0
             ? fmt::format(": {} paths on which it broke or was refused", plant.paths.faults)
             : "");
-    text += horizon_head(system, states, certified_head(comparison));
+    text += horizon_head(system, states, "certified");
     for (const HorizonStage& stage : plant.horizon) {
       text += stage_row(comparison, stage, states);
     }
@@ -192,8 +193,11 @@ std::string certificate_section(const Comparison& comparison) {
 
 std::string scope_note(const Comparison& comparison) {
   if (why_no_bound(comparison.scenario).empty()) return {};
-  return "NO BOUND: with measurement noise (disturbance.sensor) the feedback acts on what is\n"
-         "seen, of which certificates do not know; along the plan the policy sees the state.\n";
+  return "NO BOUND: with measurement noise (disturbance.sensor) the feedback of the drives acts "
+         "on\n"
+         "what is seen, of which certificates do not know. Along the plan the policy sees the "
+         "state:\n"
+         "certificates there are bounds.\n";
 }
 
 }  // namespace

@@ -56,6 +56,10 @@ class Plant {
 
   /// The true state now, state_dim.
   [[nodiscard]] virtual Eigen::VectorXd state() const = 0;
+
+  /// How far (rad, 0 to π) the plant's freely moving bodies are tilted from how its file has them,
+  /// the largest of them; 0 of a plant that cannot tip over.
+  [[nodiscard]] virtual double tilt() const { return 0.0; }
 };
 
 }  // namespace qsmpc::harness

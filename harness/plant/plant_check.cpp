@@ -32,11 +32,13 @@ InputError::Where scenario_place(const InputError::Where& where, const Scenario&
 
 }  // namespace
 
-void try_plant(const Scenario& scenario) {
-  // What is only drawn has to load as well.
+void try_drawn_vehicle(const Scenario& scenario) {
   if (scenario.plant.kind == "analytic" && !scenario.plant.mjcf.empty()) {
     (void)load_mujoco_model(scenario.plant.mjcf);
   }
+}
+
+void try_driven_plant(const Scenario& scenario) {
   (void)make_plant(scenario);
   if (!varies(scenario.disturbance)) return;
   try {
@@ -45,6 +47,11 @@ void try_plant(const Scenario& scenario) {
   } catch (const SimulatorError&) {
     // One vehicle of many that cannot be simulated is an episode's fault, no wrong file.
   }
+}
+
+void try_plant(const Scenario& scenario) {
+  try_drawn_vehicle(scenario);
+  try_driven_plant(scenario);
 }
 
 std::optional<InputError::Where> plant_problem(const Scenario& scenario,

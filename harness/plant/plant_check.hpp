@@ -10,8 +10,16 @@
 
 namespace qsmpc::harness {
 
+/// Loads the vehicle that an analytic plant is drawn as, if it has one: what is only drawn has to
+/// load as well. Throws InputError.
+void try_drawn_vehicle(const Scenario& scenario);
+
 /// Makes the plant of `scenario`, also as one of those that its disturbance draws. Throws
-/// InputError as make_plant; a drawn vehicle that the simulator refuses is a fault of an episode.
+/// InputError as make_plant; a vehicle of those that the simulator refuses is a fault of an
+/// episode.
+void try_driven_plant(const Scenario& scenario);
+
+/// Both of these.
 void try_plant(const Scenario& scenario);
 
 /// Makes the plant of `scenario`, which was loaded from `path_or_name` with `overrides`, and says

@@ -105,25 +105,37 @@ std::string exceeded_text(const std::vector<CalibrationBin>& bins) {
   return fmt::format("Certificates exceeded: in {} of {} bins", exceeded, filled);
 }
 
-Chart reliability_chart(const std::string& title, double least,
-                        const std::vector<CalibrationBin>& certified,
-                        const std::vector<CalibrationBin>& published) {
-  Chart chart{.title = title,
-              .note = fmt::format(
-                  "Periods by what was certified for them, in half decades; 99 % intervals as if "
-                  "periods were independent; at 0, none ended unsafe. Only a point whose whole "
-                  "interval is shaded speaks against its value. {}.",
-                  exceeded_text(certified)),
-              .x_label = "certified probability, mean of the bin (–)",
-              .y_label = kRateLabel,
-              .x_scale = Scale::kLog,
-              .y_scale = Scale::kLog,
-              .least_x = least,
-              .y_has_zero = true,
-              .x_includes = {least, 1.0},
-              .y_includes = {1.0}};
-  add_bins("published value, no bound", kOrange, not_bounds(published), chart);
-  add_bins("certificate", kBlue, certified, chart);
+struct Reliability {
+  std::string title;
+  const std::vector<CalibrationBin>& certified;
+  const std::vector<CalibrationBin>& published;
+  std::string no_bound{};   ///< why, and of which variants, certificates are none; empty: all are
+  bool none_holds = false;  ///< none of them is a bound, so that none can be exceeded
+};
+
+Chart reliability_chart(const Reliability& shown, double least) {
+  Chart chart{
+      .title = shown.title,
+      .note = fmt::format(
+          "Periods by what was certified for them, in half decades; 99 % intervals as if "
+          "periods were independent; at 0, none ended unsafe. Only a point whose whole "
+          "interval is shaded speaks against its value. {}.{}",
+          shown.none_holds ? "Certificates are no bounds here" : exceeded_text(shown.certified),
+          shown.no_bound),
+      .x_label = "certified probability, mean of the bin (–)",
+      .y_label = kRateLabel,
+      .x_scale = Scale::kLog,
+      .y_scale = Scale::kLog,
+      .least_x = least,
+      .y_has_zero = true,
+      .x_includes = {least, 1.0},
+      .y_includes = {1.0}};
+  add_bins("published value, no bound", kOrange, not_bounds(shown.published), chart);
+  if (shown.none_holds) {
+    add_bins("certificate, no bound", kBlue, not_bounds(shown.certified), chart);
+  } else {
+    add_bins("certificate", kBlue, shown.certified, chart);
+  }
   chart.least_shown = foot_of(chart);
   chart.y_includes.push_back(chart.least_shown);
   if (has_points(chart)) add_diagonal(chart);
@@ -171,8 +183,12 @@ std::vector<std::size_t> variants_with_a_chart(const CampaignStatistics& statist
 CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
   CampaignFigure figure{.file = kReliabilityFile, .charts = {}};
   const double least = least_certified(statistics);
-  figure.charts.push_back(reliability_chart("Do the certificates hold?", least,
-                                            statistics.calibration, statistics.published));
+  figure.charts.push_back(reliability_chart({.title = "Do the certificates hold?",
+                                             .certified = statistics.calibration,
+                                             .published = statistics.published,
+                                             .no_bound = no_bound_words(statistics),
+                                             .none_holds = none_is_bound(statistics)},
+                                            least));
   figure.charts.push_back(period_chart(statistics));
   if (statistics.variants.size() == 1) return figure;
   const std::vector<std::size_t> panels = variants_with_a_chart(statistics);
@@ -184,8 +200,14 @@ CampaignFigure reliability_figure(const CampaignStatistics& statistics) {
   }
   for (const std::size_t n : panels) {
     const VariantStatistics& variant = statistics.variants[n];
-    figure.charts.push_back(reliability_chart(numbered_name(statistics, n, kTitleLimit), least,
-                                              variant.calibration, variant.published));
+    figure.charts.push_back(reliability_chart(
+        {.title = numbered_name(statistics, n, kTitleLimit) +
+                  (variant.no_bound.empty() ? "" : ": NO BOUND"),
+         .certified = variant.calibration,
+         .published = variant.published,
+         .no_bound = variant.no_bound.empty() ? "" : " No bound: " + variant.no_bound + ".",
+         .none_holds = !variant.no_bound.empty()},
+        least));
   }
   return figure;
 }

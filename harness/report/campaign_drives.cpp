@@ -22,6 +22,8 @@
 namespace qsmpc::harness {
 namespace {
 
+constexpr std::size_t kMostNoBound = 12;  // variants that are listed as without a bound
+
 constexpr std::size_t kMostMaps = 12;
 constexpr std::size_t kMostAxisNumbers = 20;  // that have room below an axis
 constexpr std::size_t kMapNameLimit = 44;     // bytes of a variant's name
@@ -166,6 +168,30 @@ std::vector<std::string> thinned(std::vector<std::string> names, std::size_t mos
     if (n % stride != 0) names[n].clear();
   }
   return names;
+}
+
+bool none_is_bound(const CampaignStatistics& statistics) {
+  const auto& variants = statistics.variants;
+  return !variants.empty() && std::ranges::none_of(variants, [](const auto& variant) {
+    return variant.no_bound.empty();
+  });
+}
+
+std::string no_bound_words(const CampaignStatistics& statistics) {
+  std::string ids;
+  std::string why;
+  std::size_t count = 0;
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (variant.no_bound.empty()) continue;
+    if (count > 0 && count <= kMostNoBound) ids += ", ";
+    if (count < kMostNoBound) ids += fmt::format("{}", variant.id);
+    if (count == kMostNoBound) ids += "…";
+    why = variant.no_bound;
+    ++count;
+  }
+  if (count == 0) return {};
+  if (count == statistics.variants.size()) return fmt::format(" No bound: {}.", why);
+  return fmt::format(" No bound in variant{} {}: {}.", count == 1 ? "" : "s", ids, why);
 }
 
 std::vector<std::string> variant_numbers(const CampaignStatistics& statistics) {

@@ -16,7 +16,7 @@ struct DriveMaps {
 };
 
 /// A map of each of at most 12 variants, those with the most unsafe drives: the ground of its
-/// scenario and its drives, coloured by outcome. None of a system without a position in the plane,
+/// scenario and its drives, coloured by outcome. None of a system without map_axes,
 /// or without a path in the store.
 [[nodiscard]] DriveMaps drive_maps(const CampaignStatistics& statistics);
 
@@ -36,6 +36,13 @@ struct DriveMaps {
 
 /// The numbers of all variants, as they stand below an axis: of many, every so many.
 [[nodiscard]] std::vector<std::string> variant_numbers(const CampaignStatistics& statistics);
+
+/// Whether no certificate of any variant is a bound.
+[[nodiscard]] bool none_is_bound(const CampaignStatistics& statistics);
+
+/// " No bound in variants 0, 2: WHY." where certificates of some of `statistics.variants` are none,
+/// " No bound: WHY." where they are of all; empty where all are bounds.
+[[nodiscard]] std::string no_bound_words(const CampaignStatistics& statistics);
 
 /// Of `names`, what has room below an axis: every so many, the others empty.
 [[nodiscard]] std::vector<std::string> thinned(std::vector<std::string> names, std::size_t most);

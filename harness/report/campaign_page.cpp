@@ -50,8 +50,14 @@ PageVerdict certificate_verdict(const CampaignStatistics& statistics) {
   if (periods == 0) {
     return {.mood = PageMood::kOpen, .title = "Certificates: no period yet", .sentences = {}};
   }
-  return {.mood = exceeded > 0 ? PageMood::kBad : PageMood::kGood,
-          .title = exceeded > 0 ? "Certificates are exceeded" : "No certificate is refuted",
+  const bool none_holds = none_is_bound(statistics);
+  if (none_holds) scope = "None of them is a bound, so that none can be exceeded.";
+  return {.mood = none_holds     ? PageMood::kOpen
+                  : exceeded > 0 ? PageMood::kBad
+                                 : PageMood::kGood,
+          .title = none_holds     ? "Certificates: no bounds here"
+                   : exceeded > 0 ? "Certificates are exceeded"
+                                  : "No certificate is refuted",
           .sentences = {
               fmt::format("{} of {} periods ended unsafe; their certificates add up to {} "
                           "(p = {}).",
@@ -89,14 +95,6 @@ std::string spread_table(const CampaignStatistics& statistics) {
              "Means and percentiles. A drive that faulted ranks as the worst. Times are of "
              "the drives that arrived.") +
          table_html(table);
-}
-
-/// Why some certificates are no bounds; empty where all are.
-std::string no_bound_words(const CampaignStatistics& statistics) {
-  for (const VariantStatistics& variant : statistics.variants) {
-    if (!variant.no_bound.empty()) return " No bound: " + variant.no_bound + ".";
-  }
-  return {};
 }
 
 std::string certificates_table(const CampaignStatistics& statistics) {

@@ -20,7 +20,8 @@
 namespace qsmpc::harness {
 namespace {
 
-/// The head of what is certified.
+/// The head of what is certified for the drives. Along the plan the policy sees the state, and
+/// certificates are bounds in any case.
 const char* certified_head(const Comparison& comparison) {
   return why_no_bound(comparison.scenario).empty() ? "certified" : "certified: no bound";
 }
@@ -141,14 +142,20 @@ bool has_mismatch(const Comparison& comparison) {
 
 std::string residual_section(const Comparison& comparison, const models::SystemDescription& system,
                              const ComparisonFigure& figure) {
-  std::string html = section_head(
+  const std::string head = section_head(
       "One period: what the plant adds to model and disturbance",
       "Over all periods of all episodes. Mean with its standard error; the disturbance’s standard "
       "deviation for scale. p is small where a residual says something of the next ones.");
+  std::string tables;
   for (const PlantComparison& plant : comparison.plants) {
-    html += name_head(plant) + residuals_of(comparison, plant, system);
+    tables += name_head(plant) + residuals_of(comparison, plant, system);
   }
-  return has_mismatch(comparison) ? html + figures(figure) : html;
+  if (!has_mismatch(comparison)) return head + tables;
+  // The chart stands beside the tables, not beside nothing.
+  std::string html =
+      head + "<div class=\"grid beside\">\n<div class=\"stack residuals\">\n" + tables + "</div>\n";
+  for (const Chart& chart : figure.charts) html += panel_figure(chart);
+  return html + "</div>\n";
 }
 
 /// Whether the certificate in force at the stage at place `k` is exceeded.
@@ -164,8 +171,7 @@ std::string rate_html(const Comparison& comparison, const HorizonStage& stage) {
 
 PageTable stage_table(const Comparison& comparison, const PlantComparison& plant) {
   PageTable table{.label = "Along the plan, by stage: " + plant.name,
-                  .heads = {"stage", "W₂ to the model, at most", "W₂", "floor of W₂",
-                            certified_head(comparison)},
+                  .heads = {"stage", "W₂ to the model, at most", "W₂", "floor of W₂", "certified"},
                   .rows = {}};
   if (comparison.with_error) table.heads.emplace_back("with model error");
   table.heads.emplace_back("observed, 99 % interval");

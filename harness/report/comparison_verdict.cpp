@@ -102,10 +102,10 @@ std::optional<PageVerdict> unsafe_verdict(const Comparison& comparison) {
 std::optional<PageVerdict> no_bound_verdict(const Comparison& comparison) {
   const std::string why = why_no_bound(comparison.scenario);
   if (why.empty()) return std::nullopt;
-  return PageVerdict{.title = "No certificate is a bound here",
-                     .sentences = {"Certificates hold for a policy that sees the state, as along "
-                                   "the plan; " +
-                                   why + "."}};
+  return PageVerdict{.title = "Certificates of the drives are no bounds",
+                     .sentences = {"They hold for a policy that sees the state; " + why +
+                                   ". Along the plan the policy does see the state: the "
+                                   "certificates of its stages are bounds."}};
 }
 
 PageVerdict comparison_verdict(const Comparison& comparison) {

@@ -17,8 +17,6 @@ namespace {
 
 constexpr int kSnapshotPeriod = 10;  // steps from one snapshot to the next, at least
 constexpr int kMostSnapshots = 20;
-constexpr int kBeliefColour = kBlue;
-constexpr int kLastStageColour = kOrange;
 
 std::string words_of(const models::Coordinate& state) {
   std::string words = state.name;
@@ -134,12 +132,12 @@ class EpisodeMap {
         fmt::format("prediction (stage {})", trace_.scenario.controller.horizon);
     for (const StepRecord* step : steps) {
       if (step->particles.size() < 2) continue;
-      map.clouds.push_back(cloud_of(step->particles.back(), kLastStageColour, last_stage));
+      map.clouds.push_back(cloud_of(step->particles.back(), kLastStage, last_stage));
     }
     std::vector<MapPath> plans;
     for (const StepRecord* step : steps) {
       if (!step->particles.empty()) {
-        map.clouds.push_back(cloud_of(step->particles.front(), kBeliefColour, "belief (stage 0)"));
+        map.clouds.push_back(cloud_of(step->particles.front(), kFirstStage, "belief (stage 0)"));
       }
       plans.push_back(plan_of(*step));
       // The time at each snapshot, beside the path.

@@ -182,7 +182,7 @@ std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeSce
         view.summary().no_bound.empty() ? "Upper bounds" : "Estimates that are no bounds";
     html += "<div class=\"grid drive below\">\n" + fmt::format(kStageCharts, what) + "</div>\n";
   }
-  return html + scene_figure(scene, map != nullptr, parts);
+  return html + scene_figure(scene, map != nullptr && has_position(view.system()), parts);
 }
 
 std::string charts_html(const std::vector<Chart>& charts) {
@@ -219,7 +219,9 @@ std::string episode_page(const EpisodeView& view, const EpisodePageOptions& opti
                                                        .video_from = options.video_from,
                                                        .video_speed = options.video_speed})
                                  : std::string();
-  const EpisodeScene scene = episode_scene(view, ground);
+  // Of a system without a place in the plane the map is of two of its states, and no ground.
+  const bool in_plane = has_position(view.system());
+  const EpisodeScene scene = episode_scene(view, in_plane ? ground : nullptr);
 
   std::string html = introduction(trace) + figures.outcome + figures.tiles;
   html += drive(view, ground, scene, options);

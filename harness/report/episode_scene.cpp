@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include <fmt/format.h>
@@ -13,8 +14,10 @@
 
 #include "harness/errors.hpp"
 #include "harness/mujoco/vehicle_shapes.hpp"
+#include "harness/plant/mujoco/joint_pose.hpp"
 #include "harness/report/packed_numbers.hpp"
 #include "harness/report/script_json.hpp"
+#include "harness/trace/vehicle_change.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -76,7 +79,10 @@ class SmoothMotion {
 
 class SceneData {
  public:
-  SceneData(const EpisodeView& view, VehicleShapes& vehicle) : view_(view), vehicle_(vehicle) {}
+  /// `joints`: of an episode without motion of a simulator, the vehicle's; nothing where it is
+  /// moved as a whole.
+  SceneData(const EpisodeView& view, VehicleShapes& vehicle, const std::optional<JointPose>& joints)
+      : view_(view), vehicle_(vehicle), joints_(joints) {}
 
   [[nodiscard]] Json json(const PlaneMap* ground) {
     Json json = {{"shapes", shapes()}, {"meshes", meshes()}, {"parts", vehicle_.part_count()}};
@@ -155,6 +161,14 @@ class SceneData {
     for (const MotionSample& sample : view_.trace().motion) {
       if (is_drawable(sample.qpos)) motion.add({sample.time, vehicle_.parts(sample.qpos)});
     }
+    if (joints_) {
+      const Eigen::MatrixXd& states = view_.states();
+      for (Eigen::Index k = 0; k < states.cols(); ++k) {
+        if (!states.col(k).allFinite()) continue;
+        motion.add({static_cast<double>(k) * view_.scenario().time_step,
+                    vehicle_.parts(joints_->qpos(states.col(k)))});
+      }
+    }
     std::vector<TimedParts> all = motion.take();
     const std::size_t every = 1 + all.size() * vehicle_.part_count() / kMostPlacements;
     std::vector<TimedParts> kept;
@@ -196,6 +210,7 @@ class SceneData {
 
   const EpisodeView& view_;
   VehicleShapes& vehicle_;
+  const std::optional<JointPose>& joints_;
 };
 
 /// Whether there is motion of another number of coordinates than `vehicle` has.
@@ -205,12 +220,16 @@ bool is_of_another(const Trace& trace, const VehicleShapes& vehicle) {
   });
 }
 
-std::string left_out(const VehicleShapes& vehicle) {
-  if (vehicle.boxed() == 0) return {};
-  return fmt::format(
-      "{} of its shapes have more triangles than a page should hold ({} in all), and are boxes "
-      "here.",
-      vehicle.boxed(), VehicleShapes::kMostTriangles);
+/// What a reader has to know of what is drawn.
+std::string note_of(const Trace& trace, const VehicleShapes& vehicle) {
+  std::string note = vehicle_change(trace);
+  if (vehicle.boxed() == 0) return note;
+  if (!note.empty()) note += ' ';
+  return note + fmt::format(
+                    "{} of its shapes have more triangles than a page should hold ({} in all), and "
+                    "are boxes "
+                    "here.",
+                    vehicle.boxed(), VehicleShapes::kMostTriangles);
 }
 
 }  // namespace
@@ -218,10 +237,14 @@ std::string left_out(const VehicleShapes& vehicle) {
 EpisodeScene episode_scene(const EpisodeView& view, const PlaneMap* ground) {
   const Trace& trace = view.trace();
   const std::string& path = trace.scenario.plant.mjcf;
-  const bool has_place =
-      ground != nullptr || (!trace.motion.empty() && !trace.motion.front().qpos.empty());
-  if (path.empty() || trace.steps.empty() || !has_place) return {};
+  if (path.empty() || trace.steps.empty()) return {};
+  const bool has_motion = !trace.motion.empty() && !trace.motion.front().qpos.empty();
   try {
+    std::optional<JointPose> joints;
+    if (!has_motion && ground == nullptr) {
+      joints = JointPose::of(view.scenario(), view.system(), path);
+      if (!joints) return {};
+    }
     VehicleShapes vehicle(path);
     if (is_of_another(trace, vehicle)) {
       return {.note = fmt::format(
@@ -230,7 +253,8 @@ EpisodeScene episode_scene(const EpisodeView& view, const PlaneMap* ground) {
     if (vehicle.shapes().empty()) {
       return {.note = fmt::format("No view in three dimensions: {} has no visible shapes.", path)};
     }
-    return {.data = script_json(SceneData(view, vehicle).json(ground)), .note = left_out(vehicle)};
+    return {.data = script_json(SceneData(view, vehicle, joints).json(ground)),
+            .note = note_of(trace, vehicle)};
   } catch (const InputError& error) {
     return {.note = fmt::format("No view in three dimensions: {}", error.what())};
   }

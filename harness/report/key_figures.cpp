@@ -1,7 +1,9 @@
 #include "harness/report/key_figures.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <optional>
 
 #include <fmt/format.h>
@@ -270,6 +272,16 @@ std::string outcome_html(const EpisodeView& view) {
   return html + "</section>\n";
 }
 
+/// How many tiles a row of a wide page has: such that the last row is at least half full.
+std::size_t tile_columns(std::size_t tiles) {
+  constexpr std::array<std::size_t, 3> kColumns{6, 5, 7};
+  for (const std::size_t columns : kColumns) {
+    const std::size_t last = tiles % columns;
+    if (last == 0 || 2 * last >= columns) return columns;
+  }
+  return kColumns.front();
+}
+
 std::string tiles_html(const EpisodeView& view) {
   const Trace& trace = view.trace();
   const Summary& summary = view.summary();
@@ -294,7 +306,7 @@ std::string tiles_html(const EpisodeView& view) {
     tiles.push_back(evaluations_tile(summary));
   }
   tiles.push_back(cost_tile(summary));
-  std::string html = "<dl class=\"tiles\">\n";
+  std::string html = fmt::format("<dl class=\"tiles of-{}\">\n", tile_columns(tiles.size()));
   for (const Tile& tile : tiles) html += tile_html(tile);
   return html + "</dl>\n";
 }

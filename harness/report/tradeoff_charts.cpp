@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "harness/figures/palette.hpp"
+#include "harness/report/campaign_drives.hpp"
 #include "harness/report/table_page.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
@@ -116,6 +117,23 @@ std::string panel_note(const CampaignStatistics& statistics, const TradeoffPanel
                      : "All drives reached the target, except: " + few + ".";
 }
 
+/// Which of the panel's points are certified by what is no bound; empty where all are bounds.
+std::string no_bound_note(const CampaignStatistics& statistics, const TradeoffPanel& panel) {
+  std::set<std::size_t> seen;
+  std::string names;
+  bool all = true;
+  for (const TradeoffFamily& family : panel.families) {
+    for (const TradeoffPoint& point : family.points) {
+      const VariantStatistics& variant = statistics.variants[point.variant];
+      all = all && !variant.no_bound.empty();
+      if (variant.no_bound.empty() || !seen.insert(point.variant).second) continue;
+      names += (names.empty() ? "" : ", ") + printable(variant.settings, kLabelLimit);
+    }
+  }
+  if (names.empty()) return {};
+  return all ? "NO BOUND of any variant." : "NO BOUND: " + names + ".";
+}
+
 Chart panel_chart(const CampaignStatistics& statistics, const TradeoffPanel& panel, RiskOf risk) {
   Chart chart{.title = panel_title(panel, risk),
               .note = panel_note(statistics, panel),
@@ -128,6 +146,10 @@ Chart panel_chart(const CampaignStatistics& statistics, const TradeoffPanel& pan
     chart.least_x = least_rate(statistics, panel);
     chart.x_has_zero = true;
     chart.x_includes = {chart.least_x};
+  } else if (const std::string no_bound = no_bound_note(statistics, panel); !no_bound.empty()) {
+    chart.note += (chart.note.empty() ? "" : " ") + no_bound;
+    chart.in_words += " " + no_bound;
+    chart.x_label = "mean certified risk of a drive, no bound (–)";
   }
   int colour = 0;
   for (const TradeoffFamily& family : panel.families) {
@@ -145,7 +167,8 @@ std::vector<std::string> row_of(const VariantStatistics& variant, const Tradeoff
           fmt::format("{}", variant.timeout.events),
           fmt::format("{}", variant.unsafe.events),
           number_html(variant.unsafe.rate) + " " + interval_html(variant.unsafe.interval),
-          number_html(point.certified.mean) + " " + interval_html(point.certified.interval),
+          number_html(point.certified.mean) + " " + interval_html(point.certified.interval) +
+              (variant.no_bound.empty() ? "" : " <strong>no bound</strong>"),
           number_html(point.cost.mean) + " " + interval_html(point.cost.interval)};
 }
 
@@ -178,8 +201,8 @@ std::string tradeoff_section(const CampaignStatistics& statistics) {
       }
     }
   }
-  return section_head("Risk against cost", kTradeoffNote) + "<div class=\"grid\">\n" + charts +
-         "</div>\n" + table_html(table);
+  return section_head("Risk against cost", kTradeoffNote + no_bound_words(statistics)) +
+         "<div class=\"grid\">\n" + charts + "</div>\n" + table_html(table);
 }
 
 }  // namespace qsmpc::harness

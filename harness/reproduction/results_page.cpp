@@ -1,5 +1,9 @@
 #include "harness/reproduction/results_page.hpp"
 
+#include <optional>
+#include <string_view>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "harness/report/page_frame.hpp"
@@ -18,13 +22,38 @@ std::string contents(const Reproduction& reproduction) {
   return html + "</ul></nav>\n";
 }
 
-std::string rows_html(const ExperimentResult& experiment) {
-  if (experiment.rows.empty()) return {};
-  std::string html =
-      "<div class=\"card scroll\"><table class=\"results\">\n<thead><tr><th>quantity</th>"
-      "<th>published</th><th>here</th><th>ratio</th><th class=\"text\">note</th></tr></thead>\n"
-      "<tbody>\n";
-  for (const ResultRow& row : experiment.rows) {
+constexpr std::string_view kTableBegin =
+    "<div class=\"card scroll\" tabindex=\"0\"><table class=\"results\">\n<thead><tr>";
+
+/// A table in the shape of the thesis's own, and what there is to know of it.
+std::string grid_html(const ResultGrid& grid) {
+  std::string html(kTableBegin);
+  html += fmt::format("<th class=\"text\">{}</th>", escape_html(grid.table));
+  for (const std::string& column : grid.columns) {
+    html += fmt::format("<th>{}</th>", escape_html(column));
+  }
+  html += "</tr></thead>\n<tbody>\n";
+  for (const GridLine& line : grid_lines(grid)) {
+    html += fmt::format("<tr{}><td class=\"text\">{}</td>",
+                        line.is_published ? " class=\"soft\"" : "", escape_html(line.name));
+    for (const std::optional<GridNumber>& number : line.numbers) {
+      html += fmt::format("<td>{}</td>", number ? table_number(*number) : "");
+    }
+    html += "</tr>\n";
+  }
+  html += "</tbody></table></div>\n";
+  for (const GridNote& note : grid_notes(grid)) {
+    html += fmt::format("<p class=\"note\">{}: {}</p>\n", escape_html(note.row),
+                        escape_html(note.text));
+  }
+  return html;
+}
+
+/// The rows without a place in a table.
+std::string list_html(const std::vector<ResultRow>& rows) {
+  std::string html;
+  for (const ResultRow& row : rows) {
+    if (row.place) continue;
     const std::string unit =
         row.unit.empty() ? ""
                          : fmt::format(" <span class=\"soft\">({})</span>", escape_html(row.unit));
@@ -34,7 +63,17 @@ std::string rows_html(const ExperimentResult& experiment) {
         escape_html(row.quantity), unit, table_number(row.published), table_number(row.here),
         table_number(ratio_of(row)), escape_html(row.note));
   }
-  return html + "</tbody></table></div>\n";
+  if (html.empty()) return html;
+  return std::string(kTableBegin) +
+         "<th>quantity</th><th>published</th><th>here</th><th>ratio</th>"
+         "<th class=\"text\">note</th></tr></thead>\n<tbody>\n" +
+         html + "</tbody></table></div>\n";
+}
+
+std::string rows_html(const ExperimentResult& experiment) {
+  std::string html;
+  for (const ResultGrid& grid : result_grids(experiment.rows)) html += grid_html(grid);
+  return html + list_html(experiment.rows);
 }
 
 std::string claims_html(const ExperimentResult& experiment) {

@@ -11,6 +11,7 @@
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
+#include "harness/text/utf8.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -18,14 +19,11 @@ namespace {
 constexpr std::size_t kQuantityWidth = 74;
 constexpr std::size_t kNumberWidth = 12;
 constexpr int kDigits = 4;
+constexpr std::size_t kTextWidth = 110;  // of a table on a terminal, where it can be divided
+constexpr std::size_t kColumnGap = 2;
 
 std::string with_unit(const ResultRow& row) {
   return row.unit.empty() ? row.quantity : fmt::format("{} ({})", row.quantity, row.unit);
-}
-
-/// The name of its row in a table.
-std::string place_name(const ResultRow& row) {
-  return row.unit.empty() ? row.place->row : fmt::format("{} ({})", row.place->row, row.unit);
 }
 
 /// Plain ASCII, so that columns line up wherever they are printed.
@@ -34,16 +32,74 @@ std::string plain_number(std::optional<double> value) {
   return fmt::format("{:.{}g}", *value, kDigits);
 }
 
-std::string experiment_text(const ExperimentResult& experiment) {
-  std::string text =
-      fmt::format("\n{}: {} ({:.1f} s)\n", experiment.name, experiment.title, experiment.seconds);
-  text += fmt::format("  {}{:>{}}{:>{}}{:>{}}\n", padded("", kQuantityWidth), "published",
-                      kNumberWidth, "here", kNumberWidth, "ratio", kNumberWidth);
-  for (const ResultRow& row : experiment.rows) {
+std::string plain_cell(const std::optional<GridNumber>& number) {
+  return number ? plain_number(*number) : std::string();
+}
+
+/// How many columns each takes on a terminal: the first of names, the others of numbers.
+std::vector<std::size_t> text_widths(const ResultGrid& grid, const std::vector<GridLine>& lines) {
+  std::vector<std::size_t> widths{utf8_characters(grid.table)};
+  for (const std::string& column : grid.columns) widths.push_back(utf8_characters(column));
+  for (const GridLine& line : lines) {
+    widths[0] = std::max(widths[0], utf8_characters(line.name));
+    for (std::size_t k = 0; k < line.numbers.size(); ++k) {
+      widths[k + 1] = std::max(widths[k + 1], plain_cell(line.numbers[k]).size());
+    }
+  }
+  return widths;
+}
+
+/// A cell of a number, its head included, at the right of its column.
+std::string right(const std::string& text, std::size_t width) {
+  return std::string(kColumnGap + width - utf8_characters(text), ' ') + text;
+}
+
+/// The table in the thesis's shape; what is too wide for a terminal goes on below.
+std::string grid_text(const ResultGrid& grid) {
+  const std::vector<GridLine> lines = grid_lines(grid);
+  const std::vector<std::size_t> widths = text_widths(grid, lines);
+  std::string text;
+  for (std::size_t first = 0; first < grid.columns.size();) {
+    std::size_t end = first;
+    for (std::size_t room = widths[0]; end < grid.columns.size(); ++end) {
+      room += kColumnGap + widths[end + 1];
+      if (room > kTextWidth && end > first) break;
+    }
+    text += "  " + padded(grid.table, widths[0]);
+    for (std::size_t k = first; k < end; ++k) text += right(grid.columns[k], widths[k + 1]);
+    text += "\n";
+    for (const GridLine& line : lines) {
+      text += "  " + padded(line.name, widths[0]);
+      for (std::size_t k = first; k < end; ++k) {
+        text += right(plain_cell(line.numbers[k]), widths[k + 1]);
+      }
+      text += "\n";
+    }
+    first = end;
+  }
+  return text;
+}
+
+/// The rows without a place in a table.
+std::string list_text(const std::vector<ResultRow>& rows) {
+  std::string text;
+  for (const ResultRow& row : rows) {
+    if (row.place) continue;
     text += fmt::format("  {}{:>{}}{:>{}}{:>{}}\n", padded(with_unit(row), kQuantityWidth),
                         plain_number(row.published), kNumberWidth, plain_number(row.here),
                         kNumberWidth, plain_number(ratio_of(row)), kNumberWidth);
   }
+  if (text.empty()) return text;
+  return fmt::format("  {}{:>{}}{:>{}}{:>{}}\n", padded("", kQuantityWidth), "published",
+                     kNumberWidth, "here", kNumberWidth, "ratio", kNumberWidth) +
+         text;
+}
+
+std::string experiment_text(const ExperimentResult& experiment) {
+  std::string text =
+      fmt::format("\n{}: {} ({:.1f} s)\n", experiment.name, experiment.title, experiment.seconds);
+  for (const ResultGrid& grid : result_grids(experiment.rows)) text += grid_text(grid);
+  text += list_text(experiment.rows);
   for (const Claim& claim : experiment.claims) {
     text += fmt::format("  {} {}\n          {}\n", claim.holds ? "[holds]" : "[FAILS]",
                         claim.statement, claim.evidence);
@@ -76,39 +132,6 @@ std::string list_markdown(const std::vector<ResultRow>& rows) {
          text;
 }
 
-/// What there is to know of the numbers of a row, and of which columns where not of all.
-std::string notes_of(const ResultGrid& grid, const ResultGrid::Row& row) {
-  std::vector<std::pair<std::string, std::vector<std::string>>> notes;
-  for (std::size_t k = 0; k < grid.columns.size(); ++k) {
-    const ResultRow* cell = row.cells[k];
-    if (cell == nullptr || cell->note.empty()) continue;
-    const auto same = std::ranges::find(notes, cell->note, &decltype(notes)::value_type::first);
-    auto& columns = same == notes.end()
-                        ? notes.emplace_back(cell->note, decltype(same->second){}).second
-                        : same->second;
-    columns.push_back(grid.columns[k]);
-  }
-  std::string text;
-  for (const auto& [note, columns] : notes) {
-    text += text.empty() ? "" : "; ";
-    text += note;
-    if (columns.size() < grid.columns.size()) {
-      text += fmt::format(" ({})", fmt::join(columns, ", "));
-    }
-  }
-  return text;
-}
-
-/// A line of a table: what `number` says of each cell.
-template <class Number>
-std::string grid_line(const std::string& name, const ResultGrid::Row& row, const Number& number) {
-  std::string text = "| " + escape_markdown(name);
-  for (const ResultRow* cell : row.cells) {
-    text += " | " + (cell == nullptr ? std::string() : table_number(number(*cell)));
-  }
-  return text + " |\n";
-}
-
 /// The columns of the thesis across, its rows down, each as published and below it as it is here.
 std::string grid_markdown(const ResultGrid& grid) {
   std::string text = fmt::format("\n| {} |", escape_markdown(grid.table));
@@ -118,21 +141,16 @@ std::string grid_markdown(const ResultGrid& grid) {
     rule += " ---: |";
   }
   text += rule + "\n";
+  for (const GridLine& line : grid_lines(grid)) {
+    text += "| " + escape_markdown(line.name);
+    for (const std::optional<GridNumber>& number : line.numbers) {
+      text += " | " + (number ? table_number(*number) : std::string());
+    }
+    text += " |\n";
+  }
   std::string notes;
-  for (const ResultGrid::Row& row : grid.rows) {
-    const bool published = std::ranges::any_of(row.cells, [](const ResultRow* cell) {
-      return cell != nullptr && cell->published.has_value();
-    });
-    if (published) {
-      text += grid_line(row.name + ": published", row,
-                        [](const ResultRow& cell) { return cell.published; });
-    }
-    text += grid_line(row.name + (published ? ": here" : ""), row,
-                      [](const ResultRow& cell) { return std::optional(cell.here); });
-    const std::string note = notes_of(grid, row);
-    if (!note.empty()) {
-      notes += fmt::format("- {}: {}\n", escape_markdown(row.name), escape_markdown(note));
-    }
+  for (const GridNote& note : grid_notes(grid)) {
+    notes += fmt::format("- {}: {}\n", escape_markdown(note.row), escape_markdown(note.text));
   }
   return notes.empty() ? text : text + "\n" + notes;
 }
@@ -158,32 +176,6 @@ std::string experiment_markdown(const ExperimentResult& experiment, const std::s
 }
 
 }  // namespace
-
-std::vector<ResultGrid> result_grids(const std::vector<ResultRow>& rows) {
-  std::vector<ResultGrid> grids;
-  for (const ResultRow& row : rows) {
-    if (!row.place) continue;
-    auto grid = std::ranges::find(grids, row.place->table, &ResultGrid::table);
-    if (grid == grids.end()) grid = grids.insert(grid, {.table = row.place->table});
-    if (std::ranges::find(grid->columns, row.place->column) == grid->columns.end()) {
-      grid->columns.push_back(row.place->column);
-    }
-    const std::string name = place_name(row);
-    if (std::ranges::find(grid->rows, name, &ResultGrid::Row::name) == grid->rows.end()) {
-      grid->rows.push_back({.name = name});
-    }
-  }
-  for (const ResultRow& row : rows) {
-    if (!row.place) continue;
-    ResultGrid& grid = *std::ranges::find(grids, row.place->table, &ResultGrid::table);
-    const std::string name = place_name(row);
-    ResultGrid::Row& line = *std::ranges::find(grid.rows, name, &ResultGrid::Row::name);
-    line.cells.resize(grid.columns.size(), nullptr);
-    const auto column = std::ranges::find(grid.columns, row.place->column) - grid.columns.begin();
-    line.cells[static_cast<std::size_t>(column)] = &row;
-  }
-  return grids;
-}
 
 std::string table_number(std::optional<double> value) {
   return value && std::isfinite(*value) ? format_short(*value, kDigits) : "–";

@@ -165,15 +165,7 @@ std::vector<KeyDescription> timing_keys() {
            .fallback_words = "any"}};
 }
 
-}  // namespace
-
-const std::vector<std::string>& loop_kind_names() {
-  static const std::vector<std::string> names{"ackermann", "speed_hold", "axle_forces",
-                                              "tyre_forces", "feedback"};
-  return names;
-}
-
-std::vector<KeyDescription> plant_mapping_keys() {
+std::vector<KeyDescription> mapping_keys() {
   std::vector<KeyDescription> keys{
       {.name = "state",
        .values = {MappingValue{{{.name = "STATE",
@@ -184,6 +176,19 @@ std::vector<KeyDescription> plant_mapping_keys() {
   for (KeyDescription& key : actuation_keys()) keys.push_back(std::move(key));
   for (KeyDescription& key : timing_keys()) keys.push_back(std::move(key));
   return keys;
+}
+
+}  // namespace
+
+const std::vector<std::string>& loop_kind_names() {
+  static const std::vector<std::string> names{"ackermann", "speed_hold", "axle_forces",
+                                              "tyre_forces", "feedback"};
+  return names;
+}
+
+const std::vector<KeyDescription>& plant_mapping_keys() {
+  static const std::vector<KeyDescription> all = mapping_keys();
+  return all;
 }
 
 }  // namespace qsmpc::harness

@@ -19,6 +19,6 @@ inline constexpr NumberRange kSettlingRange{.least = 0.0, .most = 1000.0};  // s
 [[nodiscard]] const std::vector<std::string>& loop_kind_names();
 
 /// All keys, of `plant` in a scenario or of the text in a MuJoCo file.
-[[nodiscard]] std::vector<KeyDescription> plant_mapping_keys();
+[[nodiscard]] const std::vector<KeyDescription>& plant_mapping_keys();
 
 }  // namespace qsmpc::harness

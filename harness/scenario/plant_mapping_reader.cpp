@@ -294,7 +294,7 @@ const std::vector<std::string>& velocity_quantities() {
 }
 
 std::optional<PlantMapping> read_plant_mapping(Section& plant, const MappedSystem& system) {
-  const std::vector<KeyDescription> keys = plant_mapping_keys();
+  const std::vector<KeyDescription>& keys = plant_mapping_keys();
   const bool any =
       std::ranges::any_of(keys, [&](const KeyDescription& key) { return plant.has(key.name); });
   if (!any) {

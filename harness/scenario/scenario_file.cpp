@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <utility>
 
 #include "harness/scenario/overrides.hpp"
 #include "harness/scenario/scenario_reader.hpp"
@@ -17,14 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Scenario read_text(const std::string& text, const ScenarioSource& source, Problems& problems) {
-  YamlNode tree = parse_yaml(text, source.file);
+Scenario read_tree(YamlNode tree, const ScenarioSource& source, Problems& problems) {
   for (const std::string& override : source.overrides) apply_override(tree, override);
   return read_scenario(tree,
                        {.folder = source.folder,
                         .must_exist = source.files_must_exist,
                         .is_recorded = source.is_recorded || !source.files_must_exist},
                        problems);
+}
+
+Scenario read_text(const std::string& text, const ScenarioSource& source, Problems& problems) {
+  return read_tree(parse_yaml(text, source.file), source, problems);
+}
+
+Scenario unless_refused(Scenario scenario, const Problems& problems) {
+  if (!problems.empty()) throw InputError(problems.sorted().front());
+  return scenario;
 }
 
 std::string folder_of(const std::string& path) { return fs::path(path).parent_path().string(); }
@@ -74,9 +83,18 @@ Scenario load_scenario(const std::string& path_or_name, const std::vector<std::s
 
 Scenario parse_scenario(const std::string& text, const ScenarioSource& source) {
   Problems problems(source.file);
-  Scenario scenario = read_text(text, source, problems);
-  if (!problems.empty()) throw InputError(problems.sorted().front());
-  return scenario;
+  return unless_refused(read_text(text, source, problems), problems);
+}
+
+ScenarioBase::ScenarioBase(const std::string& path_or_name)
+    : path_(find_scenario(path_or_name)), tree_(parse_yaml(read_text_file(path_), path_)) {}
+
+Scenario ScenarioBase::load(const std::vector<std::string>& overrides) const {
+  Problems problems(path_);
+  return unless_refused(
+      read_tree(tree_, {.file = path_, .folder = folder_of(path_), .overrides = overrides},
+                problems),
+      problems);
 }
 
 std::vector<InputError::Where> validate_scenario_file(const std::string& path_or_name,

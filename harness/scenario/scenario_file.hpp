@@ -4,11 +4,13 @@
 //   write_file(folder + "/scenario.yaml", to_yaml(scenario));
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario.hpp"
+#include "harness/scenario/yaml_tree.hpp"
 
 #pragma GCC visibility push(default)
 
@@ -39,6 +41,20 @@ struct ScenarioSource {
 /// override), line, key, what was found and what is expected.
 [[nodiscard]] Scenario load_scenario(const std::string& path_or_name,
                                      const std::vector<std::string>& overrides = {});
+
+/// A scenario file that is read once, to be loaded many times with different overrides.
+class ScenarioBase {
+ public:
+  /// Throws InputError where there is no such file, or no tree of keys in it.
+  explicit ScenarioBase(const std::string& path_or_name);
+
+  /// As load_scenario.
+  [[nodiscard]] Scenario load(const std::vector<std::string>& overrides) const;
+
+ private:
+  std::string path_;
+  YamlNode tree_;
+};
 
 /// As load_scenario, from the text itself, e.g. one that a trace holds.
 [[nodiscard]] Scenario parse_scenario(const std::string& text, const ScenarioSource& source = {});

@@ -99,6 +99,9 @@ struct Trace {
   std::string scenario_text;         ///< the resolved scenario as YAML
   std::uint64_t seed = 0;
   std::string version;
+  /// plant_digest of the vehicle when it was driven; empty of an analytic plant, and of traces of
+  /// earlier versions.
+  std::string vehicle_digest{};
   std::vector<StepRecord> steps;
   Eigen::VectorXd final_state;  ///< true state after the last period, state_dim; empty if not known
   std::vector<MotionSample> motion;  ///< of the whole episode, oldest first

@@ -108,6 +108,9 @@ void TraceReader::read_header() {
       file_.text("/", kFaultOf) == fault_of_name(FaultOf::kController)) {
     trace_.fault_of = FaultOf::kController;
   }
+  if (file_.has_attribute("/", "vehicle_digest")) {
+    trace_.vehicle_digest = file_.text("/", "vehicle_digest");
+  }
   const std::string outcome = file_.text("/", "outcome");
   try {
     // Which part of the unsafe set it was is told by the states, which are read later.

@@ -180,9 +180,12 @@ render::Frame EpisodeFrames::at(double time) const {
   frame.followed = track_.smooth_pose(now);
   frame.driven_path = track_.driven_path(now);
   if (overlays_.path) {
-    for (const render::PlanarPoint& point : frame.driven_path) {
+    const std::size_t count = frame.driven_path.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const render::PlanarPoint& point = frame.driven_path[i];
       frame.clearances.push_back(
-          controller::clearance(Eigen::Vector2d(point.x, point.y), planar_unsafe_));
+          on_rail_ ? clearance_at(driven_time(i, count, now))
+                   : controller::clearance(Eigen::Vector2d(point.x, point.y), planar_unsafe_));
     }
   }
   const std::size_t step = step_at(now);
@@ -228,13 +231,27 @@ Eigen::VectorXd EpisodeFrames::state_at(std::size_t step, double time) const {
   return on_the_way + (1.0 - share / ease) * (before_kick(k) - from);
 }
 
+// When the vehicle was at point `i` of the `count` of its path until `now`.
+double EpisodeFrames::driven_time(std::size_t i, std::size_t count, double now) const {
+  return i + 1 < count ? std::min(track_.path_time(i), track_.duration()) : now;
+}
+
+// Of the whole state: on a rail, states that are not drawn may be what is unsafe.
+double EpisodeFrames::clearance_at(double time) const {
+  const Eigen::VectorXd& clearances = view_.clearances();
+  const double last = static_cast<double>(clearances.size() - 1);
+  const double period = std::clamp(time / view_.scenario().time_step, 0.0, last);
+  const auto k = static_cast<Eigen::Index>(period);
+  if (k + 1 >= clearances.size()) return clearances[k];
+  const double share = period - static_cast<double>(k);
+  return (1.0 - share) * clearances[k] + share * clearances[k + 1];
+}
+
 // The vehicle's joints, and what was and will be at its time.
 void EpisodeFrames::put_on_rail(std::size_t step, double time, render::Frame& frame) const {
-  const double end = track_.duration();
   const std::size_t count = frame.driven_path.size();
   for (std::size_t i = 0; i < count; ++i) {
-    const double then = i + 1 < count ? std::min(track_.path_time(i), end) : time;
-    frame.driven_path[i].y = kRailTime * (time - then);
+    frame.driven_path[i].y = kRailTime * (time - driven_time(i, count, time));
   }
   // Past and plan move on with time, not in steps of a period.
   const double since = kRailTime * (time - steps_[step].time);

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "controller/regions/unsafe_set.hpp"
+#include "harness/plant/mujoco/joint_pose.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "harness/video/episode_hud.hpp"
 #include "harness/video/episode_track.hpp"
-#include "harness/video/joint_pose.hpp"
 #include "harness/video/overlays.hpp"
 #include "harness/video/raw_points.hpp"
 #include "render/frame.hpp"
@@ -73,6 +73,8 @@ class EpisodeFrames {
   /// m, y of a stage of the plan on a rail, of which it is 0.
   [[nodiscard]] double lane(std::size_t stage) const;
   [[nodiscard]] Eigen::VectorXd state_at(std::size_t step, double time) const;
+  [[nodiscard]] double driven_time(std::size_t i, std::size_t count, double now) const;
+  [[nodiscard]] double clearance_at(double time) const;
   void put_on_rail(std::size_t step, double time, render::Frame& frame) const;
 
   const EpisodeView& view_;

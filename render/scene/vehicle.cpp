@@ -12,16 +12,15 @@
 
 #include "models/constants.hpp"
 #include "render/gl/shadow.hpp"
-#include "render/gl/solid_mesh.hpp"
 #include "render/palette.hpp"
 #include "render/scene/mujoco_guard.hpp"
+#include "render/scene/vehicle_geometry.hpp"
 
 namespace qsmpc::render {
 namespace {
 
 constexpr int kSpareGeoms = 64;  // MuJoCo's own decorations
-constexpr int kHiddenGroup = 5;  // mjvOption draws groups 0 to 2 unless told otherwise
-constexpr int kLastVisibleGroup = 2;
+constexpr int kHiddenGroup = 5;  // not among those that are visible
 constexpr double kAxisTolerance = 1e-6;
 
 struct ModelDeleter {
@@ -59,23 +58,6 @@ void prepare_model(mjModel& model, int width, int height) {
   model.vis.quality.shadowsize = 0;
 }
 
-bool is_visible(const mjModel& model, int geom) {
-  return model.geom_group[geom] <= kLastVisibleGroup && model.geom_type[geom] != mjGEOM_PLANE;
-}
-
-// Whether it is a part of the vehicle, not of the terrain: what is welded to the world stands.
-bool is_vehicle(const mjModel& model, int geom) {
-  return is_visible(model, geom) && model.body_weldid[model.geom_bodyid[geom]] != 0;
-}
-
-Colour colour_of(const mjModel& model, int geom) {
-  const int material = model.geom_matid[geom];
-  const float* const rgba = material < 0
-                                ? model.geom_rgba + static_cast<std::ptrdiff_t>(4) * geom
-                                : model.mat_rgba + static_cast<std::ptrdiff_t>(4) * material;
-  return {rgba[0], rgba[1], rgba[2], rgba[3]};
-}
-
 // The file's lamps may be any: too bright, none, or about another place. With these a face towards
 // the sun has the colour that the file gives it.
 void light(mjvScene& scene) {
@@ -95,95 +77,6 @@ void light(mjvScene& scene) {
   }
   scene.lights[0] = sun;
   scene.nlight = 1;
-}
-
-// Half sides of the box about a geom, in its own axes.
-SpacePoint half_sides(const mjModel& model, int geom) {
-  const mjtNum* const size = model.geom_size + static_cast<std::ptrdiff_t>(3) * geom;
-  switch (model.geom_type[geom]) {
-    case mjGEOM_SPHERE:
-      return {size[0], size[0], size[0]};
-    case mjGEOM_CAPSULE:
-      return {size[0], size[0], size[1] + size[0]};
-    case mjGEOM_CYLINDER:
-      return {size[0], size[0], size[1]};
-    default:
-      return {size[0], size[1], size[2]};
-  }
-}
-
-SolidShape solid_shape(const mjModel& model, int geom) {
-  switch (model.geom_type[geom]) {
-    case mjGEOM_SPHERE:
-    case mjGEOM_ELLIPSOID:
-      return SolidShape::kEllipsoid;
-    case mjGEOM_CAPSULE:
-    case mjGEOM_CYLINDER:
-      return SolidShape::kCylinder;
-    default:
-      return SolidShape::kBox;
-  }
-}
-
-SolidPlace solid_place(const mjModel& model, const mjData& data, int geom) {
-  SolidPlace place;
-  place.half_sides = half_sides(model, geom);
-  std::copy_n(data.geom_xpos + static_cast<std::ptrdiff_t>(3) * geom, 3, place.centre.begin());
-  std::copy_n(data.geom_xmat + static_cast<std::ptrdiff_t>(9) * geom, 9, place.axes.begin());
-  return place;
-}
-
-// The surface of all parts of the vehicle where `data` has them, as triangles; meshes as boxes.
-template <typename ColourOf>
-std::vector<ColouredPoint> surface_of(const mjModel& model, const mjData& data,
-                                      const ColourOf& colour) {
-  std::vector<ColouredPoint> corners;
-  for (int geom = 0; geom < model.ngeom; ++geom) {
-    if (!is_vehicle(model, geom)) continue;
-    append_solid(solid_shape(model, geom), solid_place(model, data, geom), colour(geom), corners);
-  }
-  return corners;
-}
-
-std::vector<SpacePoint> box_corners(const mjModel& model, const mjData& data, int geom) {
-  const SpacePoint half = half_sides(model, geom);
-  const mjtNum* const centre = data.geom_xpos + static_cast<std::ptrdiff_t>(3) * geom;
-  const mjtNum* const axes = data.geom_xmat + static_cast<std::ptrdiff_t>(9) * geom;
-  std::vector<SpacePoint> corners(8);
-  for (unsigned corner = 0; corner < 8; ++corner) {
-    for (std::size_t row = 0; row < 3; ++row) {
-      double value = centre[row];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        const double sign = ((corner >> axis) & 1U) != 0U ? 1.0 : -1.0;
-        value += sign * axes[3 * row + axis] * half[axis];
-      }
-      corners[corner][row] = value;
-    }
-  }
-  return corners;
-}
-
-// z (m) of the lowest place that a geom reaches while the last hinge that tilts it turns.
-double lowest_place(const mjModel& model, const mjData& data, int geom) {
-  const std::vector<SpacePoint> corners = box_corners(model, data, geom);
-  for (int body = model.geom_bodyid[geom]; body > 0; body = model.body_parentid[body]) {
-    for (int joint = model.body_jntadr[body];
-         joint < model.body_jntadr[body] + model.body_jntnum[body]; ++joint) {
-      const mjtNum* const axis = data.xaxis + static_cast<std::ptrdiff_t>(3) * joint;
-      const mjtNum* const anchor = data.xanchor + static_cast<std::ptrdiff_t>(3) * joint;
-      if (model.jnt_type[joint] != mjJNT_HINGE || std::abs(axis[2]) > 1.0 - kAxisTolerance)
-        continue;
-      double reach = 0.0;
-      for (const SpacePoint& corner : corners) {
-        reach = std::max(
-            reach, std::hypot(corner[0] - anchor[0], corner[1] - anchor[1], corner[2] - anchor[2]));
-      }
-      return anchor[2] - reach;
-    }
-  }
-  double lowest = kInfinity;
-  for (const SpacePoint& corner : corners) lowest = std::min(lowest, corner[2]);
-  return lowest;
 }
 
 // Address in qpos of the first joint of `type` about or along `axis`, or -1.
@@ -418,7 +311,7 @@ std::vector<ColouredPoint> Vehicle::ghost(const Frame& frame) {
   const auto share = static_cast<float>(length() > 0.0 ? std::min(apart / length(), 1.0) : 1.0);
   const Colour colour =
       palette::kGhost.with_alpha(palette::kGhost.alpha * (kNearest + (1.0F - kNearest) * share));
-  return surface_of(model, data, [&colour](int) { return colour; });
+  return vehicle_surface(model, data, [&colour](int) { return colour; });
 }
 
 VehicleMarks Vehicle::marks(const Frame& frame) {
@@ -426,7 +319,7 @@ VehicleMarks Vehicle::marks(const Frame& frame) {
   const mjModel& model = *simulator_->model;
   return {.length = length(),
           .shadows = shadows(),
-          .surface = surface_of(
+          .surface = vehicle_surface(
               model, *simulator_->data,
               [&model](int geom) { return colour_of(model, geom).with_alpha(kHiddenOpacity); }),
           .ghost = ghost(frame)};

@@ -158,18 +158,21 @@ test("pages without a vehicle's file do not carry it", async () => {
   assert.ok(statSync(join(out, "report.html")).size < statSync(join(folder, "report.html")).size - 5e5);
 });
 
-test("a model without a place in the plane is drawn alone", async () => {
-  const out = temporaryFolder();
-  qsmpc("run", "cart_pole_balance", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=10",
-        "--set", "plant.kind=mujoco");
-  const {page, seen} = await openPage(browser, join(out, "report.html"));
-  await page.locator("#scene").scrollIntoViewIfNeeded();
-  await page.locator("#scene canvas").waitFor();
-  const drawn = await seenAt(page, 0.2);
-  assert.ok(drawn.coloured > 200, `${drawn.coloured} pixels of the cart and its pole`);
-  assert.deepEqual(seen.errors, []);
-  await page.close();
-});
+for (const plant of ["mujoco", "analytic"]) {
+  test(`a model without a place in the plane is drawn alone: ${plant}`, async () => {
+    const out = temporaryFolder();
+    qsmpc("run", "cart_pole_balance", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=10",
+          "--set", `plant.kind=${plant}`);
+    const {page, seen} = await openPage(browser, join(out, "report.html"));
+    await page.locator("#scene").scrollIntoViewIfNeeded();
+    await page.locator("#scene canvas").waitFor();
+    const drawn = await seenAt(page, 0.2);
+    assert.ok(drawn.coloured > 200, `${drawn.coloured} pixels of the cart and its pole`);
+    assert.equal(await page.locator('[data-scene="way"]').count(), 0);
+    assert.deepEqual(seen.errors, []);
+    await page.close();
+  });
+}
 
 for (const [name, options] of Object.entries({
   light: {colorScheme: "light", viewport: {width: 1440, height: 900}},

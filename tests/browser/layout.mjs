@@ -94,6 +94,16 @@ export function layoutProblems({wide}) {
   return problems;
 }
 
+// Rows of tiles that are less than half full.
+export function lonelyTiles() {
+  return [...document.querySelectorAll(".tiles")].filter((tiles) => {
+    const boxes = [...tiles.children].map((tile) => tile.getBoundingClientRect());
+    const last = boxes.filter((box) => box.top > boxes.at(-1).top - 2);
+    const filled = last.reduce((sum, box) => sum + box.width, 0);
+    return filled < 0.4 * tiles.getBoundingClientRect().width;  // gaps are not counted
+  }).map((tiles) => `${tiles.children.length} tiles`);
+}
+
 // The grids of the page whose last row leaves a column empty; runs in the page.
 export function emptyColumns() {
   return [...document.querySelectorAll(".grid")].filter((grid) => {

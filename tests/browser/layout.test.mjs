@@ -5,7 +5,7 @@ import {writeFileSync} from "node:fs";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 
-import {emptyColumns, layoutProblems} from "./layout.mjs";
+import {emptyColumns, layoutProblems, lonelyTiles} from "./layout.mjs";
 import {artefacts, openPage, qsmpc, softwareGl, startBrowser, temporaryFolder} from "./pages.mjs";
 
 const screens = {
@@ -27,6 +27,7 @@ before(async () => {
   run("episode_without_plan", "dubins_obstacles", "--no-video", "--set", "controller.kind=lqr",
       "--set", "risk={}", "--set", "limit.steps=30");
   run("episode_without_plane", "double_integrator", "--no-video", "--set", "limit.steps=10");
+  run("episode_of_a_cart", "cart_pole_balance", "--no-video", "--set", "limit.steps=10");
   folders.comparison = temporaryFolder();
   qsmpc("compare", "bicycle_obstacles", "--plant", "analytic", "--plant", "mujoco", "--quiet", "--episodes", "2",
         "--paths", "40", "--set", "limit.steps=8", "--out", folders.comparison);
@@ -38,14 +39,15 @@ before(async () => {
   };
   campaign("campaign", "scenario: dubins_obstacles\nvariants: {closed: {}, open: {controller.policy: open_loop}, " +
     "greedy: {controller.horizon: 3}}\nseeds: {count: 6}\ngrid: {limit.steps: [60]}\ntraces: none\n");
+  campaign("campaign_without_plane", "scenario: cart_pole_balance\nseeds: {count: 4}\ntraces: none\n");
   campaign("campaign_of_one", "scenario: dubins_corridor\nseeds: {count: 6}\ntraces: none\n");
   browser = await startBrowser(softwareGl);
 });
 
 after(async () => { await browser?.close(); });
 
-const pages = ["episode", "episode_without_video", "episode_without_plan", "episode_without_plane",
-               "comparison", "campaign", "campaign_of_one"];
+const pages = ["episode", "episode_without_video", "episode_without_plan", "episode_without_plane", "episode_of_a_cart",
+               "comparison", "campaign", "campaign_of_one", "campaign_without_plane"];
 
 for (const name of pages) {
   for (const [screen, size] of Object.entries(screens)) {
@@ -61,6 +63,7 @@ for (const name of pages) {
         await page.locator("details").evaluateAll((all) => all.forEach((one) => { one.open = true; }));
         await page.screenshot({path: join(artefacts, `layout-${name}-${screen}-${colorScheme}.png`), fullPage: true});
         assert.deepEqual(await page.evaluate(layoutProblems, {wide: screen === "desktop"}), []);
+        assert.deepEqual(await page.evaluate(lonelyTiles), []);
         if (name.startsWith("episode")) assert.deepEqual(await page.evaluate(emptyColumns), []);
         assert.deepEqual(seen.errors, []);
         await page.close();

@@ -176,8 +176,8 @@ TEST(Predict, a_full_disk_is_exit_code_3_and_keeps_the_older_files) {
   ASSERT_EQ(predict("dubins_corridor", folder.path(), {"--steps", "2"}).exit_code, 0);
   const std::string before = read_text(folder.path() + "/predict.json");
   for (const long limit : {500L, 20'000L}) {
-    const ProcessResult result =
-        predict("dubins_corridor", folder.path(), {"--steps", "6"}, {.file_size_limit = limit});
+    const ProcessResult result = predict("dubins_corridor", folder.path(),
+                                         {"--steps", "6", "--force"}, {.file_size_limit = limit});
     EXPECT_EQ(result.exit_code, 3) << result.errors;
     EXPECT_THAT(files_in(folder.path()), SizeIs(3)) << "nothing unfinished is left";
     EXPECT_EQ(read_text(folder.path() + "/predict.json"), before);

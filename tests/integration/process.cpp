@@ -31,6 +31,11 @@ namespace {
     setrlimit(RLIMIT_FSIZE, &limit);
     std::signal(SIGXFSZ, SIG_IGN);  // the write then fails with EFBIG
   }
+  if (options.address_space >= 0) {
+    const auto bytes = static_cast<rlim_t>(options.address_space);
+    const rlimit limit{.rlim_cur = bytes, .rlim_max = bytes};
+    setrlimit(RLIMIT_AS, &limit);
+  }
   std::vector<std::string> words = {QSMPC_PROGRAM};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;

@@ -24,6 +24,7 @@ struct ProcessOptions {
   std::function<bool(pid_t)> meanwhile{};
   std::vector<std::string> unset{};  ///< environment variables to remove
   long file_size_limit = -1;         ///< bytes; writing more fails as on a full disk
+  long address_space = -1;           ///< bytes that the process may map, as by ulimit -v
 };
 
 /// Starts qsmpc with `arguments` and waits for its end.

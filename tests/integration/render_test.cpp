@@ -22,6 +22,7 @@ namespace render_test {
 
 using namespace testing;
 
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -64,10 +65,11 @@ class Render : public ::testing::Test {
   [[nodiscard]] std::string episode() const { return folder_ / "episode"; }
   [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
 
-  [[nodiscard]] ProcessResult render(const std::vector<std::string>& more) const {
+  [[nodiscard]] ProcessResult render(const std::vector<std::string>& more,
+                                     const ProcessOptions& options = {}) const {
     std::vector<std::string> arguments{"render", episode()};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return run_qsmpc(arguments);
+    return run_qsmpc(arguments, options);
   }
 
   /// Renders into a file of this name and probes it.
@@ -138,6 +140,22 @@ TEST_F(Render, a_still_is_a_png_of_the_size_asked_for) {
   EXPECT_THAT(probe(episode() + "/still-0.25.png"), StartsWith("png,320,180"));
   EXPECT_THAT(result.errors, HasSubstr("OpenGL: osmesa: "));
   EXPECT_THAT(probed("s.png", {"--still", "0.6", "--size", "400x200"}), StartsWith("png,400,200"));
+}
+
+TEST_F(Render, too_little_address_space_is_told_in_a_line) {
+  for (const long limit : {450'000'000L, 500'000'000L, 600'000'000L, 800'000'000L}) {
+    const ProcessOptions options{.address_space = limit};
+    for (const ProcessResult& result :
+         {render({"--quiet"}, options), run_qsmpc(small_run(path("none")), options)}) {
+      EXPECT_EQ(result.exit_code, 3) << limit;
+      EXPECT_THAT(result.errors, ContainsRegex("^qsmpc: drawing 320x180 pixels on 2 threads takes "
+                                               "about [0-9]+ MB of address space, and the limit of "
+                                               "the process .ulimit -v. leaves [0-9]+ MB\n$"));
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(path("none")));
+  const ProcessResult enough = render({"--quiet"}, {.address_space = 3'000'000'000L});
+  EXPECT_EQ(enough.exit_code, 0) << enough.errors;
 }
 
 TEST_F(Render, says_what_drew_and_what_it_cost) {

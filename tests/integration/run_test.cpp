@@ -134,8 +134,8 @@ TEST(Run, tells_an_outcome_that_it_was_asked_to_tell) {
 TEST(Run, tells_that_a_limit_of_the_risk_was_exceeded_where_it_was_asked_to) {
   const TemporaryFolder folder;
   const auto exit_code = [&](const char* risk, const char* fail_on) {
-    return run_qsmpc(small_run(folder.path(), {"--no-video", "--set", std::string("risk=") + risk,
-                                               "--fail-on", fail_on}))
+    return run_qsmpc(small_run(folder.path(), {"--no-video", "--force", "--set",
+                                               std::string("risk=") + risk, "--fail-on", fail_on}))
         .exit_code;
   };
   constexpr const char* kNever = "{plan: 0}";  // no certificate is 0
@@ -149,19 +149,13 @@ TEST(Run, tells_that_a_limit_of_the_risk_was_exceeded_where_it_was_asked_to) {
 TEST(Run, a_drive_that_is_unsafe_fails_unless_told_otherwise) {
   const TemporaryFolder folder;
   const auto exit_code = [&](const char* safe_set, std::vector<std::string> more) {
-    std::vector<std::string> arguments = {"--no-video",
-                                          "--set",
-                                          std::string("safe_set=") + safe_set,
-                                          "--set",
-                                          "limit.steps=20",
-                                          "--set",
-                                          "controller.penalty={box: 0, obstacle: 0}",
-                                          "--set",
-                                          "target.state=[3, 0, 0]",
-                                          "--set",
-                                          "plant.kind=analytic",
-                                          "--set",
-                                          "vehicle.footprint=point"};
+    std::vector<std::string> arguments = {"--no-video", "--force",
+                                          "--set",      std::string("safe_set=") + safe_set,
+                                          "--set",      "limit.steps=20",
+                                          "--set",      "controller.penalty={box: 0, obstacle: 0}",
+                                          "--set",      "target.state=[3, 0, 0]",
+                                          "--set",      "plant.kind=analytic",
+                                          "--set",      "vehicle.footprint=point"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     return run_qsmpc(small_run(folder.path(), arguments)).exit_code;
   };
@@ -386,62 +380,6 @@ TEST(Run, a_vehicle_that_mujoco_does_not_load_is_a_wrong_file) {
     EXPECT_FALSE(exists(folder.path() + "/none"));
   }
   EXPECT_FALSE(exists(folder.path() + "/MUJOCO_LOG.TXT"));
-}
-
-TEST(Commands, list_and_validate_and_help) {
-  EXPECT_THAT(run_qsmpc({"list"}).output, HasSubstr("dubins_obstacles"));
-  EXPECT_THAT(run_qsmpc({"list", "systems", "--json"}).output, HasSubstr("\"dubins\""));
-  EXPECT_THAT(run_qsmpc({"list", "propagators"}).output, HasSubstr("moment_matched"));
-  EXPECT_THAT(run_qsmpc({"list", "boundings"}).output, HasSubstr("sigmoid"));
-  EXPECT_THAT(run_qsmpc({"list", "quantisers"}).output, HasSubstr("lloyd"));
-  EXPECT_EQ(run_qsmpc({"list", "wheels"}).exit_code, 2);
-  EXPECT_EQ(run_qsmpc({"validate", "dubins_obstacles"}).exit_code, 0);
-  for (const char* command : {"run", "predict", "render", "report", "list", "validate"}) {
-    const ProcessResult help = run_qsmpc({command, "--help"});
-    EXPECT_EQ(help.exit_code, 0);
-    EXPECT_THAT(help.output, HasSubstr("Example"));
-  }
-  const TemporaryFolder folder;
-  const std::string file =
-      folder.file("two.yaml", std::string(kValid) + "horizon: 3\ntime_step: 0\n");
-  const ProcessResult invalid = run_qsmpc({"validate", file, "--json"});
-  EXPECT_EQ(invalid.exit_code, 2);
-  const auto json = nlohmann::json::parse(invalid.output);
-  EXPECT_EQ(json["ok"], false);
-  EXPECT_EQ(json["errors"].size(), 2U);
-  EXPECT_EQ(json["errors"][0]["line"], 5);
-}
-
-TEST(Commands, warn_of_limits_that_the_start_exceeds) {
-  const TemporaryFolder folder;
-  const std::string file = folder.file(
-      "risky.yaml", std::string(kValid) +
-                        "plant: {kind: analytic, mjcf: \"\"}\nsafe_set: {bounds: {x: [-0.1, 20]}}\n"
-                        "risk: {plan: 0}\n");
-  const ProcessResult text = run_qsmpc({"validate", file});
-  EXPECT_EQ(text.exit_code, 0);
-  EXPECT_THAT(text.output, HasSubstr("warning: risk.plan is 0"));
-  EXPECT_THAT(text.output, HasSubstr(": ok\n"));
-  const auto json = nlohmann::json::parse(run_qsmpc({"validate", file, "--json"}).output);
-  EXPECT_EQ(json["ok"], true);
-  EXPECT_EQ(json["warnings"].size(), 1U);
-  // A standard deviation from the wall.
-  const ProcessResult run =
-      run_qsmpc({"run", file, "--set", "limit.steps=1", "--set", "risk.plan=0.1", "--set",
-                 "initial_state.covariance=[0.01, 0.01, 0.01]", "--no-video", "--quiet",
-                 "--fail-on", "none", "--out", folder / "out"});
-  EXPECT_EQ(run.exit_code, 0) << run.errors;
-  EXPECT_THAT(run.errors, HasSubstr("qsmpc: warning: the start is unsafe with a certified "
-                                    "probability up to 0.159, above the limit of 0.1\n"));
-}
-
-TEST(Commands, a_folder_without_a_trace_is_a_bad_input) {
-  const TemporaryFolder folder;
-  for (const char* command : {"render", "report"}) {
-    const ProcessResult result = run_qsmpc({command, folder.path()});
-    EXPECT_EQ(result.exit_code, 2);
-    EXPECT_EQ(lines(result.errors), 1) << result.errors;
-  }
 }
 
 }  // namespace run_test

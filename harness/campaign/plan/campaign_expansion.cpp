@@ -64,7 +64,10 @@ double setting_bytes(const CampaignDraft& draft) {
 class Expansion {
  public:
   Expansion(const CampaignDraft& draft, Problems& problems)
-      : draft_(draft), refusals_(draft.file, problems), plants_(draft, refusals_) {}
+      : draft_(draft),
+        refusals_(draft.file, problems),
+        scenarios_(refusals_),
+        plants_(draft, refusals_) {}
 
   Campaign expand() {
     Campaign campaign{.name = draft_.name,
@@ -100,6 +103,7 @@ class Expansion {
 
   const CampaignDraft& draft_;
   CampaignRefusals refusals_;
+  VariantScenarios scenarios_;
   PlantChecks plants_;
   std::vector<std::string> paths_;  // of the scenarios
   std::vector<CampaignVariant> variants_;
@@ -197,7 +201,7 @@ void Expansion::add_scenario(const CampaignChoice& scenario, const std::string& 
 
 void Expansion::add_settings(const CampaignChoice& scenario, const std::string& path,
                              const SettingGroup& settings) {
-  const std::optional<Scenario> resolved = load_variant(path, settings, refusals_);
+  const std::optional<Scenario> resolved = scenarios_.load(path, settings);
   if (!resolved) {
     ++refused_;
     return;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <limits>
+#include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -15,7 +16,6 @@
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
-#include "harness/scenario/yaml_text.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -111,11 +111,23 @@ void refuse_scenario(const std::string& path, const Settings& settings,
 }
 
 /// Equal for scenarios whose plants are the same.
-std::string plant_text(const Scenario& scenario) {
-  const YamlNode tree = parse_yaml(to_yaml(scenario), "scenario");
+std::string plant_text(Scenario scenario) {
+  // A disturbance that is added to the state makes no other plant.
+  Scenario::Disturbance& disturbance = scenario.disturbance;
+  if (disturbance.kind == "state") disturbance.covariance.setZero();
+  disturbance.sensor.setZero();
+  const std::string yaml = to_yaml(scenario);
   std::string text;
-  for (const char* key : {"model", "time_step", "plant", "disturbance"}) {
-    if (const YamlNode* node = tree.find(key)) text += yaml_flow(*node) + "\n";
+  bool is_of_plant = false;  // the key without an indent that was last met
+  for (std::size_t begin = 0; begin < yaml.size();) {
+    const std::size_t end = std::min(yaml.find('\n', begin), yaml.size());
+    const std::string_view line = std::string_view(yaml).substr(begin, end - begin);
+    if (!line.starts_with(' ')) {
+      const std::string_view key = line.substr(0, line.find(':'));
+      is_of_plant = key == "model" || key == "time_step" || key == "plant" || key == "disturbance";
+    }
+    if (is_of_plant) text.append(line).push_back('\n');
+    begin = end + 1;
   }
   return text;
 }
@@ -140,10 +152,11 @@ std::optional<std::string> find_beside(const std::string& file, const CampaignCh
   return std::nullopt;
 }
 
-std::optional<Scenario> load_variant(const std::string& path, const SettingGroup& settings,
-                                     CampaignRefusals& refusals) {
+std::optional<Scenario> VariantScenarios::load(const std::string& path,
+                                               const SettingGroup& settings) {
   try {
-    Scenario scenario = load_scenario(path, texts_of(settings.settings, settings.settings.size()));
+    const ScenarioBase& base = files_.try_emplace(path, path).first->second;
+    Scenario scenario = base.load(texts_of(settings.settings, settings.settings.size()));
     scenario.seed = 0;
     if (!sets(settings.settings, "controller.threads")) scenario.controller.threads = 1;
     if (!sets(settings.settings, "controller.deadline")) {
@@ -151,7 +164,7 @@ std::optional<Scenario> load_variant(const std::string& path, const SettingGroup
     }
     return scenario;
   } catch (const InputError& error) {
-    refuse_scenario(path, settings.settings, error.where(), refusals);
+    refuse_scenario(path, settings.settings, error.where(), *refusals_);
     return std::nullopt;
   }
 }
@@ -170,7 +183,10 @@ std::optional<Scenario> PlantChecks::choose(const Scenario& resolved, const Camp
     if (broken_.contains(text)) return std::nullopt;
     if (!made_.contains(text)) {
       broken_.insert(text);
-      try_plant(driven);
+      const std::string vehicle = driven.plant.kind + ' ' + driven.plant.mjcf;
+      if (!drawn_.contains(vehicle)) try_drawn_vehicle(driven);
+      drawn_.insert(vehicle);
+      try_driven_plant(driven);
       broken_.erase(text);
       made_.insert(text);
     }

@@ -2,6 +2,7 @@
 // with it said in terms of the campaign's file.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <unordered_set>
@@ -9,6 +10,7 @@
 #include "harness/campaign/plan/campaign_reader.hpp"
 #include "harness/campaign/plan/campaign_refusals.hpp"
 #include "harness/scenario/scenario.hpp"
+#include "harness/scenario/scenario_file.hpp"
 
 namespace qsmpc::harness {
 
@@ -18,13 +20,21 @@ namespace qsmpc::harness {
                                                      const CampaignChoice& scenario,
                                                      CampaignRefusals& refusals);
 
-/// The scenario in `path` with `settings`, so that an episode depends on nothing but it and its
-/// seed: seed 0, and unless a setting says otherwise one thread and no deadline (what a plan is
-/// after a time depends on the machine). Nothing, and refusals, if it is not valid: at the setting
-/// that makes it so, or in the scenario's own file.
-[[nodiscard]] std::optional<Scenario> load_variant(const std::string& path,
-                                                   const SettingGroup& settings,
-                                                   CampaignRefusals& refusals);
+/// Scenarios as variants have them, each file read once.
+class VariantScenarios {
+ public:
+  explicit VariantScenarios(CampaignRefusals& refusals) : refusals_(&refusals) {}
+
+  /// The scenario in `path` with `settings`, so that an episode depends on nothing but it and its
+  /// seed: seed 0, and unless a setting says otherwise one thread and no deadline (what a plan is
+  /// after a time depends on the machine). Nothing, and refusals, if it is not valid: at the
+  /// setting that makes it so, or in the scenario's own file.
+  [[nodiscard]] std::optional<Scenario> load(const std::string& path, const SettingGroup& settings);
+
+ private:
+  CampaignRefusals* refusals_;
+  std::map<std::string, ScenarioBase> files_;
+};
 
 /// Gives plants to scenarios, each different one tried once.
 class PlantChecks {
@@ -42,6 +52,7 @@ class PlantChecks {
  private:
   const CampaignDraft* draft_;
   CampaignRefusals* refusals_;
+  std::unordered_set<std::string> drawn_;  // vehicles that load
   std::unordered_set<std::string> made_;
   std::unordered_set<std::string> broken_;
 };

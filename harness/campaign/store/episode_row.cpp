@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
 
+#include "harness/trace/map_axes.hpp"
 #include "harness/trace/summary.hpp"
 
 namespace qsmpc::harness {
@@ -29,18 +31,17 @@ std::vector<PeriodRow> period_rows(const EpisodeView& view) {
 double stored(double value) { return std::stod(fmt::format("{:.6g}", value)); }
 
 std::vector<PathPoint> path_of(const EpisodeView& view) {
-  const models::SystemDescription& system = view.system();
   const Eigen::MatrixXd& states = view.states();
-  const Eigen::Index least = std::max(system.position_x, system.position_y);
-  if (std::min(system.position_x, system.position_y) < 0 || states.rows() <= least) return {};
+  const std::optional<MapAxes> axes = map_axes(view.system());
+  if (!axes || states.rows() <= std::max(axes->x, axes->y)) return {};
   const auto count = static_cast<std::size_t>(states.cols());
   constexpr std::size_t kSteps = kMostPathPoints - 1;  // the end is a point, too
   const std::size_t stride = std::max<std::size_t>(1, (count + kSteps - 2) / kSteps);
   std::vector<PathPoint> path;
   const auto add = [&](std::size_t k) {
     const auto state = states.col(static_cast<Eigen::Index>(k));
-    const double x = state[system.position_x];
-    const double y = state[system.position_y];
+    const double x = state[axes->x];
+    const double y = state[axes->y];
     if (std::isfinite(x) && std::isfinite(y)) path.push_back({.x = stored(x), .y = stored(y)});
   };
   for (std::size_t k = 0; k + 1 < count; k += stride) add(k);

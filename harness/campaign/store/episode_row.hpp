@@ -22,10 +22,10 @@ struct PeriodRow {
   friend bool operator==(const PeriodRow&, const PeriodRow&) = default;
 };
 
-/// A place in the plane.
+/// A place on a map of the drive, see map_axes.
 struct PathPoint {
   double x = 0.0;  ///< m
-  double y = 0.0;
+  double y = 0.0;  ///< m; of a system without a position in the plane, the unit of that state
 
   friend bool operator==(const PathPoint&, const PathPoint&) = default;
 };
@@ -67,7 +67,7 @@ struct EpisodeRow {
   EpisodeTiming timing{};
   std::vector<PeriodRow> periods{};
   /// Where the true state was every so many periods and at its end, at most kMostPathPoints,
-  /// without what is not finite; empty of a system without a position in the plane.
+  /// without what is not finite; empty of a system without map_axes.
   std::vector<PathPoint> path{};
 
   friend bool operator==(const EpisodeRow&, const EpisodeRow&) = default;

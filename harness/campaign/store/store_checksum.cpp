@@ -2,9 +2,12 @@
 
 #include <array>
 #include <bit>
+#include <cstdint>
 #include <string_view>
 
 #include <SQLiteCpp/SQLiteCpp.h>
+
+#include "harness/text/fnv1a.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -21,32 +24,18 @@ constexpr std::array kQueries{
     "SELECT period, ocp_ms FROM period_timing WHERE variant = ? AND seed = ? ORDER BY period",
     "SELECT points FROM path WHERE variant = ? AND seed = ?"};
 
-/// FNV-1a of 64 bits: any single bit that changes changes it.
-class Hash {
- public:
-  void add(std::uint64_t value) {
-    for (int n = 0; n < 8; ++n) add_byte(static_cast<unsigned char>(value >> (8 * n)));
-  }
-  void add(std::string_view text) {
-    add(text.size());
-    for (const char letter : text) add_byte(static_cast<unsigned char>(letter));
-  }
-  [[nodiscard]] std::int64_t value() const { return static_cast<std::int64_t>(state_); }
+using Hash = Fnv1a<std::uint64_t>;
 
- private:
-  void add_byte(unsigned char byte) {
-    state_ ^= byte;
-    state_ *= 0x100000001b3U;
-  }
-
-  std::uint64_t state_ = 0xcbf29ce484222325U;
-};
+void add_text(std::string_view text, Hash& hash) {
+  hash.add(static_cast<std::uint64_t>(text.size()));
+  hash.add(text);
+}
 
 void add_column(const SQLite::Column& column, Hash& hash) {
   hash.add(static_cast<std::uint64_t>(column.getType()));
   if (column.isInteger()) hash.add(static_cast<std::uint64_t>(column.getInt64()));
   if (column.isFloat()) hash.add(std::bit_cast<std::uint64_t>(column.getDouble()));
-  if (column.isText()) hash.add(std::string_view(column.getString()));
+  if (column.isText()) add_text(column.getString(), hash);
 }
 
 /// Checksums of episodes of one store.
@@ -73,7 +62,7 @@ class Checksums {
       hash.add(rows);
       statement.reset();
     }
-    return hash.value();
+    return static_cast<std::int64_t>(hash.value());
   }
 
  private:

@@ -86,6 +86,8 @@ class MujocoPlant final : public Plant {
 
   [[nodiscard]] Eigen::VectorXd state() const override { return simulation_->state(); }
 
+  [[nodiscard]] double tilt() const override { return simulation_->tilt(); }
+
  private:
   [[nodiscard]] MotionSample sample() const {
     return {.time = simulation_->time(), .qpos = simulation_->qpos()};

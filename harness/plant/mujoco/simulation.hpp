@@ -99,6 +99,8 @@ class Simulation {
   [[nodiscard]] const StateBinding& binding() const { return states_; }
   /// The heading of the state, 0 where it has none.
   [[nodiscard]] double heading() const;
+  /// See Plant::tilt. Balls may roll.
+  [[nodiscard]] double tilt() const;
 
  private:
   Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded);

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include <Eigen/Geometry>
 #include <fmt/format.h>
 
 #include "harness/errors.hpp"
@@ -14,6 +15,16 @@ namespace {
 
 constexpr double kSettledSpeedError = 0.01;  // relative
 constexpr double kFeedbackError = 0.05;      // relative; the loop goes on correcting it
+
+/// Whether the body is made of balls, which have no side that is up.
+bool is_ball(const mjModel& model, int body) {
+  const int first = model.body_geomadr[body];
+  const int count = model.body_geomnum[body];
+  for (int geom = first; geom < first + count; ++geom) {
+    if (model.geom_type[geom] != mjGEOM_SPHERE) return false;
+  }
+  return count > 0;
+}
 
 }  // namespace
 
@@ -94,6 +105,25 @@ double Simulation::measured_response(const FeedbackBinding& feedback) {
                                              "{:.3g}",
                                              velocities[1] - velocities[0], command),
                         .expected = "actuators of a feedback loop that move what it holds"});
+}
+
+double Simulation::tilt() const {
+  double largest = 0.0;
+  for (int joint = 0; joint < model_->njnt; ++joint) {
+    if (model_->jnt_type[joint] != mjJNT_FREE || is_ball(*model_, model_->jnt_bodyid[joint])) {
+      continue;
+    }
+    constexpr int kRotation = 3;  // after the position, in qpos
+    const int place = model_->jnt_qposadr[joint] + kRotation;
+    const auto rotation = [place](const mjtNum* qpos) {
+      return Eigen::Quaterniond(qpos[place], qpos[place + 1], qpos[place + 2], qpos[place + 3])
+          .normalized();
+    };
+    const Eigen::Vector3d up = rotation(model_->qpos0).conjugate() * Eigen::Vector3d::UnitZ();
+    const double cosine = (rotation(data_->qpos) * up).z();
+    largest = std::max(largest, std::acos(std::clamp(cosine, -1.0, 1.0)));
+  }
+  return largest;
 }
 
 void Simulation::run_idle(double duration) {

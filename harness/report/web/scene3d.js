@@ -161,7 +161,8 @@ class Panel {
     this.ground = data.ground
       ? new Ground(data.ground, this.vehicle.height(), colours)
       : gridAbout(this.vehicle.extent(), colours);
-    this.plan = this.moment.data.map && new Plan(this.moment, colours);
+    // Without a ground, the page's map is of two states that have no place in this view.
+    this.plan = data.ground && this.moment.data.map && new Plan(this.moment, colours);
     this.layers = {particles: this.plan?.particles, plan: this.plan?.line, way: this.plan?.way,
                    ghost: this.vehicle.ghost};
     this.scene.add(this.ground.group, this.vehicle.group, ...this.lights(size));

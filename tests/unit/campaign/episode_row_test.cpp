@@ -50,7 +50,16 @@ TEST(EpisodeRow, keeps_a_path_of_few_points_that_ends_where_the_drive_did) {
   EXPECT_NEAR(row.path.front().x, trace.steps.front().state[0], 1e-4);
   EXPECT_NEAR(row.path.back().x, trace.final_state[0], 1e-5 * std::abs(trace.final_state[0]));
   EXPECT_NEAR(row.path.back().y, trace.final_state[1], 1e-5 * std::abs(trace.final_state[1]));
+}
+
+TEST(EpisodeRow, keeps_the_two_states_of_the_map_of_a_system_without_a_place_in_the_plane) {
+  Trace trace = testing::example_trace({.steps = 500});
   trace.system.position_x = -1;
+  const EpisodeRow row = episode_row(EpisodeView(trace), 0);  // x and heading
+  ASSERT_FALSE(row.path.empty());
+  EXPECT_NEAR(row.path.back().x, trace.final_state[0], 1e-5 * std::abs(trace.final_state[0]));
+  EXPECT_NEAR(row.path.back().y, trace.final_state[2], 1e-5 * std::abs(trace.final_state[2]));
+  for (models::Coordinate& state : trace.system.states) state.unit = "";
   EXPECT_TRUE(episode_row(EpisodeView(trace), 0).path.empty());
 }
 

@@ -2,21 +2,13 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
-#include <SQLiteCpp/SQLiteCpp.h>
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/campaign/store/store_rows.hpp"
-#include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
-#include "harness/version.hpp"
-#include "tests/support/temporary_folder.hpp"
-#include "tests/unit/campaign/campaign_fixture.hpp"
+#include "tests/unit/campaign/store_fixture.hpp"
 
 namespace qsmpc::harness {
 namespace store_test {
@@ -26,44 +18,7 @@ using testing::example_row;
 using ::testing::HasSubstr;
 using ::testing::Pair;
 using testing::quick_campaign;
-
-class StoreTest : public ::testing::Test {
- protected:
-  Store open(const Campaign& campaign, bool update = false, const Shard& shard = {}) const {
-    return {folder.path(), stored_campaign(campaign, shard),
-            stored_variants(campaign, digests(campaign)), campaign.seeds, update};
-  }
-  static std::vector<std::string> digests(const Campaign& campaign) {
-    return std::vector<std::string>(campaign.variants.size());
-  }
-  std::string refusal(const Campaign& campaign, const Shard& shard = {}) const {
-    try {
-      (void)open(campaign, false, shard);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "not refused";
-  }
-  std::vector<EpisodeRow> rows_of(std::int64_t variant) const {
-    std::vector<EpisodeRow> rows;
-    StoreReader(folder.path()).for_each_episode(variant, [&](const EpisodeRow& row) {
-      rows.push_back(row);
-    });
-    return rows;
-  }
-  SQLite::Database database() const {
-    return {folder.path() + "/" + kStoreFile, SQLite::OPEN_READWRITE};
-  }
-  /// The bytes of the store, with all that is in its log.
-  std::string content() const {
-    database().exec("PRAGMA journal_mode = DELETE");
-    std::ifstream file(path(), std::ios::binary);
-    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  }
-  std::string path() const { return folder.path() + "/" + kStoreFile; }
-
-  testing::TemporaryFolder folder;
-};
+using StoreTest = testing::StoreFolder;
 
 TEST_F(StoreTest, gives_back_the_episodes_that_were_added_by_seed) {
   {
@@ -299,36 +254,6 @@ TEST_F(StoreTest, an_update_keeps_the_listed_seeds_of_a_shard) {
   EXPECT_EQ(store.outcome(0, 9), std::nullopt);
 }
 
-TEST_F(StoreTest, refuses_a_newer_schema_and_leaves_the_file_as_it_is) {
-  open(testing::quick_campaign()).fold();
-  database().exec("PRAGMA user_version = 99");
-  const auto size = std::filesystem::file_size(path());
-  EXPECT_THAT(refusal(testing::quick_campaign()), HasSubstr("schema 99, made by a newer qsmpc"));
-  EXPECT_THROW(StoreReader(folder.path()), InputError);
-  EXPECT_EQ(std::filesystem::file_size(path()), size);
-  EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), 99);
-}
-
-TEST_F(StoreTest, refuses_the_file_of_another_program) {
-  {
-    SQLite::Database(path(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
-        .exec("CREATE TABLE t (x)");
-  }
-  EXPECT_THAT(refusal(testing::quick_campaign()), HasSubstr("an SQLite file of another program"));
-  EXPECT_THROW(StoreReader(folder.path()), InputError);
-}
-
-TEST_F(StoreTest, refuses_a_file_that_is_no_database) {
-  std::ofstream(path()) << std::string(5000, 'x');
-  EXPECT_THROW(open(testing::quick_campaign()), IoError);
-  EXPECT_THROW(StoreReader(folder.path()), IoError);
-}
-
-TEST_F(StoreTest, a_reader_refuses_a_folder_without_a_store) {
-  EXPECT_THROW(StoreReader(folder.path()), InputError);
-  EXPECT_FALSE(std::filesystem::exists(path()));
-}
-
 TEST_F(StoreTest, is_one_file_once_it_is_folded) {
   {
     Store store = open(testing::quick_campaign());
@@ -347,78 +272,6 @@ TEST_F(StoreTest, is_not_folded_while_others_read_it) {
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
   EXPECT_NO_THROW(store.fold());
   EXPECT_THAT(reader.outcomes(), ElementsAre(Pair("reached", 1)));
-}
-
-TEST_F(StoreTest, a_change_of_any_column_of_an_episode_is_seen) {
-  open(testing::quick_campaign()).add(testing::example_row(0, 7), false);
-  EXPECT_NO_THROW(StoreReader(folder.path()).verify());
-  const std::string before = content();
-  for (const std::string table : {"episode", "episode_timing", "period", "period_timing"}) {
-    std::vector<std::string> columns;
-    {
-      SQLite::Database store = database();
-      SQLite::Statement info(store, "SELECT name FROM pragma_table_info(?)");
-      info.bind(1, table);
-      while (info.executeStep()) columns.push_back(info.getColumn(0).getString());
-    }
-    for (const std::string& column : columns) {
-      database().exec("UPDATE " + table + " SET " + column + " = CASE WHEN typeof(" + column +
-                      ") = 'text' THEN " + column + " || '.' ELSE -coalesce(" + column +
-                      ", 1) - 1 END");
-      EXPECT_THROW(StoreReader(folder.path()).verify(), IoError) << table << "." << column;
-      std::ofstream(path(), std::ios::binary) << before;
-      EXPECT_NO_THROW(StoreReader(folder.path()).verify()) << "as it was";
-    }
-  }
-}
-
-TEST_F(StoreTest, a_checksum_whose_episode_is_gone_is_seen) {
-  open(testing::quick_campaign()).add(testing::example_row(0, 7), false);
-  database().exec("DELETE FROM episode");
-  EXPECT_THROW(StoreReader(folder.path()).verify(), IoError);
-}
-
-/// A store as the first schema had it, with one episode.
-void make_first_store(const std::string& path) {
-  SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  migrate(database, 0, {store_migrations().front()});
-  const Campaign campaign = testing::quick_campaign();
-  database.exec(fmt::format(
-      "INSERT INTO campaign VALUES (1, 'quick', '{}', '5 to 8', 'none', 1, 1, 8)", kVersion));
-  for (const StoredVariant& variant : stored_variants(campaign, {"", ""})) {
-    insert_variant(database, variant, variant.id);
-  }
-  database.exec(
-      "INSERT INTO episode VALUES (1, 6, 'reached', '', 2, 0.2, 0, 1.5, 9.0, 0, 0, 0, 0, 1, 0, '');"
-      "INSERT INTO episode_timing VALUES (1, 6, 1e9, 2.0, 0);"
-      "INSERT INTO period VALUES (1, 6, 0, 0.1, 0.2, 0);"
-      "INSERT INTO period_timing VALUES (1, 6, 0, 0.5)");
-}
-
-TEST_F(StoreTest, of_an_older_schema_is_brought_up_to_date_with_its_episodes) {
-  make_first_store(path());
-  EXPECT_THROW(StoreReader(folder.path()), InputError);
-  EXPECT_EQ(open(testing::quick_campaign()).outcome(1, 6), "reached");
-  EXPECT_EQ(database().execAndGet("PRAGMA user_version").getInt(), store_schema());
-  const std::vector<EpisodeRow> rows = rows_of(1);
-  ASSERT_EQ(rows.size(), 1U);
-  EXPECT_NO_THROW(StoreReader(folder.path()).verify());
-  EXPECT_EQ(rows[0].cost, 9.0);
-  EXPECT_EQ(rows[0].risk_exceeded, std::nullopt);
-  EXPECT_EQ(rows[0].version, StoreReader(folder.path()).campaign().version);
-}
-
-TEST(StoreMigration, applies_what_is_missing_one_whole_step_at_a_time) {
-  SQLite::Database database(":memory:", SQLite::OPEN_READWRITE);
-  const std::vector<std::string> steps{
-      "CREATE TABLE t (a)", "ALTER TABLE t ADD COLUMN b",
-      "INSERT INTO t VALUES (1, 2); INSERT INTO missing VALUES (1)"};
-  migrate(database, 0, {steps[0]});
-  database.exec("INSERT INTO t VALUES (7)");
-  EXPECT_THROW(migrate(database, 1, steps), SQLite::Exception);
-  EXPECT_EQ(database.execAndGet("PRAGMA user_version").getInt(), 2);
-  EXPECT_EQ(database.execAndGet("SELECT count(*) FROM t").getInt(), 1);
-  EXPECT_EQ(database.execAndGet("SELECT a FROM t WHERE b IS NULL").getInt(), 7);
 }
 
 }  // namespace store_test

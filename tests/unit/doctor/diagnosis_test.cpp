@@ -44,6 +44,12 @@ TEST(Diagnosis, a_hold_ten_times_too_slow_is_told_with_numbers) {
                      HasSubstr("0.64 m in the model"), HasSubstr("0.0999 of the model's"))));
 }
 
+TEST(Diagnosis, a_vehicle_that_tips_over_while_it_settles_is_told) {
+  EXPECT_THAT(plant_warnings(load_scenario(kRobot, {"model.speed=3"})),
+              Contains(HasSubstr("the vehicle tips over while it settles: where drives begin it is "
+                                 "tilted by ")));
+}
+
 TEST(Diagnosis, an_input_of_the_wrong_sign_is_told_although_the_noise_is_large) {
   const std::string noise = "disturbance.covariance=[1, 1, 1]";
   EXPECT_THAT(plant_warnings(robot(12.5, -2.25, {noise})),

@@ -93,6 +93,8 @@ TEST(SvgFigure, for_a_paper_has_no_titles_but_letters_and_the_width_of_its_colum
   EXPECT_TRUE(testing::contains(two, "viewBox=\"0 0 1002 ")) << "two panels in a row";
   EXPECT_TRUE(testing::contains(two, ">First<"));
   EXPECT_FALSE(testing::contains(svg_figure({panels[0]}, {.titles = false}), "(a)"));
+  const std::string alone = svg_figure({panels[0]}, {.columns = 2});
+  EXPECT_EQ(width_of(alone), 336.0) << "its letters are those of panels side by side";
 }
 
 TEST(SvgFigure, a_chart_without_finite_values_says_so) {

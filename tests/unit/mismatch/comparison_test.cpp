@@ -252,16 +252,22 @@ TEST_F(WrittenComparison, table_fits_a_terminal_and_names_every_plant) {
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 96U) << line;
 }
 
-TEST_F(WrittenComparison, says_beside_the_numbers_that_none_is_a_bound) {
+TEST_F(WrittenComparison, says_beside_the_numbers_of_drives_that_they_are_no_bounds) {
   EXPECT_THAT(comparison_table(comparison_), ::testing::Not(HasSubstr("NO BOUND")));
   EXPECT_EQ(nlohmann::json::parse(comparison_json(comparison_))["certificate"]["holds"], true);
   comparison_.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(3, 3);
   const std::string table = comparison_table(comparison_);
   EXPECT_THAT(table, HasSubstr("NO BOUND: with measurement noise"));
-  EXPECT_THAT(table, ::testing::Not(HasSubstr("certified  ")));
+  const std::size_t drives = table.find("\nCertificates ");
+  EXPECT_THAT(table.substr(0, drives), ::testing::Not(HasSubstr("NO BOUND")))
+      << "along the plan the policy sees the state";
+  EXPECT_THAT(table.substr(0, drives), HasSubstr("certified "));
+  EXPECT_THAT(table.substr(drives), HasSubstr("  NO BOUND  "));
   std::istringstream lines(table);
   for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 96U) << line;
-  EXPECT_EQ(nlohmann::json::parse(comparison_json(comparison_))["certificate"]["holds"], false);
+  const auto scope = nlohmann::json::parse(comparison_json(comparison_))["certificate"];
+  EXPECT_EQ(scope["holds"], false);
+  EXPECT_EQ(scope["along_plan"]["holds"], true);
 }
 
 TEST_F(WrittenComparison, datasets_have_the_promised_shapes_and_units) {

@@ -80,6 +80,28 @@ TEST(CampaignFigures, of_no_episodes_exist) {
   }
 }
 
+TEST(ReliabilityFigure, says_where_certificates_are_no_bounds_and_calls_none_of_those_exceeded) {
+  CampaignStatistics statistics = example();
+  EXPECT_FALSE(testing::contains(campaign_page(statistics), "No bound"));
+  statistics.variants[1].no_bound = "for a reason";
+  std::vector<Chart> charts = campaign_figures(statistics)[1].charts;
+  ASSERT_EQ(charts.size(), 4U);
+  EXPECT_TRUE(testing::contains(charts[0].note, "No bound in variant 1: for a reason."));
+  EXPECT_EQ(charts[2].title, "0: seldom");
+  EXPECT_FALSE(testing::contains(charts[2].note, "reason"));
+  EXPECT_EQ(charts[3].title, "1: often <b>: NO BOUND");
+  EXPECT_TRUE(testing::contains(charts[3].note, "No bound: for a reason."));
+  EXPECT_NE(series_of(charts[3], "certificate, no bound"), nullptr);
+  EXPECT_EQ(series_of(charts[3], "certificate, no bound: exceeded"), nullptr);
+  EXPECT_NE(series_of(charts[0], "certificate: exceeded"), nullptr) << "some are bounds";
+
+  statistics.variants[0].no_bound = "for a reason";
+  charts = campaign_figures(statistics)[1].charts;
+  EXPECT_TRUE(testing::contains(charts[0].note, "no bounds here. No bound: for a reason."));
+  EXPECT_EQ(series_of(charts[0], "certificate: exceeded"), nullptr);
+  EXPECT_TRUE(testing::contains(campaign_page(statistics), "Certificates: no bounds here"));
+}
+
 TEST(ReliabilityFigure, draws_bins_with_events_as_points_and_others_at_zero_below_what_is_shaded) {
   const Chart chart = campaign_figures(example())[1].charts[0];
   const Series* exceeded = series_of(chart, "certificate: exceeded");

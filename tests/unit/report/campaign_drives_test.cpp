@@ -66,6 +66,16 @@ TEST(DriveMaps, show_every_drive_coloured_by_its_outcome_those_that_arrived_belo
   EXPECT_EQ(map.targets.size(), 1U);
 }
 
+TEST(DriveMaps, of_a_system_without_a_place_in_the_plane_have_the_axes_of_its_episodes_map) {
+  VariantStatistics cart = variant(0, {"reached", "collision"});
+  cart.scenario_text = to_yaml(load_scenario("cart_pole"));
+  const DriveMaps drives = drive_maps(campaign({cart}));
+  ASSERT_EQ(drives.maps.size(), 1U);
+  EXPECT_EQ(drives.maps[0].x_label, "position (m)");
+  EXPECT_EQ(drives.maps[0].y_label, "pole_angle (rad)");
+  EXPECT_EQ(drives.maps[0].paths.size(), 2U);
+}
+
 TEST(DriveMaps, draw_few_drives_that_arrived_strongly_and_speak_of_no_dots) {
   const DriveMaps drives = drive_maps(campaign({variant(0, {"reached", "reached"})}));
   EXPECT_FALSE(drives.maps.at(0).paths.at(0).faint);

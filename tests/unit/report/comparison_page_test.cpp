@@ -74,6 +74,16 @@ TEST(ComparisonPage, has_no_tables_or_charts_of_rounding_errors) {
   EXPECT_FALSE(testing::contains(comparison_page(comparison), "One-step residual"));
 }
 
+TEST(ComparisonPage, the_chart_of_residuals_stands_beside_their_tables) {
+  const std::string page = comparison_page(example());
+  const std::size_t stack = page.find("<div class=\"stack residuals\">");
+  ASSERT_NE(stack, std::string::npos);
+  const std::size_t table = page.find("One period, by state: mujoco_car", stack);
+  const std::size_t chart = page.find("One-step residual", stack);
+  EXPECT_LT(table, chart);
+  EXPECT_EQ(page.substr(table, chart - table).find("<h2>"), std::string::npos);
+}
+
 TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
   Comparison comparison = example();
   PlantComparison& car = comparison.plants[1];
@@ -87,6 +97,17 @@ TEST(ComparisonPage, says_first_which_certificates_are_exceeded_and_where) {
   const std::string page = comparison_page(comparison);
   EXPECT_LT(page.find("class=\"outcome bad\""), page.find("<h2>"));
   EXPECT_TRUE(testing::contains(page, "<strong>1 to 3</strong>"));
+}
+
+TEST(ComparisonPage, calls_the_certificates_of_drives_no_bounds_and_those_along_the_plan_bounds) {
+  Comparison comparison = example();
+  EXPECT_FALSE(testing::contains(comparison_page(comparison), "no bound"));
+  comparison.scenario.disturbance.sensor = Eigen::MatrixXd::Identity(3, 3);
+  const std::string page = comparison_page(comparison);
+  EXPECT_TRUE(testing::contains(page, "Certificates of the drives are no bounds"));
+  // The sum over the periods of drives, and no table of stages.
+  EXPECT_EQ(testing::occurrences(page, ">certified: no bound<"), 1U);
+  EXPECT_TRUE(testing::contains(page, ">certified<"));
 }
 
 TEST(ComparisonPage, says_before_all_else_that_drives_were_unsafe) {

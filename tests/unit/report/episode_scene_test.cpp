@@ -4,15 +4,18 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/mujoco/mujoco_model.hpp"
 #include "harness/mujoco/vehicle_shapes.hpp"
 #include "harness/report/episode_map.hpp"
 #include "harness/report/episode_page.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "tests/support/described_trace.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/report/packed_data.hpp"
@@ -109,6 +112,66 @@ TEST(EpisodeScene, holds_the_shapes_and_the_ground) {
   EXPECT_EQ(ground["bounds"], nlohmann::json({-1.0, 12.0, -1.0, 12.0}));
   EXPECT_EQ(ground["obstacles"], nlohmann::json({{2.0, 4.0, 3.0, 5.0}, {6.0, 8.0, 5.0, 6.5}}));
   EXPECT_EQ(ground["targets"], nlohmann::json({{11.0, 9.0, 0.5}}));
+}
+
+/// A cart that rolls and a pole that falls, by the model alone.
+Trace cart_trace() {
+  Trace trace;
+  trace.scenario = load_scenario("cart_pole");
+  for (int k = 0; k < 3; ++k) {
+    StepRecord step;
+    step.time = trace.scenario.time_step * k;
+    step.state = Eigen::Vector4d(0.5 * k, 0.0, 0.1 * k, 0.0);
+    step.input = Eigen::VectorXd::Zero(1);
+    step.disturbance = Eigen::Vector4d::Zero();
+    trace.steps.push_back(step);
+  }
+  trace.final_state = Eigen::Vector4d(1.5, 0.0, 0.3, 0.0);
+  return testing::described(std::move(trace));
+}
+
+TEST(EpisodeScene, of_a_system_without_a_place_in_the_plane_has_its_joints_at_every_state) {
+  const Trace trace = cart_trace();
+  const EpisodeView view(trace);
+  const nlohmann::json scene = nlohmann::json::parse(episode_scene(view, nullptr).data);
+  EXPECT_FALSE(scene.contains("ground"));
+  const auto times = numbers_of<float>(scene["times"]);
+  const auto places = numbers_of<float>(scene["places"]);
+  ASSERT_EQ(times.size(), 4U);
+  EXPECT_NEAR(times.back(), 3.0 * trace.scenario.time_step, kSinglePrecision);
+  const std::size_t parts = scene["parts"];
+  ASSERT_EQ(places.size(), kPlace * parts * times.size());
+  // Every part of the cart and its pole has moved with the cart by 1.5 m.
+  bool moved = false;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const double way = places[kPlace * (3 * parts + part)] - places[kPlace * part];
+    moved = moved || std::abs(way - 1.5) < 0.5;
+  }
+  EXPECT_TRUE(moved);
+}
+
+TEST(EpisodePage, of_a_system_without_a_place_in_the_plane_has_no_ground_of_its_states) {
+  const Trace trace = cart_trace();
+  const std::string page = episode_page(EpisodeView(trace), {});
+  EXPECT_TRUE(contains(page, "id=\"scene\""));
+  const std::size_t data = page.find("id=\"scene-data\"");
+  ASSERT_NE(data, std::string::npos);
+  EXPECT_EQ(page.find("\"ground\"", data), std::string::npos);
+  EXPECT_FALSE(contains(page, "data-scene=\"way\""));
+}
+
+TEST(EpisodeScene, says_that_the_model_has_changed_since_the_drive) {
+  const testing::TemporaryFolder folder;
+  const std::string path = folder.file("vehicle.xml", kVehicle);
+  Trace trace = driven_trace(path);
+  trace.vehicle_digest = mujoco_model_digest(path);
+  EXPECT_EQ(scene_of(trace).note, "");
+  std::string changed = kVehicle;
+  changed.replace(changed.find("1 .5 0 1"), 8, "0 .5 1 1");  // as many coordinates
+  (void)folder.file("vehicle.xml", changed);
+  EXPECT_TRUE(contains(scene_of(trace).note, "vehicle.xml has changed since the drive"));
+  trace.vehicle_digest.clear();
+  EXPECT_EQ(scene_of(trace).note, "") << "of an earlier version: not known";
 }
 
 TEST(EpisodeScene, without_a_simulator_the_vehicle_stands_at_the_origin) {

@@ -76,6 +76,21 @@ TEST(TradeoffCharts, have_a_point_a_variant_and_a_series_a_family) {
   EXPECT_EQ(chart.series[0].labels[1], "w20");
 }
 
+TEST(TradeoffCharts, say_what_is_no_bound_beside_what_was_certified_alone) {
+  CampaignStatistics statistics = tradeoff_example();
+  EXPECT_FALSE(testing::contains(tradeoff_charts(statistics)[1].note, "NO BOUND"));
+  statistics.variants[1].no_bound = "for a reason";
+  std::vector<Chart> charts = tradeoff_charts(statistics);
+  EXPECT_FALSE(testing::contains(charts[0].note, "NO BOUND"));
+  EXPECT_TRUE(testing::contains(charts[1].note, "NO BOUND: w20."));
+  EXPECT_EQ(charts[1].x_label, "mean certified risk of a drive, no bound (–)");
+  const std::string section = tradeoff_section(statistics);
+  EXPECT_EQ(testing::occurrences(section, "<strong>no bound</strong>"), 1U);
+  EXPECT_TRUE(testing::contains(section, "No bound in variant 1: for a reason."));
+  for (VariantStatistics& variant : statistics.variants) variant.no_bound = "for a reason";
+  EXPECT_TRUE(testing::contains(tradeoff_charts(statistics)[1].note, "NO BOUND of any variant."));
+}
+
 TEST(TradeoffCharts, show_what_was_certified_beside_what_was_observed) {
   CampaignStatistics statistics = tradeoff_example();
   statistics.tradeoff[0].families[0].points[1].certified = {

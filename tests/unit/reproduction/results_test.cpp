@@ -1,6 +1,7 @@
 // What a reproduction looks like as text: nothing is lost, nothing breaks a format.
 
 #include <limits>
+#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -112,7 +113,8 @@ TEST(ResultsMarkdown, has_as_many_cells_in_every_row) {
   EXPECT_THAT(text, HasSubstr("| this does not | **no** |"));
 }
 
-TEST(ResultsMarkdown, has_tables_in_the_thesiss_shape_and_lists_what_has_no_place) {
+/// With a table of two steps, and a row that has no place in it.
+Reproduction tabular() {
   ExperimentResult experiment{.name = "table-5-1", .title = "quality"};
   for (const int step : {0, 1}) {
     const std::string column = "step " + std::to_string(step);
@@ -132,7 +134,11 @@ TEST(ResultsMarkdown, has_tables_in_the_thesiss_shape_and_lists_what_has_no_plac
       {.quantity = "late", .here = 7.0, .place = TablePlace{"W2", "late", "step 1"}});
   Reproduction all = example();
   all.experiments = {experiment};
-  EXPECT_THAT(results_markdown(all, "figures"),
+  return all;
+}
+
+TEST(ResultsMarkdown, has_tables_in_the_thesiss_shape_and_lists_what_has_no_place) {
+  EXPECT_THAT(results_markdown(tabular(), "figures"),
               HasSubstr("| W2 | step 0 | step 1 |\n"
                         "| --- | ---: | ---: |\n"
                         "| samples: published | 1 | 2 |\n"
@@ -146,6 +152,43 @@ TEST(ResultsMarkdown, has_tables_in_the_thesiss_shape_and_lists_what_has_no_plac
                         "| quantity | published | here | ratio | note |\n"
                         "| --- | ---: | ---: | ---: | --- |\n"
                         "| alone | 4 | 2 | 0.5 |  |\n"));
+}
+
+TEST(ResultsTable, has_tables_in_the_thesiss_shape_and_lists_what_has_no_place) {
+  EXPECT_THAT(results_table(tabular()), HasSubstr("  W2                  step 0  step 1\n"
+                                                  "  samples: published       1       2\n"
+                                                  "  samples: here          1.5     2.5\n"
+                                                  "  mixture (m)           0.25    1.25\n"
+                                                  "  late                             7\n"));
+  EXPECT_THAT(results_table(tabular()), ::testing::ContainsRegex("\n  alone +4 +2 +0.5\n"));
+}
+
+TEST(ResultsTable, goes_on_below_where_a_table_is_too_wide) {
+  Reproduction all = tabular();
+  for (int step = 2; step < 20; ++step) {
+    all.experiments[0].rows.push_back(
+        {.quantity = "samples",
+         .here = 100.0 * step,
+         .place = TablePlace{"W2", "samples", "step " + std::to_string(step)}});
+  }
+  const std::string text = results_table(all);
+  std::istringstream lines(text);
+  int heads = 0;
+  for (std::string line; std::getline(lines, line);) {
+    EXPECT_LE(line.size(), 112U) << line;
+    if (line.starts_with("  W2 ")) ++heads;
+  }
+  EXPECT_EQ(heads, 2);
+  EXPECT_THAT(text, HasSubstr("step 19"));
+}
+
+TEST(ResultsPage, has_tables_in_the_thesiss_shape_and_lists_what_has_no_place) {
+  const std::string page = results_page(tabular());
+  EXPECT_THAT(page, HasSubstr("<th class=\"text\">W2</th><th>step 0</th><th>step 1</th>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"text\">samples: published</td><td>1</td><td>2</td>"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"text\">late</td><td></td><td>7</td>"));
+  EXPECT_THAT(page, HasSubstr("mixture (m): exact (step 0)"));
+  EXPECT_THAT(page, HasSubstr("<td class=\"text\">alone</td><td>4</td><td>2</td><td>0.5</td>"));
 }
 
 TEST(ResultsPage, shows_rows_claims_and_figures_as_text) {

@@ -21,17 +21,6 @@ namespace qsmpc::harness {
 namespace episode_frames_test {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
-
-std::string row_of(const render::Frame& frame, const std::string& name) {
-  for (const render::HudRow& row : frame.hud) {
-    if (row.name == name) {
-      return row.value;
-    }
-  }
-  return "no row " + name;
-}
 
 TEST(episode_frames, vehicle_drives_from_state_to_state_and_eases_the_disturbance) {
   const Trace trace = straight_trace();
@@ -101,45 +90,6 @@ TEST(episode_frames, plan_and_certificate_are_those_of_the_running_period) {
   EXPECT_EQ(frame.charts[0].values.size(), 3U);
   EXPECT_TRUE(frame.banner.empty());
   EXPECT_THAT(frames.at(0.6).banner, HasSubstr("target reached"));
-}
-
-TEST(episode_frames, what_is_no_bound_is_not_called_one) {
-  Trace trace = straight_trace();
-  trace.scenario.disturbance.sensor = Eigen::Matrix3d::Identity();
-  const EpisodeView view(trace);
-  const render::Frame frame = EpisodeFrames(view).at(0.2);
-  EXPECT_EQ(frame.charts[0].label, "next step, no bound");
-  EXPECT_THAT(row_of(frame, "plan, no bound"), StartsWith("25"));
-  EXPECT_THAT(frame.charts[0].value, Not(HasSubstr("≤")));
-  for (const render::HudRow& row : frame.hud) EXPECT_THAT(row.value, Not(HasSubstr("≤")));
-}
-
-TEST(episode_frames, speed_is_the_plants_and_neither_the_models_constant_nor_the_noises) {
-  Trace trace = straight_trace();
-  trace.scenario.model.parameters["speed"] = 9.0;
-  // The plant loses speed in its third period: half of the stride, then the same kick.
-  for (std::size_t k = 3; k < trace.steps.size(); ++k) trace.steps[k].state.x() -= 0.5 * kStride;
-  trace.final_state.x() -= 0.5 * kStride;
-  const EpisodeView view(trace);
-  const EpisodeFrames frames(view);
-  EXPECT_THAT(row_of(frames.at(0.15), "speed"), HasSubstr("1.50"));
-  EXPECT_THAT(row_of(frames.at(0.25), "speed"), HasSubstr("0.75"));
-  EXPECT_THAT(row_of(frames.at(0.35), "speed"), HasSubstr("1.50"));
-}
-
-TEST(episode_frames, a_collision_is_told_when_it_was_and_as_an_alarm) {
-  Trace trace = straight_trace();
-  EXPECT_FALSE(EpisodeFrames(EpisodeView(trace)).at(0.6).alarm);
-  trace.scenario.safe_set.bounds.upper[0] = 2.5 * kStride;  // left between 0.2 s and 0.3 s
-  for (const auto& [outcome, words] :
-       {std::pair(Outcome::kCollision, "collision after 0.3 s"),
-        std::pair(Outcome::kLeftBounds, "left the bounds after 0.3 s")}) {
-    trace.outcome = outcome;
-    const EpisodeView view(trace);
-    const render::Frame frame = EpisodeFrames(view).at(0.6);
-    EXPECT_EQ(frame.banner, words);
-    EXPECT_TRUE(frame.alarm);
-  }
 }
 
 TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
@@ -242,80 +192,6 @@ TEST(episode_frames, tube_ends_round_and_covers_the_last_ellipse) {
               0.0, 1e-9);  // the tip
 }
 
-// A point on a line at 0.1 m more in each period, and its plan, which goes on so.
-Trace rail_trace() {
-  Trace trace;
-  trace.scenario = load_scenario("double_integrator");
-  for (int k = 0; k < 4; ++k) {
-    StepRecord step;
-    step.time = 0.1 * k;
-    step.state = Eigen::Vector2d(0.1 * k, 1.0);
-    step.input = Eigen::VectorXd::Zero(1);
-    step.disturbance = Eigen::Vector2d::Zero();
-    step.plan_states = Eigen::MatrixXd::Ones(2, 3);
-    for (int stage = 0; stage < 3; ++stage) {
-      step.plan_states(0, stage) = 0.1 * (k + stage);
-      step.particles.push_back(
-          {models::StateBatch(step.plan_states.col(stage)), Eigen::VectorXd::Ones(1)});
-    }
-    trace.steps.push_back(step);
-  }
-  trace.final_state = Eigen::Vector2d(0.4, 1.0);
-  trace.outcome = Outcome::kReached;
-  return testing::described(std::move(trace));
-}
-
-TEST(episode_frames, a_system_without_a_plane_stands_on_a_rail_and_time_is_y) {
-  const Trace trace = rail_trace();
-  const EpisodeView view(trace);
-  EXPECT_EQ(why_not_drawn(view), "");
-  const EpisodeFrames frames(view);
-  const render::Frame frame = frames.at(0.25);
-  EXPECT_NEAR(frame.pose.x, 0.25, 1e-9);
-  EXPECT_EQ(frame.pose.y, 0.0);
-  ASSERT_EQ(frame.qpos.size(), 1U);  // the slider's joint
-  EXPECT_NEAR(frame.qpos[0], 0.25, 1e-9);
-  ASSERT_EQ(frame.particles.size(), 3U);  // of 0.2, 0.3 and 0.4 s
-  EXPECT_NEAR(frame.particles[2].points[0].x, 0.4, 1e-9);
-  EXPECT_NEAR(frame.particles[2].points[0].y, -0.15, 1e-9);
-  EXPECT_NEAR(frame.planned_path[1].y, -0.05, 1e-9);
-  EXPECT_NEAR(frame.driven_path.front().y, 0.25, 1e-9);
-  EXPECT_NEAR(frame.driven_path.back().y, 0.0, 1e-9);
-  EXPECT_EQ(frames.world().bounds.x_upper, 3.0);
-  EXPECT_TRUE(std::isinf(frames.world().bounds.y_upper));
-}
-
-TEST(joint_pose, puts_states_that_are_joints_into_qpos) {
-  Trace trace;
-  trace.scenario = load_scenario("cart_pole");
-  trace = testing::described(std::move(trace));
-  const auto pose = JointPose::of(trace.scenario, trace.system, trace.scenario.plant.mjcf);
-  ASSERT_TRUE(pose);
-  EXPECT_THAT(pose->qpos(Eigen::Vector4d(0.5, 1.0, -1.2, 2.0)), ::testing::ElementsAre(0.5, -1.2));
-}
-
-TEST(episode_hud, bounds_are_percentages_that_are_rounded_up) {
-  EXPECT_EQ(bound_text(0.35), "≤ 35 %");
-  EXPECT_EQ(bound_text(0.3412), "≤ 35 %");
-  EXPECT_EQ(bound_text(1.38e-4), "≤ 0.014 %");
-  EXPECT_EQ(bound_text(0.9999), "≤ 100 %");
-  EXPECT_EQ(bound_text(3.0), "≤ 100 %");
-  EXPECT_EQ(bound_text(2e-9), "≤ 0.001 %");
-  EXPECT_EQ(bound_text(std::nan("")), "–");
-  EXPECT_EQ(percent_text(1e-8), "10⁻⁶ %");
-}
-
-TEST(episode_hud, what_rounds_to_zero_has_no_sign) {
-  Trace trace = straight_trace();
-  const auto text_of = [&trace](double input) {
-    for (StepRecord& step : trace.steps) step.input[0] = input;
-    return EpisodeFrames(EpisodeView(trace)).at(0.2).charts.at(1).value;
-  };
-  EXPECT_EQ(text_of(-0.004), "0.00");
-  EXPECT_EQ(text_of(-0.006), "−0.01");
-  EXPECT_EQ(text_of(1.25), "+1.25");
-}
-
 TEST(episode_frames, ghost_drives_along_the_plan_of_the_period_before) {
   const Trace trace = straight_trace();
   const EpisodeView view(trace);
@@ -373,18 +249,6 @@ TEST(episode_frames, overlays_can_be_switched_off) {
   EXPECT_FALSE(frame.planned_path.empty());
 }
 
-TEST(episode_frames, planning_time_has_the_deadline_as_its_limit) {
-  Trace trace = straight_trace();
-  const auto limit_of = [](const render::Frame& frame) { return frame.charts.at(3).limit.value(); };
-  EXPECT_EQ(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).value, 1000.0 * kPeriod);
-  EXPECT_THAT(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).label, HasSubstr("period"));
-  trace.scenario.controller.deadline = 0.05;
-  EXPECT_EQ(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).value, 50.0);
-  EXPECT_THAT(limit_of(EpisodeFrames(EpisodeView(trace)).at(0.2)).label, HasSubstr("deadline"));
-  EXPECT_FALSE(
-      EpisodeFrames(EpisodeView(trace)).at(0.2).charts.at(0).limit);  // a scenario has none
-}
-
 TEST(episode_frames, a_long_history_scrolls) {
   Trace trace = straight_trace();
   const StepRecord step = trace.steps.back();
@@ -395,23 +259,6 @@ TEST(episode_frames, a_long_history_scrolls) {
   const render::Frame frame = EpisodeFrames(EpisodeView(trace)).at(29.95);
   EXPECT_EQ(frame.charts[0].slots, 200U);  // 20 s
   EXPECT_EQ(frame.charts[0].values.size(), 200U);
-}
-
-TEST(episode_frames, limits_of_the_risk_are_said_to_be_kept_or_exceeded) {
-  Trace trace = straight_trace();  // next-step certificates 1e-3, 2e-3, …
-  EXPECT_EQ(row_of(EpisodeFrames(EpisodeView(trace)).at(0.25), "risk limit"), "no row risk limit");
-  trace.scenario.risk = {.stage = 0.5, .mission = 0.005};
-  trace.steps[2].solver_status = "risk_exceeded";
-  const EpisodeView view(trace);
-  const EpisodeFrames frames(view);
-  EXPECT_EQ(row_of(frames.at(0.15), "risk limit"), "kept");
-  EXPECT_EQ(row_of(frames.at(0.15), "risk spent"), "0.3 % of 0.5 %");
-  const render::Frame exceeded = frames.at(0.25);
-  EXPECT_EQ(row_of(exceeded, "risk limit"), "exceeded");
-  EXPECT_EQ(row_of(exceeded, "risk spent"), "0.6 % of 0.5 %");
-  EXPECT_EQ(std::count_if(exceeded.hud.begin(), exceeded.hud.end(),
-                          [](const render::HudRow& row) { return row.warning; }),
-            2);
 }
 
 TEST(episode_frames, body_is_outlined_where_the_vehicle_stands) {

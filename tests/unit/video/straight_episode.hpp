@@ -63,4 +63,14 @@ inline Trace straight_trace() {
   return testing::described(std::move(trace));
 }
 
+/// What the head-up display says in the row `name`.
+inline std::string row_of(const render::Frame& frame, const std::string& name) {
+  for (const render::HudRow& row : frame.hud) {
+    if (row.name == name) {
+      return row.value;
+    }
+  }
+  return "no row " + name;
+}
+
 }  // namespace qsmpc::harness

@@ -1,4 +1,4 @@
-#include "harness/video/joint_pose.hpp"
+#include "harness/plant/mujoco/joint_pose.hpp"
 
 #include "harness/mujoco/joint_positions.hpp"
 #include "harness/mujoco/mujoco_model.hpp"

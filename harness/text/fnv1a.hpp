@@ -1,0 +1,36 @@
+// FNV-1a: a digest of bytes that is the same on every machine and in every version, and that any
+// single bit changes. It is no protection against anyone who wants two texts to have the same.
+#pragma once
+
+#include <concepts>
+#include <cstdint>
+#include <string_view>
+
+namespace qsmpc::harness {
+
+/// Word: std::uint32_t or std::uint64_t.
+template <class Word>
+requires std::same_as<Word, std::uint32_t> || std::same_as<Word, std::uint64_t>
+class Fnv1a {
+ public:
+  void add(std::string_view bytes) {
+    for (const char byte : bytes) add_byte(static_cast<unsigned char>(byte));
+  }
+
+  /// The eight bytes of `number`, the lowest first.
+  void add(std::uint64_t number) {
+    for (int n = 0; n < 8; ++n) add_byte(static_cast<unsigned char>(number >> (8 * n)));
+  }
+
+  [[nodiscard]] Word value() const { return state_; }
+
+ private:
+  static constexpr bool kIsShort = sizeof(Word) == 4;
+  static constexpr Word kPrime = kIsShort ? Word{0x01000193U} : static_cast<Word>(0x100000001b3U);
+
+  void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * kPrime; }
+
+  Word state_ = kIsShort ? Word{0x811c9dc5U} : static_cast<Word>(0xcbf29ce484222325U);
+};
+
+}  // namespace qsmpc::harness
