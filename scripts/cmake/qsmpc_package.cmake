@@ -46,6 +46,9 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/qsmpc-config-version.cmake
   VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/qsmpc-config.cmake ${CMAKE_BINARY_DIR}/qsmpc-config-version.cmake
   DESTINATION ${package_folder} COMPONENT development)
+# Found from where the file itself is, so that what is installed can be moved.
+file(RELATIVE_PATH prefix_from_pc /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+string(REGEX REPLACE "/$" "" prefix_from_pc "${prefix_from_pc}")
 configure_file(${CMAKE_SOURCE_DIR}/scripts/cmake/qsmpc.pc.in ${CMAKE_BINARY_DIR}/qsmpc.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/qsmpc.pc
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)

@@ -48,7 +48,7 @@ bool is_file(const fs::path& path) {
 /// them is there and they were given on the command line, in the working folder.
 fs::path folder_of(const ScenarioReading& reading, const Section& section, const std::string& key,
                    const std::vector<std::string>& words) {
-  const fs::path folder = reading.lookup.folder;
+  fs::path folder = reading.lookup.folder;
   if (!section.is_override(key)) return folder;
   const bool is_there = std::ranges::any_of(words, [&](const std::string& word) {
     return fs::path(word).is_relative() && is_file(folder / word);
