@@ -60,16 +60,11 @@ inline constexpr std::ptrdiff_t kChunk = 1024;
   return {chunk * kChunk, std::min((chunk + 1) * kChunk, particles)};
 }
 
-/// task(range, chunk) for all chunks of the particles.
+/// task(range, chunk) for all chunks of the particles. The executor hears of a single one as well,
+/// so that one which may throw, e.g. where the work is to end, is asked in every loop.
 template <class Task>
 void for_chunks(const Executor& run, std::ptrdiff_t particles, const Task& task) {
-  const int count = chunks_of(particles);
-  const auto one = [&](int chunk) { task(chunk_range(chunk, particles), chunk); };
-  if (count == 1) {
-    one(0);
-  } else {
-    run(count, one);
-  }
+  run(chunks_of(particles), [&](int chunk) { task(chunk_range(chunk, particles), chunk); });
 }
 
 }  // namespace qsmpc::controller

@@ -37,6 +37,7 @@ controller::Executor executor_of(int threads) {
   if (threads == 1) return controller::run_in_turn;
   auto arena = std::make_shared<tbb::task_arena>(threads);
   return [arena](int count, controller::TaskRef task) {
+    if (count == 1) return task(0);  // it takes no other thread
     Handover handover;
     arena->execute([&] {
       tbb::parallel_for(0, count, [&](int n) {

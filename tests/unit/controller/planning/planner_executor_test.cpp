@@ -1,6 +1,8 @@
 // No plan depends on how its loops are run.
 
 #include <cstddef>
+#include <limits>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +51,30 @@ TEST(PlannerExecutor, plans_are_equal_bit_for_bit_however_tasks_are_run) {
       belief.mean = expected.policy.states.col(1);
     }
   }
+}
+
+// An executor that throws is how a user's interrupt reaches a plan.
+TEST(PlannerExecutor, is_asked_in_every_evaluation_of_few_particles_and_may_end_the_plan) {
+  const auto car = dubins_car();
+  PlannerSettings settings = dubins_settings();
+  settings.max_evaluations = 15;
+  int asked = 0;
+  int most = std::numeric_limits<int>::max();
+  settings.run = [&](int count, TaskRef task) {
+    if (++asked > most) throw std::runtime_error("interrupted");
+    run_in_turn(count, task);
+  };
+  Planner planner(*car, settings);
+  const Plan plan = planner.plan(dubins_belief());
+  ASSERT_LE(plan.prediction.stages[1].size(), kChunk);
+  ASSERT_GT(plan.evaluations, 2);
+  EXPECT_GE(asked, plan.evaluations);
+
+  most = asked / 2;
+  asked = 0;
+  Planner interrupted(*car, settings);
+  EXPECT_THROW((void)interrupted.plan(dubins_belief()), std::runtime_error);
+  EXPECT_EQ(asked, most + 1) << "nothing goes on after it";
 }
 
 }  // namespace planner_executor_test
