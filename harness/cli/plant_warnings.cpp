@@ -8,6 +8,7 @@
 
 #include "harness/doctor/diagnosis.hpp"
 #include "harness/errors.hpp"
+#include "harness/scenario/own_model_reader.hpp"
 #include "harness/scenario/plant_choice.hpp"
 #include "harness/scenario/plant_mapping_reader.hpp"
 #include "harness/text/printable.hpp"
@@ -24,6 +25,7 @@ std::string plant_identity(const Scenario& scenario) {
   for (const auto& [name, value] : scenario.model.parameters) {
     text += fmt::format(" {}={}", name, value);
   }
+  if (scenario.model.own) text += own_model_text(scenario.model);
   if (scenario.plant.mapping) text += plant_mapping_text(*scenario.plant.mapping);
   return text;
 }

@@ -84,6 +84,8 @@ std::unique_ptr<const models::Dynamics> DynamicsLibrary::make(const models::Equa
 }
 
 std::shared_ptr<const DynamicsLibrary> load_dynamics_library(const std::string& path) {
+  // The loader looks for other names in folders of the system.
+  if (!path.starts_with('/')) refuse(path, "an absolute path");
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<const DynamicsLibrary>> loaded;
   const std::scoped_lock lock(mutex);

@@ -210,7 +210,7 @@ void check_described(Section& model, const EquationSystem& said, const EquationS
 }
 
 std::string library_path(const ScenarioReading& reading, Section& model) {
-  const std::string name = model.text(kLibrary, "", kLongestPath);
+  std::string name = model.text(kLibrary, "", kLongestPath);
   if (name.empty()) {
     model.note(kLibrary, "a shared library, not empty");
     return "";

@@ -10,6 +10,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* NOLINTBEGIN(readability-identifier-naming, modernize-use-using): C */
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -106,5 +107,6 @@ typedef const qsmpc_dynamics_table* (*qsmpc_dynamics_function)(void);
 #ifdef __cplusplus
 }
 #endif
+/* NOLINTEND(readability-identifier-naming, modernize-use-using) */
 
 #endif

@@ -302,9 +302,13 @@ std::unique_ptr<const Dynamics> make_own_dynamics(const qsmpc_system& system,
   if (system.record == nullptr) {
     return std::make_unique<PlainDynamics>(description_of(described), std::move(model));
   }
-  auto dynamics = make_tape_dynamics(description_of(described), model->recorded());
-  compare(*dynamics, *model);
-  return dynamics;
+  try {
+    auto dynamics = make_tape_dynamics(description_of(described), model->recorded());
+    compare(*dynamics, *model);
+    return dynamics;
+  } catch (const std::length_error&) {
+    throw std::invalid_argument(described.name + ": its step is too long");
+  }
 }
 
 }  // namespace qsmpc::models

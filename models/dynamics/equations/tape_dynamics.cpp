@@ -12,7 +12,7 @@ namespace qsmpc::models {
 namespace {
 
 // Rows of a batch that a program takes: states, inputs and adjoints.
-constexpr std::size_t kMostRows = 2 * kMostCoordinates;
+constexpr std::size_t kMostRows = 2 * static_cast<std::size_t>(kMostCoordinates);
 
 using Rows = std::array<const double*, kMostRows>;
 using RowsOut = std::array<double*, kMostRows>;

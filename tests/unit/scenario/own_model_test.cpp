@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/scenario/certificate_scope.hpp"
+#include "harness/scenario/dynamics_library.hpp"
 #include "harness/scenario/model_dynamics.hpp"
 #include "tests/unit/scenario/scenario_fixture.hpp"
 
@@ -95,6 +96,17 @@ TEST(OwnModel, from_a_library_that_is_gone_is_read_as_it_was_recorded) {
   EXPECT_EQ(read.model.parameters, scenario.model.parameters);
   EXPECT_EQ(to_yaml(read), text);
   EXPECT_THAT(refusal_of(text).key, "model.library");
+}
+
+TEST(OwnModel, libraries_that_are_loaded_together_keep_to_themselves) {
+  const auto unicycle = load_dynamics_library(libraries + "/liblag_unicycle.so");
+  const auto quadrotor = load_dynamics_library(libraries + "/libplanar_quadrotor.so");
+  EXPECT_THAT(unicycle->names(), ::testing::ElementsAre("lag_unicycle"));
+  EXPECT_THAT(quadrotor->names(), ::testing::ElementsAre("planar_quadrotor"));
+}
+
+TEST(OwnModel, library_is_not_looked_for_in_folders_of_the_system) {
+  EXPECT_THROW((void)load_dynamics_library("libm.so.6"), InputError);
 }
 
 struct Refused {
