@@ -7,7 +7,7 @@
 cmake_minimum_required(VERSION 3.25)
 set(rooms models controller harness render)
 # For systems and controllers of one's own.
-set(to_do models/dynamics/own_dynamics.hpp controller/control/own_controller.hpp)
+set(to_do models/dynamics/own_dynamics.hpp models/dynamics/runge_kutta.hpp controller/control/own_controller.hpp)
 foreach(room IN LISTS rooms)
   list(APPEND to_do ${room}/${room}.hpp)
 endforeach()

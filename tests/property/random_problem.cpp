@@ -86,6 +86,12 @@ Family random_family(Generator& generator) {
             .start = uniform_vector(generator, 2, -1.0, 1.0),
             .walls = {0, 1}};
   }
+  if (which < 0.95) {
+    return {.system = "point_mass",
+            .parameters = {{"damping", uniform(generator, 0.0, 2.0)}},
+            .start = uniform_vector(generator, 4, -1.0, 1.0),
+            .walls = {0, 1}};
+  }
   Eigen::VectorXd start = uniform_vector(generator, 4, -0.3, 0.3);
   return {.system = "cart_pole",
           .parameters = {},

@@ -15,6 +15,7 @@
 #include "harness/report/episode_page.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "harness/trace/trace_file.hpp"
+#include "harness/trace/trace_writer.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/control/outside_fixture.hpp"
 #include "tests/unit/trace/trace_matchers.hpp"
