@@ -88,7 +88,7 @@ TEST(Init, writes_a_commented_scenario_that_is_valid_and_reaches_its_target) {
   for (const char* seed : {"0", "1", "2"}) {
     const ProcessResult driven =
         run_qsmpc({"run", folder / "my_car.yaml", "--seed", seed, "--no-video", "--quiet", "--json",
-                   "--out", folder / "out"});
+                   "--force", "--out", folder / "out"});
     ASSERT_EQ(driven.exit_code, 0) << driven.errors;
     const auto summary = nlohmann::json::parse(driven.output);
     EXPECT_EQ(summary["scenario"], "my_car");
