@@ -151,7 +151,9 @@ std::string residual_section(const Comparison& comparison, const models::SystemD
     tables += name_head(plant) + residuals_of(comparison, plant, system);
   }
   if (!has_mismatch(comparison)) return head + tables;
-  // The chart stands beside the tables, not beside nothing.
+  // The chart stands beside the tables, not beside nothing, where these leave room for it.
+  constexpr std::size_t kMostBeside = 4;  // states
+  if (system.states.size() > kMostBeside) return head + tables + figures(figure);
   std::string html =
       head + "<div class=\"grid beside\">\n<div class=\"stack residuals\">\n" + tables + "</div>\n";
   for (const Chart& chart : figure.charts) html += panel_figure(chart);

@@ -311,10 +311,30 @@ std::string tiles_html(const EpisodeView& view) {
   return html + "</dl>\n";
 }
 
+/// Whether all that the plant adds to the model in a period is rounding.
+bool is_the_model(const EpisodeView& view) {
+  // Of the largest value of a state, or of 1: some hundred roundings in a period.
+  constexpr double kRounding = 1e-13;
+  const Eigen::VectorXd& rmse = view.summary().mismatch_rmse;
+  const Eigen::MatrixXd states = true_states(view.trace());
+  for (Eigen::Index i = 0; i < std::min(rmse.size(), states.rows()); ++i) {
+    const double scale = std::max(1.0, states.row(i).cwiseAbs().maxCoeff());
+    if (!(rmse[i] <= kRounding * scale)) return false;
+  }
+  return true;
+}
+
 std::string mismatch_html(const EpisodeView& view) {
   const Summary& summary = view.summary();
   const models::SystemDescription& system = view.system();
   if (summary.steps == 0) return "<p class=\"empty\">No step was made.</p>\n";
+  if (is_the_model(view)) {
+    return fmt::format(
+        "<p>The plant is the model: what differs is rounding, of at most {} in any state (root "
+        "mean "
+        "square).</p>\n",
+        format_number(summary.mismatch_rmse.maxCoeff()));
+  }
   std::string html =
       "<div class=\"scroll\"><table>\n<thead><tr><th scope=\"col\">state</th>"
       "<th scope=\"col\">RMS</th><th scope=\"col\">mean</th>"
