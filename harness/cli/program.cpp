@@ -31,6 +31,7 @@ int parse_and_run(int argc, char** argv) {
   add_campaign_command(app, exit_code);
   add_render_command(app, exit_code);
   add_report_command(app, exit_code);
+  add_export_command(app, exit_code);
   add_reproduce_command(app, exit_code);
   add_doctor_command(app, exit_code);
   add_list_command(app, exit_code);

@@ -98,6 +98,22 @@ TEST(Init, writes_a_commented_scenario_that_is_valid_and_reaches_its_target) {
   }
 }
 
+TEST(Export, writes_tables_beside_the_trace_or_where_it_is_told) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  ASSERT_EQ(run_qsmpc({"run", "dubins_corridor", "--set", "limit.steps=2", "--set",
+                       "plant.kind=analytic", "--no-video", "--quiet", "--out", out})
+                .exit_code,
+            0);
+  EXPECT_EQ(run_qsmpc({"export", out}).output, out + "/episode.csv\n" + out + "/plan.csv\n");
+  EXPECT_THAT(read_text(out + "/episode.csv"), StartsWith("time [s],x [m],y [m],heading [rad]"));
+  const std::string tables = folder / "tables";
+  EXPECT_EQ(run_qsmpc({"export", out, "--particles", "--out", tables}).exit_code, 0);
+  EXPECT_THAT(files_in(tables),
+              ::testing::UnorderedElementsAre("episode.csv", "plan.csv", "particles.csv"));
+  expect_refused({"export", folder / "nowhere"}, "expected a trace");
+}
+
 TEST(Init, replaces_nothing_and_takes_a_path) {
   const TemporaryFolder folder;
   const std::string file = folder.file("mine.yaml", "precious");

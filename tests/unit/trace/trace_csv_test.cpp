@@ -1,0 +1,99 @@
+// An episode as comma-separated values: what is in each line, and that all lines are as long as the
+// head.
+#include "harness/trace/trace_csv.hpp"
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "harness/trace/episode_view.hpp"
+#include "tests/support/example_trace.hpp"
+
+namespace qsmpc::harness {
+namespace trace_csv_test {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// Fields of lines in which no field is quoted.
+Rows rows_of(const std::string& text) {
+  Rows rows;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::vector<std::string> fields{""};
+    for (const char c : line) {
+      if (c == ',') {
+        fields.emplace_back();
+      } else {
+        fields.back() += c;
+      }
+    }
+    rows.push_back(fields);
+  }
+  return rows;
+}
+
+std::size_t column(const Rows& rows, const std::string& name) {
+  const auto at = std::ranges::find(rows.front(), name);
+  EXPECT_NE(at, rows.front().end()) << name;
+  return static_cast<std::size_t>(at - rows.front().begin());
+}
+
+void expect_rectangular(const Rows& rows) {
+  for (const auto& row : rows) EXPECT_EQ(row.size(), rows.front().size());
+}
+
+TEST(TraceCsv, has_a_line_for_every_control_instant) {
+  const Trace trace = testing::example_trace();
+  const EpisodeView view(trace);
+  const Rows rows = rows_of(episode_csv(view));
+  expect_rectangular(rows);
+  ASSERT_EQ(rows.size(), trace.steps.size() + 2);  // with the head and the last state
+  const StepRecord& second = trace.steps[1];
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "time [s]")]), second.time);
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "x [m]")]), second.state[0]);
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "clearance [m]")]), view.clearances()[1]);
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "belief x [m]")]), second.belief_mean[0]);
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "P(unsafe at next step) <=")]),
+                   second.certificates.front().value);
+  // Of the last instant the state alone is known.
+  EXPECT_DOUBLE_EQ(std::stod(rows.back()[column(rows, "x [m]")]), trace.final_state[0]);
+  EXPECT_EQ(rows.back()[column(rows, "P(unsafe at next step) <=")], "");
+}
+
+TEST(TraceCsv, has_a_line_for_every_stage_of_every_plan) {
+  const Trace trace = testing::example_trace();
+  const Rows rows = rows_of(plan_csv(EpisodeView(trace)));
+  expect_rectangular(rows);
+  const auto stages = static_cast<std::size_t>(trace.steps.front().plan_states.cols());
+  ASSERT_EQ(rows.size(), 1 + trace.steps.size() * stages);
+  const std::size_t bound = column(rows, "P(unsafe) <=");
+  EXPECT_EQ(rows[1][bound], "");  // the present is no stage that is certified
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][bound]), trace.steps[0].certificates[0].value);
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][column(rows, "x [m]")]), trace.steps[0].plan_states(0, 1));
+  EXPECT_DOUBLE_EQ(std::stod(rows[2][0]), trace.steps[0].time + trace.scenario.time_step);
+}
+
+TEST(TraceCsv, has_a_line_for_every_particle) {
+  const Trace trace = testing::example_trace();
+  const Rows rows = rows_of(particles_csv(EpisodeView(trace)));
+  expect_rectangular(rows);
+  std::size_t count = 0;
+  double weights = 0.0;
+  for (const StepRecord& step : trace.steps) {
+    for (const StageParticles& stage : step.particles) {
+      count += static_cast<std::size_t>(stage.weights.size());
+      weights += stage.weights.sum();
+    }
+  }
+  ASSERT_EQ(rows.size(), count + 1);
+  double written = 0.0;
+  for (std::size_t i = 1; i < rows.size(); ++i)
+    written += std::stod(rows[i][column(rows, "weight")]);
+  EXPECT_NEAR(written, weights, 1e-9 * weights);
+}
+
+}  // namespace trace_csv_test
+}  // namespace qsmpc::harness
