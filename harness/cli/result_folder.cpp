@@ -31,7 +31,10 @@ void collect(const YamlNode& node, const std::string& path, Values& values) {
   for (std::size_t i = 0; i < node.items.size(); ++i) {
     const std::string& key = node.keys[i];
     if (path.empty() && (key == "name" || key == "description")) continue;
-    collect(node.items[i], path.empty() ? key : path + "." + key, values);
+    std::string inner = path;
+    if (!inner.empty()) inner += '.';
+    inner += key;
+    collect(node.items[i], inner, values);
   }
 }
 

@@ -1,4 +1,6 @@
 // TraceWriter: the writing side of trace_file.hpp.
+#include "harness/trace/trace_writer.hpp"
+
 #include <iterator>
 #include <stdexcept>
 #include <utility>
@@ -13,7 +15,6 @@
 #include "harness/trace/rows.hpp"
 #include "harness/trace/system_group.hpp"
 #include "harness/trace/trace_file.hpp"
-#include "harness/trace/trace_writer.hpp"
 #include "harness/trace/trace_layout.hpp"
 
 namespace qsmpc::harness {
@@ -33,7 +34,6 @@ void write_trace_header(Hdf5File& file, const Trace& header) {
   // What a reader shall see if nothing is ever added.
   file.set_text("/", "outcome", outcome_name(Outcome::kInterrupted));
   file.set_text("/", "fault", "");
-  file.set_text("/", kFaultOf, "");
 }
 
 }  // namespace
@@ -193,8 +193,11 @@ void TraceWriter::finish(const Trace& trace) {
   file_.end_streaming();
   file_.set_text("/", "outcome", outcome_name(trace.outcome));
   file_.set_text("/", "fault", trace.fault);
-  if (trace.outcome == Outcome::kFault)
+  // No attribute of the others: with more than eight HDF5 keeps them in a tree of their own, of
+  // which it leaks memory where the disk is full.
+  if (trace.outcome == Outcome::kFault) {
     file_.set_text("/", kFaultOf, fault_of_name(trace.fault_of));
+  }
   file_.close();
   commit_partial_file(path_);
 }

@@ -1,4 +1,3 @@
-#include "harness/video/episode_painter.hpp"
 #include "harness/video/episode_video.hpp"
 
 #include <algorithm>
@@ -11,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "harness/files/atomic_file.hpp"
+#include "harness/video/episode_painter.hpp"
 #include "harness/video/ordered_drawing.hpp"
 #include "harness/video/video_file.hpp"
 #include "render/gl/gl_library.hpp"

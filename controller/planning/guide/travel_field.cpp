@@ -112,10 +112,12 @@ double TravelField::cost(const Eigen::Vector2d& position) const {
 double TravelField::cost_of_line(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                                  double enough) const {
   const double length = (to - from).norm();
-  const double samples = std::ceil(kSamplesPerSpacing * length / grid_.spacing);
+  const auto samples = std::lround(std::ceil(kSamplesPerSpacing * length / grid_.spacing));
+  const double share = 1.0 / static_cast<double>(std::max(1L, samples));
   double sum = 0.0;
-  for (double i = 0.5; i < samples; i += 1.0) {
-    sum += interpolate(prices_, cell_at(from + (i / samples) * (to - from))) * length / samples;
+  for (long i = 0; i < samples; ++i) {
+    const double at = (static_cast<double>(i) + 0.5) * share;
+    sum += interpolate(prices_, cell_at(from + at * (to - from))) * length * share;
     if (sum > enough) break;
   }
   return sum;

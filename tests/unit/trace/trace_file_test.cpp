@@ -1,5 +1,4 @@
 #include "harness/trace/trace_file.hpp"
-#include "harness/trace/trace_writer.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -16,6 +15,7 @@
 #include "harness/trace/episode_view.hpp"
 #include "harness/trace/system_group.hpp"
 #include "harness/trace/trace_layout.hpp"
+#include "harness/trace/trace_writer.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/unit/trace/trace_folder.hpp"
 #include "tests/unit/trace/trace_matchers.hpp"

@@ -1,4 +1,3 @@
-#include "harness/video/episode_painter.hpp"
 #include "harness/video/episode_video.hpp"
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "harness/video/episode_painter.hpp"
 #include "tests/unit/render/decoded_video.hpp"
 #include "tests/unit/video/straight_episode.hpp"
 
