@@ -30,7 +30,9 @@ void write_trace_header(Hdf5File& file, const Trace& header) {
                            .scenario_text = header.scenario_text,
                            .scenario_name = header.scenario.name,
                            .seed = header.seed});
-  file.set_text("/", "vehicle_digest", header.vehicle_digest);
+  if (!header.vehicle_digest.empty()) {
+    file.set_text("/", "vehicle_digest", header.vehicle_digest);
+  }
   // What a reader shall see if nothing is ever added.
   file.set_text("/", "outcome", outcome_name(Outcome::kInterrupted));
   file.set_text("/", "fault", "");
