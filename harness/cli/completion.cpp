@@ -41,6 +41,20 @@ std::string words_of(const NamedCommand& command, const std::string& program) {
   return name.size() > program.size() ? name.substr(program.size() + 1) : "";
 }
 
+/// Cases of "COMMAND,WORD": the command that the word leads to.
+std::string command_cases(const std::vector<NamedCommand>& commands, const std::string& program) {
+  std::string text;
+  for (const NamedCommand& command : commands) {
+    if (command.parents.empty()) continue;
+    const std::string words = words_of(command, program);
+    const std::string name = command.command->get_name();
+    const std::string parent =
+        words.size() > name.size() ? words.substr(0, words.size() - name.size() - 1) : "";
+    text += fmt::format("      '{},{}') at='{}' ;;\n", parent, name, words);
+  }
+  return text;
+}
+
 /// How bash completes the argument, with the words of commands that may stand there instead.
 std::string bash_argument(const CLI::App& command, const CLI::App& app) {
   const CLI::Option* argument = first_positional(command);
@@ -148,14 +162,7 @@ std::string zsh_arguments(const CLI::App& command) {
 std::string bash_completion(const CLI::App& app) {
   const std::vector<NamedCommand> commands = all_commands(app);
   std::string text(kBashHead);
-  for (const NamedCommand& command : commands) {
-    if (command.parents.empty()) continue;
-    const std::string words = words_of(command, app.get_name());
-    const std::string name = command.command->get_name();
-    const std::string parent =
-        words.size() > name.size() ? words.substr(0, words.size() - name.size() - 1) : "";
-    text += fmt::format("      '{},{}') at='{}' ;;\n", parent, name, words);
-  }
+  text += command_cases(commands, app.get_name());
   text += "    esac\n  done\n  case \"$at:$previous\" in\n";
   for (const NamedCommand& command : commands) {
     text += bash_values(words_of(command, app.get_name()), *command.command);
@@ -182,14 +189,7 @@ std::string zsh_completion(const CLI::App& app) {
       "  compadd -a names\n  _files\n}\n\n_qsmpc() {\n  local at='' word\n"
       "  for word in ${words[2,CURRENT-1]}; do\n    case \"$at,$word\" in\n";
   const std::vector<NamedCommand> commands = all_commands(app);
-  for (const NamedCommand& command : commands) {
-    if (command.parents.empty()) continue;
-    const std::string words = words_of(command, app.get_name());
-    const std::string name = command.command->get_name();
-    const std::string parent =
-        words.size() > name.size() ? words.substr(0, words.size() - name.size() - 1) : "";
-    text += fmt::format("      '{},{}') at='{}' ;;\n", parent, name, words);
-  }
+  text += command_cases(commands, app.get_name());
   text += "    esac\n  done\n  case $at in\n";
   for (const NamedCommand& command : commands) {
     text += fmt::format("    '{}')\n", words_of(command, app.get_name()));
