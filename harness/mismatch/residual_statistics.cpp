@@ -2,16 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "harness/statistics/chi_squared.hpp"
+#include "harness/trace/residuals.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
 namespace {
-
-// x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit each; with a margin.
-constexpr double kRoundings = 4.0;
 
 /// Σ over the episodes of the products of residuals `lag` periods apart, and how many there are.
 struct LaggedProducts {
@@ -78,13 +75,12 @@ Eigen::VectorXd mean_deviation(const std::vector<Eigen::MatrixXd>& centred, Eige
 ResidualStatistics residual_statistics(const std::vector<Eigen::MatrixXd>& episodes,
                                        const Eigen::VectorXd& magnitude) {
   const Eigen::Index dim = magnitude.size();
-  ResidualStatistics statistics{
-      .mean = Eigen::VectorXd::Zero(dim),
-      .mean_deviation = Eigen::VectorXd::Constant(dim, kNotANumber),
-      .covariance = Eigen::MatrixXd::Zero(dim, dim),
-      .rmse = Eigen::VectorXd::Zero(dim),
-      .rounding = kRoundings * std::numeric_limits<double>::epsilon() * magnitude,
-      .whiteness = whiteness_of({}, dim)};
+  ResidualStatistics statistics{.mean = Eigen::VectorXd::Zero(dim),
+                                .mean_deviation = Eigen::VectorXd::Constant(dim, kNotANumber),
+                                .covariance = Eigen::MatrixXd::Zero(dim, dim),
+                                .rmse = Eigen::VectorXd::Zero(dim),
+                                .rounding = residual_rounding(magnitude),
+                                .whiteness = whiteness_of({}, dim)};
   Eigen::VectorXd squares = Eigen::VectorXd::Zero(dim);
   for (const Eigen::MatrixXd& episode : episodes) {
     if (episode.cols() == 0) continue;

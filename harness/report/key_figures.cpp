@@ -10,6 +10,7 @@
 
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
+#include "harness/trace/residuals.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -313,15 +314,10 @@ std::string tiles_html(const EpisodeView& view) {
 
 /// Whether all that the plant adds to the model in a period is rounding.
 bool is_the_model(const EpisodeView& view) {
-  // Of the largest value of a state, or of 1: some hundred roundings in a period.
-  constexpr double kRounding = 1e-13;
+  const Eigen::VectorXd magnitude = view.states().cwiseAbs().rowwise().maxCoeff();
   const Eigen::VectorXd& rmse = view.summary().mismatch_rmse;
-  const Eigen::MatrixXd states = true_states(view.trace());
-  for (Eigen::Index i = 0; i < std::min(rmse.size(), states.rows()); ++i) {
-    const double scale = std::max(1.0, states.row(i).cwiseAbs().maxCoeff());
-    if (!(rmse[i] <= kRounding * scale)) return false;
-  }
-  return true;
+  return rmse.size() == magnitude.size() &&
+         (rmse.array() <= residual_rounding(magnitude).array()).all();
 }
 
 std::string mismatch_html(const EpisodeView& view) {

@@ -2,10 +2,17 @@
 
 #include <cstddef>
 #include <iterator>
+#include <limits>
 
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
+namespace {
+
+// x⁺ − w − f(x, u) with x⁺ = f(x, u) + w rounds three times, by half a unit each; with a margin.
+constexpr double kRoundings = 4.0;
+
+}  // namespace
 
 Eigen::VectorXd one_step_residual(const models::Dynamics& model, const StepRecord& step,
                                   const Eigen::VectorXd& next_state) {
@@ -18,6 +25,10 @@ Eigen::VectorXd one_step_residual(const models::Dynamics& model, const StepRecor
 
 Eigen::VectorXd unknown_residual(Eigen::Index state_dim) {
   return Eigen::VectorXd::Constant(state_dim, kNotANumber);
+}
+
+Eigen::VectorXd residual_rounding(const Eigen::VectorXd& magnitude) {
+  return kRoundings * std::numeric_limits<double>::epsilon() * magnitude;
 }
 
 void add_residuals(Trace& trace, const models::Dynamics& model) {

@@ -18,6 +18,10 @@ namespace qsmpc::harness {
 /// Of a period whose end is not known: not a number, `state_dim` times.
 [[nodiscard]] Eigen::VectorXd unknown_residual(Eigen::Index state_dim);
 
+/// Root mean squares of residuals up to which they are rounding, and the plant is the model: by
+/// state (state_dim), for states up to `magnitude` (state_dim) in size.
+[[nodiscard]] Eigen::VectorXd residual_rounding(const Eigen::VectorXd& magnitude);
+
 /// Gives every step of `trace` its residual, for a trace that was recorded without them.
 void add_residuals(Trace& trace, const models::Dynamics& model);
 
