@@ -10,7 +10,7 @@
 //    private:
 //     Eigen::Index inputs_;
 //   };
-//   QSMPC_REGISTER_CONTROLLER(Brake)
+//   QSMPC_REGISTER_CONTROLLER(Brake);
 //
 // Compiled into a shared library, it is what `controller: {kind: library, library: brake.so}` of a
 // scenario names. Needs Eigen and the standard library, and no library of qsmpc. Exceptions become
