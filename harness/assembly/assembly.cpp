@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "harness/control/outside_controller.hpp"
+#include "harness/errors.hpp"
 #include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/outside_controllers.hpp"
 #include "harness/threads/executor.hpp"
@@ -76,6 +77,12 @@ controller::ControllerSettings controller_settings(const Scenario& scenario) {
 
 std::unique_ptr<controller::Controller> make_controller(const Scenario& scenario,
                                                         const models::Dynamics& dynamics) {
+  if (scenario.controller.kind == kObjectController) {
+    throw InputError({.key = "controller.kind",
+                      .found = std::string(kObjectController) + ", " +
+                               outside_controller_name(scenario.controller),
+                      .expected = "a controller that the program can make"});
+  }
   if (is_outside(scenario.controller)) {
     return std::make_unique<OutsideController>(scenario, dynamics);
   }

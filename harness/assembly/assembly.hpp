@@ -38,7 +38,7 @@ enum class BeliefOf {
 
 /// The controller of `scenario`, one outside of the program included. `dynamics` must
 /// outlive it. Throws std::invalid_argument on settings that make
-/// no sense.
+/// no sense, and InputError where the controller is an object of another program.
 [[nodiscard]] std::unique_ptr<controller::Controller> make_controller(
     const Scenario& scenario, const models::Dynamics& dynamics);
 

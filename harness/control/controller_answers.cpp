@@ -37,12 +37,6 @@ AnswerJson object_in(const std::string& line, const std::string& expected) {
   return json;
 }
 
-/// "yaw_rate from -2 to 2"
-std::string input_words(const AnswerShape& shape, Eigen::Index i) {
-  return fmt::format("{} from {} to {}", shape.system.inputs[static_cast<std::size_t>(i)].name,
-                     shape.bounds.lower[i], shape.bounds.upper[i]);
-}
-
 /// `count` finite numbers, which messages call `what`.
 Eigen::VectorXd numbers(const AnswerJson& list, Eigen::Index count, const std::string& what) {
   const std::string expected = fmt::format("{} finite numbers", count);
@@ -63,12 +57,7 @@ Eigen::VectorXd numbers(const AnswerJson& list, Eigen::Index count, const std::s
 Eigen::VectorXd input_in(const AnswerJson& list, const AnswerShape& shape,
                          const std::string& what) {
   Eigen::VectorXd input = numbers(list, std::ssize(shape.system.inputs), what);
-  for (Eigen::Index i = 0; i < input.size(); ++i) {
-    if (input[i] >= shape.bounds.lower[i] && input[i] <= shape.bounds.upper[i]) continue;
-    refuse(fmt::format("{} with {} = {}, out of its bounds", what,
-                       shape.system.inputs[static_cast<std::size_t>(i)].name, input[i]),
-           input_words(shape, i));
-  }
+  check_input(input, shape, what);
   return input;
 }
 

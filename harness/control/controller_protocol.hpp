@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "controller/control/controller.hpp"
+#include "harness/control/controller_answer.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -36,29 +37,8 @@ inline constexpr const char* kEndMessage = "end";
 /// The last message.
 [[nodiscard]] std::string end_message();
 
-/// An answer that is not what it should be, in the words of an error.
-struct WrongAnswer {
-  std::string found;
-  std::string expected;
-};
-
 /// Throws WrongAnswer unless `line` answers the scenario with this version of the protocol.
 void check_greeting(const std::string& line);
-
-/// What an answer must be.
-struct AnswerShape {
-  const models::SystemDescription& system;
-  const controller::InputBounds& bounds;
-  int stages = 0;  ///< of the plan; 0: an input is asked for, and no plan
-};
-
-/// An answer to a situation.
-struct ControllerAnswer {
-  Eigen::VectorXd input;      ///< within the bounds; empty where a plan is asked for
-  controller::Policy policy;  ///< its inputs, within the bounds, and gains; nothing else
-  controller::SolverStatus status = controller::SolverStatus::kConverged;  ///< of the plan
-  int evaluations = 0;
-};
 
 /// Reads the answer of period `period`. Throws WrongAnswer.
 [[nodiscard]] ControllerAnswer read_answer(const std::string& line, std::int64_t period,

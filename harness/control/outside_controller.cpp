@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include "controller/planning/cost/angular_target.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/outside_controllers.hpp"
 #include "harness/text/printable.hpp"
@@ -33,22 +32,11 @@ std::vector<std::string> host_arguments(const Scenario::Controller& controller) 
 
 }  // namespace
 
-controller::DecisionParts outside_parts(const Scenario::Controller& controller) {
-  if (!controller.outside.plans) return {};
-  return {.stages = controller.horizon, .cost = true, .status = true};
-}
-
 OutsideController::OutsideController(const Scenario& scenario, const models::Dynamics& dynamics)
     : dynamics_(dynamics),
       settings_(scenario.controller),
-      parts_(outside_parts(scenario.controller)),
-      bounds_{.lower = scenario.controller.input_lower, .upper = scenario.controller.input_upper},
       scenario_message_(scenario_message(scenario, dynamics.description())),
-      cost_{.state = scenario.controller.cost.state,
-            .input = scenario.controller.cost.input,
-            .terminal = scenario.controller.cost.terminal,
-            .target = scenario.target.state,
-            .angles = scenario.target.angles} {}
+      decision_(scenario, dynamics) {}
 
 OutsideController::~OutsideController() {
   if (process_ != nullptr) process_->finish(end_message());
@@ -68,11 +56,12 @@ void OutsideController::reset(std::uint64_t seed) {
 
 const controller::Decision& OutsideController::decide(const controller::Situation& situation) {
   controller::check_situation(situation, dynamics_.state_dim());
+  const controller::Decision* decision = nullptr;
   guarded(fmt::format("period {}", situation.period), [&] {
     if (process_ == nullptr || !is_reset_) start();
-    ask(situation);
+    decision = &ask(situation);
   });
-  return decision_;
+  return *decision;
 }
 
 template <class Work>
@@ -140,7 +129,7 @@ void OutsideController::start() {
   is_reset_ = true;
 }
 
-void OutsideController::ask(const controller::Situation& situation) {
+const controller::Decision& OutsideController::ask(const controller::Situation& situation) {
   const auto start = Clock::now();
   if (const std::optional<std::string> unasked = process_->unasked()) {
     throw WrongAnswer{"an answer that nothing had asked for: " + printable(*unasked),
@@ -148,30 +137,9 @@ void OutsideController::ask(const controller::Situation& situation) {
   }
   const double patience = answer_deadline(settings_);
   const std::string line = answer_to(situation_message(situation, patience), patience, "deadline");
-  const ControllerAnswer answer =
-      read_answer(line, situation.period,
-                  {.system = dynamics_.description(), .bounds = bounds_, .stages = parts_.stages});
-  take(answer, situation);
-  decision_.timing.optimise =
-      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-void OutsideController::take(const ControllerAnswer& answer,
-                             const controller::Situation& situation) {
-  if (parts_.stages == 0) {
-    decision_.input = answer.input;
-    return;
-  }
-  policy_.inputs = answer.policy.inputs;
-  policy_.gains = answer.policy.gains;
-  policy_.bounds = bounds_;
-  controller::nominal_states(dynamics_, situation.belief.mean, policy_.inputs, policy_.states);
-  controller::policy_input(policy_, 0, situation.observation, offset_, decision_.input);
-  controller::nearest_target(cost_.target, cost_.angles, situation.belief.mean, nearest_);
-  decision_.policy = &policy_;
-  decision_.cost = controller::path_cost(policy_, cost_, nearest_, cost_scratch_);
-  decision_.status = answer.status;
-  decision_.evaluations = answer.evaluations;
+  const ControllerAnswer answer = read_answer(line, situation.period, decision_.shape());
+  const std::chrono::duration<double, std::milli> taken = Clock::now() - start;
+  return decision_.take(answer, situation, taken.count());
 }
 
 }  // namespace qsmpc::harness

@@ -10,16 +10,13 @@
 #include <string>
 
 #include "controller/control/controller.hpp"
-#include "controller/control/path_cost.hpp"
+#include "harness/control/answered_decision.hpp"
 #include "harness/control/child_process.hpp"
 #include "harness/control/controller_protocol.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
-
-/// What its decisions have.
-[[nodiscard]] controller::DecisionParts outside_parts(const Scenario::Controller& controller);
 
 class OutsideController final : public controller::Controller {
  public:
@@ -41,11 +38,10 @@ class OutsideController final : public controller::Controller {
   using Clock = ChildProcess::Clock;
 
   void start();
-  void ask(const controller::Situation& situation);
+  const controller::Decision& ask(const controller::Situation& situation);
   [[nodiscard]] std::string answer_to(const std::string& message, double patience,
                                       const char* deadline_key);
   void tell(const std::string& message, double patience, const char* deadline_key);
-  void take(const ControllerAnswer& answer, const controller::Situation& situation);
   /// Does `work`; ends the process where that throws. place: "period 3".
   template <class Work>
   void guarded(const std::string& place, const Work& work);
@@ -55,19 +51,12 @@ class OutsideController final : public controller::Controller {
 
   const models::Dynamics& dynamics_;
   const Scenario::Controller settings_;
-  const controller::DecisionParts parts_;
-  const controller::InputBounds bounds_;
   const std::string scenario_message_;
   std::unique_ptr<ChildProcess> process_;
   std::uint64_t seed_ = 0;
   bool is_reset_ = false;  // whether the process knows of the drive
   std::string log_;        // of a process that has ended
-  controller::Policy policy_;
-  controller::QuadraticCost cost_;
-  controller::PathCostScratch cost_scratch_;
-  Eigen::VectorXd nearest_;  // what means the target, nearest to the belief
-  Eigen::VectorXd offset_;
-  controller::Decision decision_;
+  AnsweredDecision decision_;
 };
 
 }  // namespace qsmpc::harness

@@ -15,6 +15,8 @@
 #include <memory>
 #include <optional>
 
+#include "harness/control/controller_object.hpp"
+#include "harness/episode/drive.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -37,9 +39,6 @@ struct EpisodeOptions {
   TraceWriter* writer = nullptr;
 };
 
-/// The header of the trace of `scenario`: scenario, its text, its system, seed, version.
-[[nodiscard]] Trace trace_header(const Scenario& scenario, std::uint64_t seed);
-
 /// Drives episodes of one scenario, one after the other. Each is what a driver of its own would
 /// make of it; tables and memory, and the two plans made beforehand so that the first period of an
 /// episode takes no longer than the others, are those of the first.
@@ -48,6 +47,8 @@ class EpisodeDriver {
   /// `scenario` must outlive the driver. Throws std::invalid_argument on settings of the controller
   /// that make no sense.
   explicit EpisodeDriver(const Scenario& scenario);
+  /// The same with `object` as its controller, whatever the scenario says.
+  EpisodeDriver(const Scenario& scenario, ControllerObject object);
   EpisodeDriver(EpisodeDriver&&) noexcept;
   EpisodeDriver& operator=(EpisodeDriver&&) noexcept;
   ~EpisodeDriver();
@@ -65,6 +66,8 @@ class EpisodeDriver {
 
 /// Runs one episode, with a driver of its own. Throws as EpisodeDriver and its `run`.
 [[nodiscard]] Trace run_episode(const Scenario& scenario, const EpisodeOptions& options);
+[[nodiscard]] Trace run_episode(const Scenario& scenario, const EpisodeOptions& options,
+                                ControllerObject object);
 
 }  // namespace qsmpc::harness
 

@@ -18,14 +18,14 @@ namespace {
 constexpr double kPromisedShare = 0.9;
 constexpr const char* kNothingPublished = "The thesis lists the constants and shows no result.";
 
-struct Drive {
+struct PlantDrive {
   const char* name;
   Variant variant;
 };
 
 /// The thesis's scenarios as its experiments run them.
-const std::vector<Drive>& drives() {
-  static const std::vector<Drive> all{
+const std::vector<PlantDrive>& drives() {
+  static const std::vector<PlantDrive> all{
       {"corridor, closed loop", {.scenario = "dubins_turn"}},
       {"corridor, open loop",
        {.scenario = "dubins_turn", .overrides = {"controller.policy=open_loop"}}},
@@ -108,7 +108,7 @@ ExperimentResult scenarios_on_plants(Laboratory& laboratory) {
       "same "
       "constants on MuJoCo vehicles that the planner knows nothing of: joints with the same "
       "equations, and cars on wheels whose steering and drive lag."};
-  for (const Drive& drive : drives()) {
+  for (const PlantDrive& drive : drives()) {
     const Sample& analytic = laboratory.sample(drive.variant, laboratory.arrival_seeds());
     add_share(drive.name, "model", analytic, result);
     const double share = safe_arrivals(analytic) / static_cast<double>(analytic.episodes.size());

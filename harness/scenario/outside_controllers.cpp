@@ -18,6 +18,9 @@ const std::vector<OutsideControllerEntry>& outside_controllers() {
        .summary = "a program in any language that answers lines of JSON (controller.command)"},
       {.name = kLibraryController,
        .summary = "a shared library with the C interface (controller.library)"},
+      {.name = kObjectController,
+       .summary =
+           "an object in Python or C++ of the program that drives; not from the command line"},
   };
   return table;
 }

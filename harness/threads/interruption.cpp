@@ -16,6 +16,8 @@ int interrupts() noexcept { return seen.load(std::memory_order_relaxed); }
 
 int note_interrupt() noexcept { return seen.fetch_add(1, std::memory_order_relaxed) + 1; }
 
+void forget_interrupts() noexcept { seen.store(0, std::memory_order_relaxed); }
+
 void check_interrupts() {
   if (interrupts() >= patience.load(std::memory_order_relaxed)) throw Interrupted();
 }

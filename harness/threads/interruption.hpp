@@ -22,6 +22,9 @@ class Interrupted : public std::exception {
 /// Notes that the process was asked to stop, and returns how often it was. For signal handlers.
 int note_interrupt() noexcept;
 
+/// As if the process had not been asked yet, for programs that go on after an interrupt.
+void forget_interrupts() noexcept;
+
 /// Throws Interrupted if the process was asked to stop: once, or as often as an InterruptPatience
 /// says. Costs next to nothing; may be called by several threads.
 void check_interrupts();

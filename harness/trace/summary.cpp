@@ -66,12 +66,8 @@ nlohmann::ordered_json or_null(const std::optional<Value>& value) {
 }
 
 void add_cost(const Trace& trace, Summary& summary) {
-  const Scenario::Cost& cost = trace.scenario.controller.cost;
   for (const StepRecord& step : trace.steps) {
-    const Eigen::VectorXd offset = controller::target_offset(
-        trace.scenario.target.state, trace.scenario.target.angles, step.state);
-    summary.closed_loop_cost +=
-        0.5 * offset.dot(cost.state * offset) + step.input.dot(cost.input * step.input);
+    summary.closed_loop_cost += period_cost(trace.scenario, step.state, step.input);
   }
 }
 
@@ -159,6 +155,14 @@ void add_risk(const RiskUse& risk, nlohmann::ordered_json& json) {
 }
 
 }  // namespace
+
+double period_cost(const Scenario& scenario, const Eigen::VectorXd& state,
+                   const Eigen::VectorXd& input) {
+  const Scenario::Cost& cost = scenario.controller.cost;
+  const Eigen::VectorXd offset =
+      controller::target_offset(scenario.target.state, scenario.target.angles, state);
+  return 0.5 * offset.dot(cost.state * offset) + input.dot(cost.input * input);
+}
 
 Summary summarise(const EpisodeView& view) {
   const Trace& trace = view.trace();

@@ -56,6 +56,11 @@ struct Summary {
   Eigen::MatrixXd mismatch_covariance;
 };
 
+/// ½ |x − r|²_Q + |u|²_R of a period that begins in `state` (state_dim) with `input` (input_dim):
+/// what the closed-loop cost is the sum of.
+[[nodiscard]] double period_cost(const Scenario& scenario, const Eigen::VectorXd& state,
+                                 const Eigen::VectorXd& input);
+
 class EpisodeView;
 
 /// Of all that the view has besides. Pages and files take the view's own.

@@ -9,6 +9,7 @@
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
+#include "harness/scenario/outside_controllers.hpp"
 #include "harness/scenario/section_values.hpp"
 #include "harness/scenario/value_checks.hpp"
 #include "harness/scenario/yaml_text.hpp"
@@ -28,6 +29,14 @@ constexpr NumberRange kDeadlineRange{.least = 0.0, .most = 1e6, .above_least = t
 const Scenario::Controller& defaults() {
   static const Scenario::Controller controller;
   return controller;
+}
+
+/// Recorded scenarios may name what only a program can hand over.
+void check_kind(const ScenarioReading& reading, Section& section) {
+  if (!reading.lookup.must_exist || reading.scenario.controller.kind != kObjectController) return;
+  section.note("kind",
+               "another controller: an object is handed over by the program that drives, in Python "
+               "by qsmpc.run(scenario, controller=…)");
 }
 
 void check_lqr_about(const ScenarioReading& reading, Section& section) {
@@ -128,7 +137,8 @@ std::vector<ScenarioKey> kind_keys() {
                      .values = {NameValue{controller_names()}},
                      .words = "what drives, a name from `qsmpc list controllers`",
                      .see = "[below](#controllers)"},
-           .member = [](Scenario& scenario) -> std::string& { return scenario.controller.kind; }},
+           .member = [](Scenario& scenario) -> std::string& { return scenario.controller.kind; },
+           .check = check_kind},
           {.about = {.name = "lqr"},
            .is_written = [](const Scenario& scenario) { return scenario.controller.kind == "lqr"; },
            .keys = {{.about = {.name = "about",
@@ -336,7 +346,7 @@ std::vector<ScenarioKey> effort_keys() {
                           "of the program has failed",
                  .see = "[below](#deadline-and-threads)",
                  .unit = "s",
-                 .fallback_words = "none; 10 for `external` and `library`"},
+                 .fallback_words = "none; 10 for `external`, `library` and `object`"},
        .member = [](Scenario& scenario) -> double& { return scenario.controller.deadline; },
        .is_written =
            [](const Scenario& scenario) { return std::isfinite(scenario.controller.deadline); }},

@@ -94,7 +94,9 @@ void check_command(const ScenarioReading& reading, Section& section) {
 
 std::optional<std::string> command_text(const Scenario& scenario,
                                         const models::SystemDescription& /*system*/) {
-  if (!is_of_kind(scenario, kExternalController)) return std::nullopt;
+  if (!is_of_kind(scenario, kExternalController) && !is_of_kind(scenario, kObjectController)) {
+    return std::nullopt;
+  }
   std::string text;
   for (const std::string& word : scenario.controller.outside.command) {
     text += (text.empty() ? "" : ", ") + quoted_yaml(word);
@@ -175,7 +177,7 @@ std::vector<ScenarioKey> outside_controller_keys() {
   return {
       {.about = {.name = "command",
                  .values = {list_of_values(TextValue{}, {.least = 1, .most = kMostWords})},
-                 .words = "of `external`: the program and its arguments",
+                 .words = "of `external`: the program and its arguments; of `object`: its name",
                  .see = "[controllers](controllers.md)",
                  .fallback_words = "required by it"},
        .read = read_command,
@@ -207,8 +209,8 @@ std::vector<ScenarioKey> outside_controller_keys() {
        .write = options_text},
       {.about = {.name = "plans",
                  .values = {FlagValue{}},
-                 .words = "of `external` and `library`: whether every answer has a plan of "
-                          "`horizon` stages, which is certified"},
+                 .words = "of `external`, `library` and `object`: whether every answer has a plan "
+                          "of `horizon` stages, which is certified"},
        .member = [](Scenario& scenario) -> bool& { return scenario.controller.outside.plans; },
        .is_written = is_of_outside},
       {.about = {.name = "start_deadline",

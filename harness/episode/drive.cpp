@@ -1,0 +1,344 @@
+#include "harness/episode/drive.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <iterator>
+#include <stdexcept>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "controller/certification/certificate.hpp"
+#include "controller/certification/error_budget.hpp"
+#include "controller/control/decision_motion.hpp"
+#include "controller/estimation/estimator.hpp"
+#include "controller/regions/unsafe_part.hpp"
+#include "controller/regions/unsafe_set.hpp"
+#include "harness/assembly/assembly.hpp"
+#include "harness/errors.hpp"
+#include "harness/plant/plant_registry.hpp"
+#include "harness/random/random_numbers.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/threads/interruption.hpp"
+#include "harness/trace/ending.hpp"
+#include "harness/trace/residuals.hpp"
+#include "harness/version.hpp"
+#include "models/constants.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// plant_digest; empty where the vehicle is not to be had.
+std::string digest_of(const Scenario& scenario) {
+  try {
+    return plant_digest(scenario);
+  } catch (const InputError&) {
+    return {};
+  }
+}
+
+Trace header_of(const Scenario& scenario, const models::SystemDescription& system,
+                std::uint64_t seed) {
+  Trace trace;
+  trace.scenario = scenario;
+  trace.scenario.seed = seed;
+  trace.scenario_text = to_yaml(trace.scenario);
+  trace.system = system;
+  trace.seed = seed;
+  trace.version = kVersion;
+  return trace;
+}
+
+/// Not a number without states.
+double least_clearance(const Eigen::MatrixXd& states, const controller::UnsafeSet& unsafe) {
+  double least = kNotANumber;
+  for (const auto& state : states.colwise()) {
+    least = std::fmin(least, controller::clearance(state, unsafe));
+  }
+  return least;
+}
+
+}  // namespace
+
+/// The closed loop's parts, and its state between the periods.
+struct Drive::Parts {
+  explicit Parts(const Scenario& of)
+      : scenario(of),
+        unsafe(of.safe_set),
+        model(model_of(of)),
+        settings(planner_settings(of)),
+        estimator(controller::make_estimator(of.estimator.kind,
+                                             {.dynamics = *model,
+                                              .noise_covariance = of.disturbance.covariance,
+                                              .sensor_covariance = of.disturbance.sensor})),
+        motions(*model, settings),
+        disturbance(Eigen::VectorXd::Zero(model->state_dim()), of.disturbance.covariance),
+        sensor(Eigen::VectorXd::Zero(model->state_dim()), of.disturbance.sensor),
+        belief(first_belief()) {}
+
+  [[nodiscard]] controller::Gaussian first_belief() const {
+    return {.mean = scenario.initial_state.mean, .covariance = scenario.initial_state.covariance};
+  }
+
+  [[nodiscard]] std::uint64_t plant_seed() const {
+    return options.plant_seed.value_or(options.seed);
+  }
+
+  void begin(const DriveOptions& how) {
+    options = how;
+    period = 0;
+    motion_begin = 0;
+    outcome.reset();
+    unsafe_outcome.reset();
+    belief = first_belief();
+    trace = header_of(scenario, model->description(), options.seed);
+    if (!vehicle_digest) vehicle_digest = digest_of(scenario);
+    trace.vehicle_digest = *vehicle_digest;
+    const GaussianSampler initial(belief.mean, belief.covariance);
+    state = initial.sample({.seed = options.seed, .stream = RandomStream::kInitialState});
+    guarded([&] {
+      plant = make_plant(scenario, draw_variation(scenario.disturbance, plant_seed()));
+      trace.motion.push_back(plant->reset(state));
+      observe_state();
+    });
+  }
+
+  /// Does `work`; what the simulator refuses is a fault, and an interrupt ends the episode, too.
+  template <class Work>
+  void guarded(const Work& work) {
+    try {
+      work();
+    } catch (const SimulatorError& error) {
+      end(Outcome::kFault, error.what());
+    } catch (const Interrupted&) {
+      end(Outcome::kInterrupted);
+      throw;
+    }
+  }
+
+  void end(Outcome how, const std::string& fault = {}, FaultOf fault_of = FaultOf::kPlant) {
+    outcome = how;
+    trace.outcome = how;
+    trace.fault = fault;
+    trace.fault_of = fault_of;
+    trace.final_state = state;
+    plant.reset();
+  }
+
+  /// What follows from the state at a control instant: what is seen, and the end of the episode.
+  void observe_state() {
+    trace.final_state = state;
+    observation = seen();
+    if (const std::optional<Outcome> now = outcome_now()) {
+      end(*now);
+    } else if (period >= scenario.step_limit) {
+      end(unsafe_outcome.value_or(Outcome::kTimeout));
+    }
+  }
+
+  /// How the episode ends in the present state, if it does.
+  [[nodiscard]] std::optional<Outcome> outcome_now() {
+    if (!unsafe_outcome) unsafe_outcome = outcome_in(controller::unsafe_part(state, unsafe));
+    if (scenario.stop_when_unsafe && unsafe_outcome) return unsafe_outcome;
+    if (!at_target(scenario, model->description(), state)) return std::nullopt;
+    return unsafe_outcome.value_or(Outcome::kReached);
+  }
+
+  /// What is seen of the state in this period.
+  [[nodiscard]] Eigen::VectorXd seen() const {
+    if (scenario.disturbance.sensor.isZero(0.0)) return state;
+    return state + sensor.sample({.seed = options.seed,
+                                  .stream = RandomStream::kSensor,
+                                  .step = static_cast<std::uint64_t>(period)});
+  }
+
+  [[nodiscard]] controller::Situation situation_of(int at, const controller::Gaussian& believed,
+                                                   const Eigen::VectorXd& observed) const {
+    return {.period = at,
+            .time = at * scenario.time_step,
+            .belief = believed,
+            .observation = observed,
+            .periods_left = scenario.step_limit - at,
+            .deadline = deadline()};
+  }
+
+  [[nodiscard]] Clock::time_point deadline() const {
+    const double seconds = scenario.controller.deadline;
+    if (!std::isfinite(seconds)) return Clock::time_point::max();
+    return Clock::now() +
+           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+  }
+
+  [[nodiscard]] StepRecord record_of(const controller::Situation& now,
+                                     const controller::Decision& decision, bool certified) {
+    StepRecord record;
+    record.time = now.time;
+    record.observation = now.observation;
+    record.belief_mean = now.belief.mean;
+    record.belief_covariance = now.belief.covariance;
+    if (certified) certify(now, decision, record);
+    record.input = decision.input;
+    if (decision.policy != nullptr) {
+      record.plan_inputs = decision.policy->inputs;
+      record.plan_states = decision.policy->states;
+      record.plan_gains = decision.policy->gains;
+    }
+    if (decision.particles) record.particles = decision.particles->prediction.stages;
+    record.cost = decision.cost.value_or(controller::CostParts::all(kNotANumber));
+    if (decision.status) record.solver_status = controller::solver_status_name(*decision.status);
+    record.fallback = decision.fallback;
+    record.iterations = decision.evaluations;
+    record.timing.quantise = decision.timing.quantise;
+    record.timing.propagate = decision.timing.propagate;
+    record.timing.optimise = decision.timing.optimise;
+    record.timing.total = record.timing.quantise + record.timing.propagate +
+                          record.timing.optimise + record.timing.certify;
+    return record;
+  }
+
+  void certify(const controller::Situation& now, const controller::Decision& decision,
+               StepRecord& record) {
+    const auto start = Clock::now();
+    const controller::Gaussian posterior = estimator->correct(now.belief, now.observation);
+    const controller::PredictedMotion motion =
+        of_plant(motions.of(now, decision, posterior), scenario, now.period,
+                 decision.policy != nullptr ? BeliefOf::kPrediction : BeliefOf::kState);
+    record.budgets = controller::error_budget(motion);
+    record.certificates = controller::certify(motion, unsafe, record.budgets,
+                                              controller::CertificateEffort::kLeast, settings.run);
+    record.timing.certify = milliseconds_since(start);
+  }
+
+  void advance(const controller::Decision& decision) {
+    motion_begin = period == 0 ? 0 : trace.motion.size();
+    trace.steps.push_back(
+        record_of(situation_of(period, belief, observation), decision, options.certify));
+    StepRecord& record = trace.steps.back();
+    record.state = state;
+    record.disturbance = disturbance.sample({.seed = plant_seed(),
+                                             .stream = RandomStream::kDisturbance,
+                                             .step = static_cast<std::uint64_t>(period)});
+    record.residual = unknown_residual(state.size());
+    const auto start = Clock::now();
+    PlantStep result = drive_plant();
+    record.timing.simulate = milliseconds_since(start);
+    record.clearance_between = least_clearance(result.between, unsafe);
+    record.contact = result.contact;
+    if (!result.fault) record.residual = one_step_residual(*model, record, result.state);
+    trace.motion.insert(trace.motion.end(), std::make_move_iterator(result.motion.begin()),
+                        std::make_move_iterator(result.motion.end()));
+    belief = estimator->predict(estimator->correct(belief, record.observation), record.input);
+    state = result.state;
+    ++period;
+    if (result.fault) {
+      end(Outcome::kFault, *result.fault);
+    } else {
+      observe_state();
+    }
+  }
+
+  /// The last record's period, which is dropped where the process is asked to stop.
+  PlantStep drive_plant() {
+    try {
+      return plant->advance(trace.steps.back().input, trace.steps.back().disturbance);
+    } catch (const Interrupted&) {
+      trace.steps.pop_back();
+      throw;
+    }
+  }
+
+  const Scenario& scenario;
+  controller::UnsafeSet unsafe;
+  std::unique_ptr<const models::Dynamics> model;
+  controller::PlannerSettings settings;
+  std::unique_ptr<const controller::Estimator> estimator;
+  controller::DecisionMotion motions;
+  GaussianSampler disturbance;
+  GaussianSampler sensor;
+  std::optional<std::string> vehicle_digest;  // once it is known
+  // Of the episode at hand.
+  DriveOptions options;
+  std::unique_ptr<Plant> plant;  // while it goes on
+  int period = 0;
+  controller::Gaussian belief;
+  Eigen::VectorXd state;
+  Eigen::VectorXd observation;
+  Trace trace;
+  std::size_t motion_begin = 0;
+  std::optional<Outcome> outcome;
+  std::optional<Outcome> unsafe_outcome;  // what the first unsafe state of it makes of it
+};
+
+Drive::Drive(const Scenario& scenario) : parts_(std::make_unique<Parts>(scenario)) {
+  parts_->outcome = Outcome::kInterrupted;  // none has begun
+}
+Drive::Drive(Drive&&) noexcept = default;
+Drive& Drive::operator=(Drive&&) noexcept = default;
+Drive::~Drive() = default;
+
+const models::Dynamics& Drive::model() const { return *parts_->model; }
+
+void Drive::begin(const DriveOptions& options) { parts_->begin(options); }
+
+int Drive::period() const { return parts_->period; }
+
+controller::Situation Drive::situation() const {
+  return parts_->situation_of(parts_->period, parts_->belief, parts_->observation);
+}
+
+const Eigen::VectorXd& Drive::state() const { return parts_->state; }
+
+const StepRecord& Drive::advance(const controller::Decision& decision) {
+  if (parts_->outcome) throw std::invalid_argument("the episode is over");
+  const Eigen::Index inputs = parts_->model->input_dim();
+  if (decision.input.size() != inputs || !decision.input.allFinite()) {
+    throw std::invalid_argument(fmt::format("an input needs {} finite numbers", inputs));
+  }
+  parts_->guarded([&] { parts_->advance(decision); });
+  return parts_->trace.steps.back();
+}
+
+std::size_t Drive::motion_begin() const { return parts_->motion_begin; }
+
+const std::optional<Outcome>& Drive::outcome() const { return parts_->outcome; }
+
+void Drive::end(Outcome outcome, const std::string& fault, FaultOf fault_of) {
+  parts_->end(outcome, fault, fault_of);
+}
+
+const Trace& Drive::trace() const { return parts_->trace; }
+
+Trace Drive::take() {
+  parts_->outcome = parts_->trace.outcome;
+  return std::move(parts_->trace);
+}
+
+controller::Gaussian Drive::later_belief() const {
+  const controller::InputBounds& bounds = parts_->settings.bounds;
+  const controller::Gaussian first = parts_->first_belief();
+  return parts_->estimator->predict(parts_->estimator->correct(first, first.mean),
+                                    0.5 * (bounds.lower + bounds.upper));
+}
+
+controller::Situation Drive::situation_of(const controller::Gaussian& belief, int period) const {
+  return parts_->situation_of(period, belief, belief.mean);
+}
+
+StepRecord Drive::record_of(const controller::Situation& situation,
+                            const controller::Decision& decision, bool certify) {
+  return parts_->record_of(situation, decision, certify);
+}
+
+Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
+  Trace header = header_of(scenario, model_of(scenario)->description(), seed);
+  header.vehicle_digest = digest_of(scenario);
+  return header;
+}
+
+}  // namespace qsmpc::harness
