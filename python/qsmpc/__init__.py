@@ -1,0 +1,53 @@
+"""Stochastic model predictive control by quantisation, with a safety certificate, on MuJoCo plants.
+
+    import qsmpc
+
+    scenario = qsmpc.load("dubins_obstacles", {"controller.horizon": 10})
+    episode = qsmpc.run(scenario, seed=1)
+    print(episode.outcome, episode.clearances.min())
+
+A controller of your own is an object with ``act(situation)``, or a function:
+
+    episode = qsmpc.run(scenario, controller=lambda now: [-0.5 * now.observation[2]])
+
+Arrays have the samples as rows: ``episode.states`` is (steps + 1) × n. What is wrong with a file or a
+value is an `InputError` with one line.
+"""
+
+from qsmpc._native.core import InputError, IoError, Situation, __version__
+from qsmpc.campaigns import Store, campaign, campaigns, open_campaign
+from qsmpc.comparisons import Comparison, compare
+from qsmpc.episodes import Episode, read, run
+from qsmpc.planning import Certifier, Plan, Planner
+from qsmpc.predictions import Prediction, predict
+from qsmpc.scenarios import Model, Scenario, controllers, load, parse, scenarios, systems
+from qsmpc.serving import serve
+
+__all__ = [
+    "Certifier",
+    "Comparison",
+    "Episode",
+    "InputError",
+    "IoError",
+    "Model",
+    "Plan",
+    "Planner",
+    "Prediction",
+    "Scenario",
+    "Situation",
+    "Store",
+    "__version__",
+    "campaign",
+    "campaigns",
+    "compare",
+    "controllers",
+    "load",
+    "open_campaign",
+    "parse",
+    "predict",
+    "read",
+    "run",
+    "scenarios",
+    "serve",
+    "systems",
+]

@@ -1,0 +1,218 @@
+"""Plans from any belief, and certificates of anybody's plans, without a plant."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Optional
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from qsmpc._native import core
+from qsmpc.scenarios import Path, Scenario, as_scenario
+
+Floats = NDArray[np.float64]
+_UNKNOWN = 1_000_000  # periods left, where that is not known
+
+
+def _moment(
+    scenario: Scenario,
+    situation: Optional[core.Situation],
+    mean: Optional[ArrayLike],
+    covariance: Optional[ArrayLike],
+    observation: Optional[ArrayLike],
+    period: int,
+    periods_left: int,
+    deadline: float,
+) -> core.Moment:
+    if situation is not None:
+        return core.Moment.of(
+            situation.belief_mean,
+            situation.belief_covariance,
+            situation.observation,
+            situation.period,
+            situation.periods_left,
+            situation.deadline,
+        )
+    at = scenario.initial_mean if mean is None else np.asarray(mean, float)
+    spread = scenario.initial_covariance if covariance is None else np.asarray(covariance, float)
+    seen = at if observation is None else np.asarray(observation, float)
+    if spread.ndim == 1:
+        spread = np.diag(spread)
+    return core.Moment.of(at, spread, seen, period, periods_left, deadline)
+
+
+class Plan:
+    """What a controller has decided, and what is certified of it."""
+
+    __slots__ = ("core",)
+
+    def __init__(self, plan: core.Plan) -> None:
+        self.core = plan
+
+    @property
+    def input(self) -> Floats:
+        """The input for this period, m."""
+        return self.core.input
+
+    @property
+    def inputs(self) -> Floats:
+        """Nominal inputs, stages × m; empty where the controller plans nothing."""
+        return self.core.inputs
+
+    @property
+    def states(self) -> Floats:
+        """The path of the model under them from the belief's mean, (stages + 1) × n."""
+        return self.core.states
+
+    @property
+    def gains(self) -> Floats:
+        """How inputs answer to the state's distance from that path, stages × m × n."""
+        return self.core.gains
+
+    @property
+    def status(self) -> str:
+        """How the solver ended; empty without one."""
+        return self.core.status
+
+    @property
+    def evaluations(self) -> int:
+        return self.core.evaluations
+
+    @property
+    def fallback(self) -> bool:
+        """Whether nothing usable came out, so that the plan before goes on."""
+        return self.core.fallback
+
+    @property
+    def costs(self) -> dict[str, float]:
+        """The expected cost by part; not a number where the controller has none."""
+        return self.core.costs
+
+    @property
+    def certificates(self) -> dict[str, Floats]:
+        """Upper bounds of the probability to be unsafe, a stage each, as in `Episode`."""
+        return self.core.certificates
+
+    @property
+    def horizon_bound(self) -> float:
+        """Upper bound of the probability to be unsafe at any stage."""
+        return self.core.horizon_bound
+
+    @property
+    def w2_bounds(self) -> Floats:
+        """2-Wasserstein errors of the particles, from stage 0 on."""
+        return self.core.w2_bounds
+
+    @property
+    def particle_stages(self) -> int:
+        """Stages with particles, stage 0 with them; 0 where there are none."""
+        return self.core.particle_stages
+
+    def particles(self, stage: int) -> tuple[Floats, Floats]:
+        """Locations (points × n) and weights (points) of a stage. Raises `IndexError`."""
+        return self.core.particles(stage)
+
+    @property
+    def solve_ms(self) -> float:
+        """Wall-clock time of deciding and certifying, ms."""
+        return self.core.solve_ms
+
+    def __repr__(self) -> str:
+        words = f", P(unsafe) <= {self.horizon_bound:.3g}" if self.certificates["value"].size else ""
+        return f"<qsmpc.Plan input {self.input}, {self.status or 'no solver'}{words}>"
+
+
+class Planner:
+    """The controller of a scenario, to be asked at any belief, e.g. in a loop of your own.
+
+        planner = qsmpc.Planner("dubins_obstacles")
+        plan = planner.decide(mean=[0, 0, 0], covariance=[0.01, 0.01, 0.001])
+        plan.input, plan.horizon_bound
+
+    It remembers its last plan and starts from it: `reset` before another drive. It is for one thread
+    at a time. It is itself a controller for `run`, with plans.
+    """
+
+    plans = True
+
+    def __init__(self, scenario: Scenario | Path, *, certify: bool = True) -> None:
+        """``certify``: whether plans come with certificates."""
+        self.scenario = as_scenario(scenario)
+        self._certify = certify
+        self._core = core.Planner(self.scenario.core)
+
+    def reset(self, seed: int = 0) -> None:
+        """Forgets the periods so far. ``seed``: for controllers that draw random numbers."""
+        self._core.reset(seed)
+
+    def act(self, situation: core.Situation) -> Plan:
+        """The plan in a situation of `run`."""
+        return self.decide(situation)
+
+    def decide(
+        self,
+        situation: Optional[core.Situation] = None,
+        *,
+        mean: Optional[ArrayLike] = None,
+        covariance: Optional[ArrayLike] = None,
+        observation: Optional[ArrayLike] = None,
+        period: int = 0,
+        periods_left: int = _UNKNOWN,
+        deadline: float = math.inf,
+    ) -> Plan:
+        """Plans in a situation, or from a belief with ``mean`` (n) and ``covariance`` (n × n, or its
+        diagonal), the scenario's initial ones by default.
+
+        ``observation`` is what is seen of the state now, the mean by default; ``deadline`` (s from
+        now) is when the best so far is wanted. Raises `ValueError`.
+        """
+        moment = _moment(
+            self.scenario, situation, mean, covariance, observation, period, periods_left, deadline
+        )
+        return Plan(self._core.decide(moment, self._certify))
+
+
+class Certifier:
+    """Certifies inputs and plans, whoever made them, for a scenario's model and unsafe set."""
+
+    def __init__(self, scenario: Scenario | Path) -> None:
+        self.scenario = as_scenario(scenario)
+        self._core = core.Certifier(self.scenario.core)
+
+    def plan(
+        self,
+        inputs: ArrayLike,
+        gains: Optional[ArrayLike] = None,
+        *,
+        mean: Optional[ArrayLike] = None,
+        covariance: Optional[ArrayLike] = None,
+        observation: Optional[ArrayLike] = None,
+        period: int = 0,
+    ) -> Plan:
+        """Certifies every stage of the policy u = sat(v + K (x − x̄)) with ``inputs`` v (stages × m)
+        and ``gains`` K (stages × m × n; none: open loop) from a belief as in `Planner.decide`.
+
+        Raises `ValueError` on wrong sizes and inputs out of their bounds.
+        """
+        moment = _moment(
+            self.scenario, None, mean, covariance, observation, period, _UNKNOWN, math.inf
+        )
+        all_gains: Any = None if gains is None else np.ascontiguousarray(gains, float)
+        return Plan(self._core.plan(np.asarray(inputs, float), all_gains, moment))
+
+    def input(
+        self,
+        input: ArrayLike,
+        *,
+        mean: Optional[ArrayLike] = None,
+        covariance: Optional[ArrayLike] = None,
+        observation: Optional[ArrayLike] = None,
+        period: int = 0,
+    ) -> Plan:
+        """Certifies the next state alone, under ``input`` (m), from what is known of the state once
+        it has been observed. Raises as `plan`."""
+        moment = _moment(
+            self.scenario, None, mean, covariance, observation, period, _UNKNOWN, math.inf
+        )
+        return Plan(self._core.input(np.asarray(input, float), moment))

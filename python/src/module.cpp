@@ -1,0 +1,20 @@
+// The extension module `qsmpc._native.core`: what the package's Python is written on. Arrays have
+// the samples as rows; the library's have them as columns.
+#include "python/src/module.hpp"
+
+#include "harness/version.hpp"
+
+NB_MODULE(core, module) {
+  using namespace qsmpc::python;
+  module.doc() = "The library behind the package qsmpc. Use the package instead.";
+  module.attr("__version__") = qsmpc::kVersion;
+  add_errors(module);
+  add_scenarios(module);
+  add_controllers(module);
+  add_episodes(module);
+  add_drives(module);
+  add_planning(module);
+  add_predictions(module);
+  add_comparisons(module);
+  add_campaigns(module);
+}
