@@ -143,11 +143,14 @@ struct Renderer::Parts {
                                                     const PaneLayout& pane) const {
     const Stage& stage = *stages[pane.episode];
     const double height = 0.5 * stage.vehicle.length();
+    std::vector<SpacePoint> points = {SpacePoint{frame.pose.x, frame.pose.y, 0.0},
+                                      SpacePoint{frame.pose.x, frame.pose.y, height},
+                                      SpacePoint{stage.target.x, stage.target.y, 0.0},
+                                      SpacePoint{stage.target.x, stage.target.y, kPostHeight}};
+    // Of a system on a rail the pose is the place below the rail.
+    if (const auto top = stage.vehicle.top(); stage.raised && top) points.push_back(*top);
     std::vector<PixelPoint> places;
-    for (const SpacePoint& point : {SpacePoint{frame.pose.x, frame.pose.y, 0.0},
-                                    SpacePoint{frame.pose.x, frame.pose.y, height},
-                                    SpacePoint{stage.target.x, stage.target.y, 0.0},
-                                    SpacePoint{stage.target.x, stage.target.y, kPostHeight}}) {
+    for (const SpacePoint& point : points) {
       if (const auto at = place(frame, pane, point)) places.push_back(*at);
     }
     return places;

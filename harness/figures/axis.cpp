@@ -10,7 +10,9 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr double kLargestDrawable = 1e100;
-constexpr double kRounding = 1e-9;  // of a step: what ticks may miss a range's end by
+constexpr double kRounding = 1e-9;     // of a step: what ticks may miss a range's end by
+constexpr double kLargestPlain = 1e6;  // what is not below, or in smaller steps, has an exponent
+constexpr double kSmallestPlainStep = 1e-4;
 
 bool has_span(double lower, double upper) {
   constexpr double kLeastRelativeSpan = 1e-9;  // below it, tick labels would all look the same
@@ -18,8 +20,6 @@ bool has_span(double lower, double upper) {
 }
 
 std::string linear_label(double value, double step) {
-  constexpr double kLargestPlain = 1e6;
-  constexpr double kSmallestPlainStep = 1e-4;
   if (std::abs(value) < step * kRounding) return "0";
   if (std::abs(value) >= kLargestPlain || step < kSmallestPlainStep) return format_short(value, 3);
   const double decimals = -std::floor(std::log10(step) + kRounding);
@@ -109,6 +109,14 @@ std::vector<Tick> ticks_every(const Axis& axis, double step) {
 std::vector<Tick> ticks_of(const Axis& axis, int tick_count) {
   if (axis.scale == Scale::kLog) return log_ticks(axis, tick_count);
   return ticks_every(axis, tick_step(axis.upper - axis.lower, tick_count));
+}
+
+int common_power(const Axis& axis, int tick_count) {
+  if (axis.scale == Scale::kLog) return 0;
+  const double largest = std::max(std::abs(axis.lower), std::abs(axis.upper));
+  const double step = tick_step(axis.upper - axis.lower, tick_count);
+  if (largest < kLargestPlain && step >= kSmallestPlainStep) return 0;
+  return static_cast<int>(std::floor(std::log10(largest) + kRounding));
 }
 
 std::vector<Tick> minor_ticks_of(const Axis& axis) {

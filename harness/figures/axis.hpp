@@ -44,6 +44,10 @@ struct Tick {
 /// About `tick_count` ticks; on a logarithmic axis, at powers of ten.
 [[nodiscard]] std::vector<Tick> ticks_of(const Axis& axis, int tick_count);
 
+/// The power of ten that is best taken out of the labels of a linear axis and said once: of its
+/// largest value where they would have to be written with powers of ten; else 0.
+[[nodiscard]] int common_power(const Axis& axis, int tick_count);
+
 /// 2 … 9 times the powers of ten of a logarithmic axis of at most five decades, without labels;
 /// none of another axis.
 [[nodiscard]] std::vector<Tick> minor_ticks_of(const Axis& axis);

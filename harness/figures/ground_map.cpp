@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "controller/regions/unsafe_set.hpp"
+#include "harness/text/unit_text.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -16,7 +17,9 @@ MapRectangle rectangle_of(const controller::Outline& outline) {
   return {.x_lower = lower.x(), .x_upper = upper.x(), .y_lower = lower.y(), .y_upper = upper.y()};
 }
 
-std::string label(const models::Coordinate& state) { return state.name + " (" + state.unit + ")"; }
+std::string label(const models::Coordinate& state) {
+  return state.name + " (" + printed_unit(state.unit) + ")";
+}
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "harness/figures/plot_frame.hpp"
 #include "harness/figures/point_labels.hpp"
 #include "harness/text/html.hpp"
+#include "harness/text/number_format.hpp"
 #include "harness/text/text_width.hpp"
 
 namespace qsmpc::harness {
@@ -23,6 +24,7 @@ constexpr double kHeight = kChartHeight;
 constexpr const char* kAreaClass = "area";
 constexpr std::size_t kMostPoints = 1000;  // of a line; more would not be seen
 constexpr std::size_t kMarksOnLine = 8;    // where it has many points
+constexpr double kNameSize = 14.5;         // of letters on a telephone, where they are largest
 constexpr std::size_t kAllMarked = 12;     // a line of so many points has a mark at each
 
 /// Of each stretch of a long line, its least and its greatest value in the order of their times;
@@ -122,6 +124,31 @@ std::string line_classes(const Series& series) {
                      palette_index(series), series.dashed ? " dash" : "");
 }
 
+/// `label`, of values that are shown divided by 10^`power`: "x (10⁻⁵ m)" of "x (m)".
+std::string with_power(const std::string& label, int power) {
+  if (power == 0) return label;
+  const std::string factor = format_power_of_ten(power);
+  const std::size_t unit = label.rfind('(');
+  if (unit == std::string::npos) return label + " (" + factor + ")";
+  const bool has_unit = label.compare(unit, std::string::npos, "(–)") != 0;
+  return label.substr(0, unit + 1) + factor + (has_unit ? " " + label.substr(unit + 1) : ")");
+}
+
+/// Ticks at values, with labels divided by 10^`power`.
+std::vector<Tick> ticks_up(const Axis& axis, int power) {
+  const double unit = std::pow(10.0, power);
+  Axis shown = axis;
+  if (power != 0) {
+    shown.lower /= unit;
+    shown.upper /= unit;
+  }
+  std::vector<Tick> ticks = ticks_of(shown, kTicksUp);
+  if (power != 0) {
+    for (Tick& tick : ticks) tick.value *= unit;
+  }
+  return ticks;
+}
+
 std::vector<Tick> ticks_across(const Chart& chart, const PlotFrame& frame) {
   if (chart.x_names.empty()) return ticks_of(frame.x, kTicksAcross);
   std::vector<Tick> ticks;
@@ -148,22 +175,26 @@ std::string axis_break_up(const PlotFrame& frame) {
 
 /// Upwards about `middle`, in two lines where one would leave the drawing.
 std::string y_label_svg(const std::string& label, double middle) {
-  constexpr double kLabelSize = 14.5;  // on a telephone, where letters are largest
   const auto line = [&](int x, const std::string& text) {
     return fmt::format(
         "<text class=\"middle label\" transform=\"translate({} {:.1f}) rotate(-90)\">{}</text>", x,
         middle, escape_html(text));
   };
   const double room = 2.0 * std::min(middle, kHeight - middle);
-  if (estimated_width(label, kLabelSize) <= room) return line(14, label);
+  if (estimated_width(label, kNameSize) <= room) return line(14, label);
   const std::size_t half = label.find(' ', label.size() / 2);
   if (half == std::string::npos) return line(14, label);
   return line(11, label.substr(0, half)) + line(25, label.substr(half + 1));
 }
 
+/// Where the middle of a name below the axis is that belongs to `x`: within the drawing.
+double name_place(double x, const std::string& name) {
+  const double half = 0.5 * estimated_width(name, kNameSize);
+  return std::max(std::min(x, kWidth - half), half);
+}
+
 /// Whether two names side by side below the axis would touch: they then stand in two rows.
 bool are_staggered(const Chart& chart, const PlotFrame& frame) {
-  constexpr double kNameSize = 14.5;  // on a telephone, where letters are largest
   constexpr double kNameGap = 6.0;
   for (std::size_t n = 0; n + 1 < chart.x_names.size(); ++n) {
     const double width = 0.5 * (estimated_width(chart.x_names[n], kNameSize) +
@@ -177,8 +208,9 @@ bool are_staggered(const Chart& chart, const PlotFrame& frame) {
 std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
   const double right = kWidth - kChartRight;
   const double foot = kHeight - kChartBottom;
+  const int power = common_power(frame.y, kTicksUp);
   std::string svg;
-  for (const Tick& tick : ticks_of(frame.y, kTicksUp)) {
+  for (const Tick& tick : ticks_up(frame.y, power)) {
     const double y = frame.up(tick.value);
     svg += fmt::format("<path class=\"grid-line\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>", kChartLeft, y,
                        right);
@@ -191,7 +223,8 @@ std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
     const double drop = staggered && ticks++ % 2 == 1 ? 34.0 : 18.0;
     const double x = frame.across(tick.value);
     svg += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}v5\"/>", x, foot);
-    svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>", x, foot + drop,
+    svg += fmt::format("<text class=\"middle\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
+                       chart.x_names.empty() ? x : name_place(x, tick.label), foot + drop,
                        escape_html(tick.label));
   }
   std::string minor;
@@ -204,7 +237,7 @@ std::string axes_svg(const Chart& chart, const PlotFrame& frame) {
   svg += fmt::format("<text class=\"middle label\" x=\"{:.1f}\" y=\"{:.1f}\">{}</text>",
                      (kChartLeft + right) / 2.0, kHeight - 8.0,
                      staggered ? "" : escape_html(chart.x_label));
-  return svg + y_label_svg(chart.y_label, (kChartTop + foot) / 2.0);
+  return svg + y_label_svg(with_power(chart.y_label, power), (kChartTop + foot) / 2.0);
 }
 
 std::string areas_svg(const Chart& chart, const PlotFrame& frame) {

@@ -7,8 +7,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* scale_name(Scale scale) { return scale == Scale::kLog ? "log" : "linear"; }
-
 const char* mark_name(Mark mark) {
   switch (mark) {
     case Mark::kLine:
@@ -24,6 +22,8 @@ const char* mark_name(Mark mark) {
 }
 
 }  // namespace
+
+const char* scale_name(Scale scale) { return scale == Scale::kLog ? "log" : "linear"; }
 
 nlohmann::ordered_json chart_data(const Chart& chart) {
   Json json = {{"xLabel", chart.x_label},

@@ -10,4 +10,7 @@ namespace qsmpc::harness {
 /// Everything of `chart` that web/charts.js draws. Its numbers are packed (packed_numbers.hpp).
 [[nodiscard]] nlohmann::ordered_json chart_data(const Chart& chart);
 
+/// As web/charts.js calls it.
+[[nodiscard]] const char* scale_name(Scale scale);
+
 }  // namespace qsmpc::harness

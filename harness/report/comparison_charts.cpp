@@ -1,11 +1,13 @@
 #include "harness/report/comparison_charts.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "harness/figures/palette.hpp"
+#include "harness/text/unit_text.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -20,7 +22,8 @@ constexpr double kSpread = 0.24;  // left and right of a state's name, of what i
 int plant_colour(std::size_t plant) { return 1 + static_cast<int>(plant) % (kPaletteSize - 1); }
 
 std::string with_unit(const models::Coordinate& coordinate) {
-  return coordinate.unit.empty() ? coordinate.name : coordinate.name + " (" + coordinate.unit + ")";
+  return coordinate.unit.empty() ? coordinate.name
+                                 : coordinate.name + " (" + printed_unit(coordinate.unit) + ")";
 }
 
 /// Values beside the names of the states, `beside` them by a part of the way to the next.
@@ -114,7 +117,7 @@ ComparisonFigure w2_figure(const Comparison& comparison) {
     const W2Floor& of_stage = comparison.floors[k];
     for (Series* series : {&floor, &lower, &upper}) series->x.push_back(static_cast<double>(k));
     floor.y.push_back(of_stage.mean);
-    lower.y.push_back(of_stage.mean - 2.0 * of_stage.deviation);
+    lower.y.push_back(std::max(0.0, of_stage.mean - 2.0 * of_stage.deviation));
     upper.y.push_back(of_stage.mean + 2.0 * of_stage.deviation);
   }
   chart.series = {floor, lower, upper};

@@ -16,6 +16,7 @@
 #include "harness/scenario/certificate_scope.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
+#include "harness/text/unit_text.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -28,11 +29,12 @@ const char* certified_head(const Comparison& comparison) {
 
 std::string kicker(const Comparison& comparison) {
   const Scenario& scenario = comparison.scenario;
+  const bool is_single = comparison.plants.size() == 1;
   return fmt::format(
-      "<p class=\"kicker\">{} plants beside the model {} · {} episodes and {} paths of each · "
+      "<p class=\"kicker\">{} plant{} beside the model {} · {} episodes and {} paths{} · "
       "{} · seed {}</p>\n",
-      comparison.plants.size(), escape_html(scenario.model.system),
-      comparison.plants.front().closed_loop.episodes, comparison.paths,
+      comparison.plants.size(), is_single ? "" : "s", escape_html(scenario.model.system),
+      comparison.plants.front().closed_loop.episodes, comparison.paths, is_single ? "" : " of each",
       escape_html(controller_words(scenario)), scenario.seed);
 }
 
@@ -75,7 +77,8 @@ std::string closed_loop_section(const Comparison& comparison) {
 }
 
 std::string state_head(const models::Coordinate& state) {
-  return escape_html(state.unit.empty() ? state.name : state.name + " (" + state.unit + ")");
+  return escape_html(state.unit.empty() ? state.name
+                                        : state.name + " (" + printed_unit(state.unit) + ")");
 }
 
 PageTable residual_table(const Comparison& comparison, const PlantComparison& plant,
@@ -152,7 +155,7 @@ std::string residual_section(const Comparison& comparison, const models::SystemD
   }
   if (!has_mismatch(comparison)) return head + tables;
   // The chart stands beside the tables, not beside nothing, where these leave room for it.
-  constexpr std::size_t kMostBeside = 4;  // states
+  constexpr std::size_t kMostBeside = 3;  // states
   if (system.states.size() > kMostBeside) return head + tables + figures(figure);
   std::string html =
       head + "<div class=\"grid beside\">\n<div class=\"stack residuals\">\n" + tables + "</div>\n";
@@ -281,7 +284,8 @@ std::string comparison_page(const Comparison& comparison) {
   const models::SystemDescription& system = comparison.system;
   const std::vector<ComparisonFigure> all = comparison_figures(comparison);
   std::string html =
-      "<h1>" + escape_html(comparison.scenario.name) + ": plants beside the model</h1>\n";
+      fmt::format("<h1>{}: {} beside the model</h1>\n", escape_html(comparison.scenario.name),
+                  comparison.plants.size() == 1 ? "a plant" : "plants");
   html += kicker(comparison);
   if (const auto unsafe = unsafe_verdict(comparison)) html += verdict_html(*unsafe);
   if (const auto no_bound = no_bound_verdict(comparison)) html += verdict_html(*no_bound);

@@ -32,7 +32,20 @@ std::string exceeded_text(const PlantComparison& plant) {
   return text.empty() ? text : fmt::format("On {} {}.", name_of(plant), text);
 }
 
+/// How far a single plant is from the model.
+std::string distance_text(const PlantComparison& plant) {
+  const std::string name = name_of(plant);
+  if (is_the_model(plant)) return fmt::format("{} is the model, but for rounding.", name);
+  const double divergence = largest_divergence(plant);
+  if (!std::isfinite(divergence)) return fmt::format("{} broke on every path.", name);
+  return fmt::format(
+      "Under the plan the paths of {} diverge from the model’s by up to {} (root mean square, norm "
+      "of the state).",
+      name, format_short(divergence));
+}
+
 std::string farthest_text(const Comparison& comparison) {
+  if (comparison.plants.size() == 1) return distance_text(comparison.plants.front());
   if (std::ranges::all_of(comparison.plants, is_the_model)) {
     return "Every plant is the model, but for rounding.";
   }
@@ -46,6 +59,16 @@ std::string farthest_text(const Comparison& comparison) {
       "Farthest from the model: {}. Its paths under the plan diverge from the model’s by up to {} "
       "(root mean square, norm of the state).",
       name_of(plant), format_short(divergence));
+}
+
+/// `exceeded`: on how many of the plants a certificate is.
+std::string verdict_title(std::size_t exceeded, std::size_t plants) {
+  const bool is_single = plants == 1;
+  if (exceeded == 0) {
+    return is_single ? "No certificate is exceeded" : "No certificate is exceeded on any plant";
+  }
+  return is_single ? "Certificates are exceeded"
+                   : fmt::format("Certificates are exceeded on {} of {} plants", exceeded, plants);
 }
 
 }  // namespace
@@ -116,9 +139,7 @@ PageVerdict comparison_verdict(const Comparison& comparison) {
   }
   const bool is_good = verdict.sentences.empty();
   verdict.mood = is_good ? PageMood::kGood : PageMood::kBad;
-  verdict.title = is_good ? "No certificate is exceeded on any plant"
-                          : fmt::format("Certificates are exceeded on {} of {} plants",
-                                        verdict.sentences.size(), comparison.plants.size());
+  verdict.title = verdict_title(verdict.sentences.size(), comparison.plants.size());
   verdict.sentences.push_back(farthest_text(comparison));
   if (is_good) {
     verdict.sentences.push_back(fmt::format(

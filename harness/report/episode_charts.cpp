@@ -12,6 +12,7 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/text/number_format.hpp"
+#include "harness/text/unit_text.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -19,6 +20,7 @@ namespace {
 
 constexpr double kMillisecondsPerSecond = 1e3;
 constexpr const char* kTimeLabel = "time (s)";
+constexpr const char* kAtFoot = "What is below the axis, 0 included, is drawn at its foot.";
 
 std::vector<double> times_of(const Trace& trace) {
   std::vector<double> times;
@@ -98,11 +100,11 @@ Chart input_chart(const EpisodeView& view, Eigen::Index input) {
   }
   Chart chart{.title = "Input: " + coordinate.name,
               .x_label = kTimeLabel,
-              .y_label = coordinate.name + " (" + coordinate.unit + ")",
+              .y_label = coordinate.name + " (" + printed_unit(coordinate.unit) + ")",
               .series = {std::move(series)}};
   if (input < controller.input_lower.size() && input < controller.input_upper.size()) {
     chart.rules = {{"bounds", controller.input_lower[input]}, {"", controller.input_upper[input]}};
-    say_limits_beyond_the_scale(coordinate.unit, chart);
+    say_limits_beyond_the_scale(printed_unit(coordinate.unit), chart);
   }
   return chart;
 }
@@ -138,7 +140,7 @@ Chart certificate_chart(const EpisodeView& view) {
   const bool holds = view.summary().no_bound.empty();
   Chart chart{.title = holds ? "Certificates: bounds of the probability of being unsafe"
                              : "Certificates, no bounds: see above",
-              .note = "What is below the axis, 0 included, is drawn at its foot.",
+              .note = kAtFoot,
               .x_label = kTimeLabel,
               .y_label = "probability (–)",
               .y_scale = Scale::kLog,
@@ -186,6 +188,7 @@ Chart clearance_chart(const EpisodeView& view) {
 
 Chart budget_chart(const EpisodeView& view) {
   const Trace& trace = view.trace();
+  const Scale scale = budget_scale(trace);
   const auto last = [](auto part) {
     return [part](const StepRecord& step) {
       return step.budgets.empty() ? kNotANumber : step.budgets.back().*part;
@@ -198,6 +201,8 @@ Chart budget_chart(const EpisodeView& view) {
           "each source alone would give, and their total.",
       .x_label = kTimeLabel,
       .y_label = "W₂ distance (state units)",
+      .y_scale = scale,
+      .least_shown = kLeastBudget,
       .y_includes = {0.0},
       .series = {
           series_of(trace, "total", kBlue, last(&controller::StageBudget::total)),
@@ -209,12 +214,13 @@ Chart budget_chart(const EpisodeView& view) {
         series_of(trace, "model error", kVermilion, last(&controller::StageBudget::model)));
   }
   for (std::size_t i = 1; i < chart.series.size(); ++i) chart.series[i].dashed = i % 2 == 0;
+  if (scale == Scale::kLog) add_sentence(kAtFoot, chart.note);
   return chart;
 }
 
 Chart cost_chart(const Trace& trace) {
   Chart chart{.title = "Expected cost of the plan, by part",
-              .note = "What is below the axis, 0 included, is drawn at its foot.",
+              .note = kAtFoot,
               .x_label = kTimeLabel,
               .y_label = "cost (–)",
               .y_scale = Scale::kLog,
@@ -307,6 +313,20 @@ Chart solve_time_histogram(const Trace& trace) {
 }
 
 }  // namespace
+
+Scale budget_scale(const Trace& trace) {
+  constexpr double kWide = 1e4;  // of which a linear axis shows nothing but the largest
+  double least = kInfinity;
+  double largest = 0.0;
+  for (const StepRecord& step : trace.steps) {
+    for (const controller::StageBudget& stage : step.budgets) {
+      if (!(stage.total > 0.0) || !is_drawable(stage.total)) continue;
+      least = std::min(least, stage.total);
+      largest = std::max(largest, stage.total);
+    }
+  }
+  return largest > kWide * std::max(least, kLeastBudget) ? Scale::kLog : Scale::kLinear;
+}
 
 std::vector<Chart> episode_charts(const EpisodeView& view) {
   const Trace& trace = view.trace();

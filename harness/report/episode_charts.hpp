@@ -13,4 +13,10 @@ namespace qsmpc::harness {
 /// steps, they have no points.
 [[nodiscard]] std::vector<Chart> episode_charts(const EpisodeView& view);
 
+/// What a budget below is drawn as on a logarithmic axis.
+inline constexpr double kLeastBudget = 1e-3;
+
+/// The scale on which the error budgets of all periods and stages can be read.
+[[nodiscard]] Scale budget_scale(const Trace& trace);
+
 }  // namespace qsmpc::harness

@@ -12,8 +12,10 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
+#include "harness/report/episode_charts.hpp"
 #include "harness/report/packed_numbers.hpp"
 #include "harness/report/script_json.hpp"
+#include "harness/text/unit_text.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -55,6 +57,8 @@ class EpisodeData {
                  {"inputs", inputs()},
                  {"certificates", certificates()},
                  {"budgets", budgets()},
+                 {"budgetScale", scale_name(budget_scale(trace_))},
+                 {"leastBudget", kLeastBudget},
                  {"status", Json::array()},
                  {"fallback", Json::array()}};
     for (const StepRecord& step : trace_.steps) {
@@ -106,7 +110,7 @@ class EpisodeData {
     for (std::size_t i = 0; i < system_.inputs.size(); ++i) {
       const auto index = static_cast<Eigen::Index>(i);
       json.push_back({{"name", system_.inputs[i].name},
-                      {"unit", system_.inputs[i].unit},
+                      {"unit", printed_unit(system_.inputs[i].unit)},
                       {"values", of_steps([index](const StepRecord& step) {
                          return entry(step.input, index);
                        })}});

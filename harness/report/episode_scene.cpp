@@ -17,6 +17,7 @@
 #include "harness/plant/mujoco/joint_pose.hpp"
 #include "harness/report/packed_numbers.hpp"
 #include "harness/report/script_json.hpp"
+#include "harness/trace/drawn_vehicle.hpp"
 #include "harness/trace/vehicle_change.hpp"
 
 namespace qsmpc::harness {
@@ -236,7 +237,7 @@ std::string note_of(const Trace& trace, const VehicleShapes& vehicle) {
 
 EpisodeScene episode_scene(const EpisodeView& view, const PlaneMap* ground) {
   const Trace& trace = view.trace();
-  const std::string& path = trace.scenario.plant.mjcf;
+  const std::string path = drawn_vehicle(view);
   if (path.empty() || trace.steps.empty()) return {};
   const bool has_motion = !trace.motion.empty() && !trace.motion.front().qpos.empty();
   try {

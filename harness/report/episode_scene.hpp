@@ -17,9 +17,9 @@ struct EpisodeScene {
   std::string note{};
 };
 
-/// The scene of a trace whose scenario names a MuJoCo model (plant.mjcf), which is read again. It
-/// has a place for the vehicle: where it was at every sample of the motion or, without a simulator,
-/// of `ground`, the plane that it is drawn in (null: none). At control instants a disturbance makes
+/// The scene of a trace with a vehicle to draw (drawn_vehicle), whose file is read again. It has a
+/// place for the vehicle: where it was at every sample of the motion or, without a simulator, of
+/// `ground`, the plane that it is drawn in (null: none). At control instants a disturbance makes
 /// the true state jump: here, each period leads from its first state to the next one's in one go,
 /// as in the page's map. A model that cannot be read, or that is not the one that was driven, is
 /// left out with a note.

@@ -10,6 +10,7 @@
 
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
+#include "harness/text/unit_text.hpp"
 #include "harness/trace/residuals.hpp"
 
 namespace qsmpc::harness {
@@ -345,7 +346,8 @@ std::string mismatch_html(const EpisodeView& view) {
         "<tr><th scope=\"row\">{}</th><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>\n",
         escape_html(state.name), format_number(summary.mismatch_rmse[i]),
         format_number(summary.mismatch_mean[i]),
-        format_number(std::sqrt(summary.mismatch_covariance(i, i))), escape_html(state.unit));
+        format_number(std::sqrt(summary.mismatch_covariance(i, i))),
+        escape_html(printed_unit(state.unit)));
   }
   return html + "</tbody></table></div>\n";
 }

@@ -9,6 +9,7 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/reproduction/published_way.hpp"
+#include "harness/text/unit_text.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -137,7 +138,7 @@ PlaneMap drive_map(const std::string& title, const Sample& sample) {
 Chart coordinate_chart(const std::string& kind, const models::Coordinate& coordinate) {
   return {.title = kind + ": " + coordinate.name,
           .x_label = kTimeLabel,
-          .y_label = coordinate.name + " (" + coordinate.unit + ")"};
+          .y_label = coordinate.name + " (" + printed_unit(coordinate.unit) + ")"};
 }
 
 std::vector<Chart> input_charts(const std::vector<NamedSample>& samples) {

@@ -62,6 +62,14 @@ const std::vector<ShippedPlant>& shipped_plants() {
   return plants;
 }
 
+std::string default_vehicle(const std::string& system) {
+  std::string farthest;
+  for (const ShippedPlant& plant : shipped_plants()) {
+    if (plant.system == system) farthest = plant.mjcf;
+  }
+  return farthest;
+}
+
 Scenario with_plant(Scenario scenario, const std::string& name) {
   const std::string& system = scenario.model.system;
   Scenario::Plant& plant = scenario.plant;
@@ -70,6 +78,7 @@ Scenario with_plant(Scenario scenario, const std::string& name) {
     return scenario;
   }
   std::string mjcf = name == "mujoco" ? plant.mjcf : "";
+  if (name == "mujoco" && mjcf.empty()) mjcf = find_mjcf(default_vehicle(system), "");
   const auto shipped = std::ranges::find_if(shipped_plants(), [&](const ShippedPlant& entry) {
     return entry.name == name && entry.system == system;
   });

@@ -19,9 +19,14 @@ struct ShippedPlant {
 /// All of them, by system and from the nearest to the system's equations to the farthest.
 [[nodiscard]] const std::vector<ShippedPlant>& shipped_plants();
 
-/// `scenario` with another plant: "analytic", "mujoco" (the scenario's own MuJoCo vehicle), the
-/// name of a shipped plant of its system, or the path of an MJCF file, relative to the working
-/// folder. Throws InputError on another name, with those that the system has.
+/// The file of the last of those of a system, which drives unless a scenario names another; empty
+/// where there is none.
+[[nodiscard]] std::string default_vehicle(const std::string& system);
+
+/// `scenario` with another plant: "analytic", "mujoco" (the scenario's own MuJoCo vehicle, else its
+/// system's default), the name of a shipped plant of its system, or the path of an MJCF file,
+/// relative to the working folder. Throws InputError on another name, with those that the system
+/// has.
 [[nodiscard]] Scenario with_plant(Scenario scenario, const std::string& name);
 
 }  // namespace qsmpc::harness

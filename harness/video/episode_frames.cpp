@@ -11,8 +11,6 @@
 
 #include "controller/control/controller.hpp"
 #include "controller/regions/body_outline.hpp"
-#include "harness/scenario/plant_choice.hpp"
-#include "harness/scenario/shipped_files.hpp"
 #include "harness/video/belief_shape.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/thinning.hpp"
@@ -84,15 +82,6 @@ constexpr double kRailTime = 1.0;  // m/s: on a rail, y is time
 std::string every_nth(std::size_t every) { return fmt::format("1 of {}", every); }
 
 }  // namespace
-
-std::string drawn_vehicle(const EpisodeView& view) {
-  const Scenario& scenario = view.scenario();
-  if (!scenario.plant.mjcf.empty() || !is_on_rail(view.system())) return scenario.plant.mjcf;
-  for (const ShippedPlant& plant : shipped_plants()) {
-    if (plant.system == view.system().name) return find_mjcf(plant.mjcf, "");
-  }
-  return "";
-}
 
 EpisodeFrames::EpisodeFrames(const EpisodeView& view, const Overlays& overlays)
     : view_(view),

@@ -17,10 +17,6 @@
 
 namespace qsmpc::harness {
 
-/// The vehicle that is drawn: that of the scenario, or the one shipped for a system on a rail;
-/// empty where there is none.
-[[nodiscard]] std::string drawn_vehicle(const EpisodeView& view);
-
 /// Frames of one episode. A system without a place in the plane stands on a rail along x, and y is
 /// time: what is to come lies before it, towards -y, and what has been behind it, 1 m a second.
 /// Const functions may be called from several threads at once.

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "harness/scenario/certificate_scope.hpp"
+#include "harness/text/unit_text.hpp"
 #include "harness/trace/risk_use.hpp"
 #include "render/hud/strip_chart.hpp"
 
@@ -79,7 +80,7 @@ render::StripChart input_chart(const History& history, const Scenario::Controlle
                                const models::SystemDescription& system, Eigen::Index index) {
   const models::Coordinate& input = system.inputs[static_cast<std::size_t>(index)];
   render::StripChart chart =
-      history.chart(fmt::format("{} [{}]", input.name, input.unit),
+      history.chart(fmt::format("{} [{}]", input.name, printed_unit(input.unit)),
                     [index](const StepRecord& step) { return step.input[index]; });
   chart.value = signed_text(chart.values.back());
   const bool bounded = controller.input_lower.size() > 0 && controller.input_upper.size() > 0;

@@ -46,17 +46,6 @@ std::vector<double> between(const std::vector<double>& a, const std::vector<doub
 
 }  // namespace
 
-int drawn_x(const models::SystemDescription& system) {
-  if (system.position_x >= 0 || system.position_y >= 0) return system.position_x;
-  const auto position = std::find_if(system.states.begin(), system.states.end(),
-                                     [](const models::Coordinate& s) { return s.unit == "m"; });
-  return position == system.states.end() ? -1 : static_cast<int>(position - system.states.begin());
-}
-
-bool is_on_rail(const models::SystemDescription& system) {
-  return system.position_x < 0 && system.position_y < 0 && drawn_x(system) >= 0;
-}
-
 render::PlanarPose planar_pose(const models::SystemDescription& system,
                                const Eigen::Ref<const Eigen::VectorXd>& state) {
   const auto value = [&state](int index) { return index >= 0 ? state[index] : 0.0; };

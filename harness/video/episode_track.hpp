@@ -8,18 +8,12 @@
 
 #include <vector>
 
+#include "harness/trace/drawn_vehicle.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "render/frame.hpp"
 
 namespace qsmpc::harness {
-
-/// Whether a system has no place in the plane, but moves along a line: it is drawn on a rail along
-/// x, and y is time (see EpisodeFrames).
-[[nodiscard]] bool is_on_rail(const models::SystemDescription& system);
-
-/// The state that is drawn along x: the first position (m) of a system on a rail; -1 for none.
-[[nodiscard]] int drawn_x(const models::SystemDescription& system);
 
 /// The coordinates of `state` that are drawn; 0 where a system has none.
 [[nodiscard]] render::PlanarPose planar_pose(const models::SystemDescription& system,

@@ -48,22 +48,29 @@ std::unique_ptr<const Dynamics> make_cart_pole(const ParameterMap& parameters, d
       .pole_mass = positive_parameter(kCartPoleName, parameters, "pole_mass"),
       .pole_half_length = positive_parameter(kCartPoleName, parameters, "pole_half_length"),
       .gravity = positive_parameter(kCartPoleName, parameters, "gravity"),
+      .cart_damping = non_negative_parameter(kCartPoleName, parameters, "cart_damping"),
+      .pole_damping = non_negative_parameter(kCartPoleName, parameters, "pole_damping"),
       .time_step = time_step});
 }
 
-// The thesis prints no constants for this system. These are those of Barto, Sutton and Anderson,
-// "Neuronlike adaptive elements that can solve difficult learning control problems", 1983.
+// The thesis prints no constants for this system, and no damping. These are those of Barto, Sutton
+// and Anderson, "Neuronlike adaptive elements that can solve difficult learning control problems",
+// 1983.
 SystemEntry cart_pole_entry() {
   return {.name = kCartPoleName,
           .summary = kCartPoleSummary,
           .defaults = {{"cart_mass", 1.0},
                        {"pole_mass", 0.1},
                        {"pole_half_length", 0.5},
-                       {"gravity", 9.8}},
+                       {"gravity", 9.8},
+                       {"cart_damping", 0.0},
+                       {"pole_damping", 0.0}},
           .units = {{"cart_mass", "kg"},
                     {"pole_mass", "kg"},
                     {"pole_half_length", "m"},
-                    {"gravity", "m/s^2"}}};
+                    {"gravity", "m/s^2"},
+                    {"cart_damping", "N s/m"},
+                    {"pole_damping", "N m s/rad"}}};
 }
 
 }  // namespace qsmpc::models

@@ -22,15 +22,18 @@ struct CartPole {
   double pole_mass;         ///< m, kg
   double pole_half_length;  ///< L, from the hinge to the centre of a uniform pole, m
   double gravity;           ///< g, m/s²
+  double cart_damping = 0;  ///< c, between cart and rail, N s/m
+  double pole_damping = 0;  ///< d, in the hinge, N m s/rad
   double time_step;         ///< s
 
   /// The pole stands upright at θ = 0, where g sin θ drives it away, and leans towards positive
   /// positions at θ > 0; it hangs at θ = π. (Table B-5 calls θ = π upright: with Eq. D-4 it is
-  /// not.) With the share q = (F + m L θ̇² sin θ)/(M + m),
+  /// not.) With the share q = (F − c ṗ + m L θ̇² sin θ)/(M + m),
   ///
-  ///     θ̈ = (g sin θ − q cos θ) / (L (4/3 − m cos²θ/(M + m))),    p̈ = q − m L θ̈ cos θ/(M + m).
+  ///     θ̈ = (g sin θ − q cos θ − d θ̇/(m L)) / (L (4/3 − m cos²θ/(M + m))),
+  ///     p̈ = q − m L θ̈ cos θ/(M + m).
   ///
-  /// The divisor is at least L/3.
+  /// The divisor is at least L/3. Eq. D-3 to D-5 are those of c = d = 0, which cost no operation.
   template <class Scalar>
   void derivative(const Scalar* x, const Scalar& force, Scalar* slope) const {
     using std::cos;
@@ -41,10 +44,16 @@ struct CartPole {
     const Scalar cosine = cos(x[kPoleAngle]);
     const Scalar centrifugal =
         (pole_mass * pole_half_length / mass) * (x[kAngularVelocity] * x[kAngularVelocity]) * sine;
-    const Scalar share = (1.0 / mass) * force + centrifugal;
+    Scalar push = force;
+    if (cart_damping != 0.0) push = push - cart_damping * x[kVelocity];
+    const Scalar share = (1.0 / mass) * push + centrifugal;
     const Scalar inertia =
         pole_half_length * (kUniformPole - (pole_mass / mass) * (cosine * cosine));
-    const Scalar angular = (gravity * sine - share * cosine) / inertia;
+    Scalar moment = gravity * sine - share * cosine;  // over m L
+    if (pole_damping != 0.0) {
+      moment = moment - (pole_damping / (pole_mass * pole_half_length)) * x[kAngularVelocity];
+    }
+    const Scalar angular = moment / inertia;
     slope[kPosition] = x[kVelocity];
     slope[kVelocity] = share - (pole_mass * pole_half_length / mass) * (angular * cosine);
     slope[kPoleAngle] = x[kAngularVelocity];
@@ -65,7 +74,8 @@ struct CartPole {
   [[nodiscard]] double lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const;
 };
 
-/// Throws std::invalid_argument unless all parameters and time_step are finite and above 0.
+/// Throws std::invalid_argument unless all parameters and time_step are finite and above 0, the two
+/// dampings at least 0.
 [[nodiscard]] std::unique_ptr<const Dynamics> make_cart_pole(const ParameterMap& parameters,
                                                              double time_step);
 

@@ -27,6 +27,15 @@ double positive_parameter(std::string_view system, const ParameterMap& parameter
   refuse(system, name, "above 0");
 }
 
+double non_negative_parameter(std::string_view system, const ParameterMap& parameters,
+                              std::string_view name) {
+  const auto found = parameters.find(name);
+  if (found != parameters.end() && std::isfinite(found->second) && found->second >= 0.0) {
+    return found->second;
+  }
+  refuse(system, name, "of at least 0");
+}
+
 double negative_parameter(std::string_view system, const ParameterMap& parameters,
                           std::string_view name) {
   const auto found = parameters.find(name);

@@ -14,6 +14,10 @@ void check_time_step(std::string_view system, double time_step);
 [[nodiscard]] double positive_parameter(std::string_view system, const ParameterMap& parameters,
                                         std::string_view name);
 
+/// The same for parameters that may be 0.
+[[nodiscard]] double non_negative_parameter(std::string_view system, const ParameterMap& parameters,
+                                            std::string_view name);
+
 /// The same for parameters below 0.
 [[nodiscard]] double negative_parameter(std::string_view system, const ParameterMap& parameters,
                                         std::string_view name);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
-#include <string>
 
 #include "models/dynamics/parameter_checks.hpp"
 #include "models/dynamics/templated_dynamics.hpp"
@@ -17,13 +16,6 @@ constexpr double kSmallDamping = 1e-4;  // c T below which the series is as exac
 constexpr const char* kPointMassName = "point_mass";
 constexpr const char* kPointMassSummary =
     "Point in the plane: position, velocity; driven by its acceleration along x and y";
-
-double damping_of(const ParameterMap& parameters) {
-  const double damping = parameters.find("damping")->second;
-  if (damping >= 0.0 && std::isfinite(damping)) return damping;
-  throw std::invalid_argument(std::string(kPointMassName) +
-                              ": damping must be finite and not below 0");
-}
 
 }  // namespace
 
@@ -67,7 +59,7 @@ double PointMass::lipschitz(const Eigen::Ref<const Eigen::MatrixXd>& gain) const
 
 std::unique_ptr<const Dynamics> make_point_mass(const ParameterMap& parameters, double time_step) {
   check_time_step(kPointMassName, time_step);
-  const double damping = damping_of(parameters);
+  const double damping = non_negative_parameter(kPointMassName, parameters, "damping");
   const double decayed = damping * time_step;
   const double speed_gain = damping > 0.0 ? -std::expm1(-decayed) / damping : time_step;
   const double reach = decayed > kSmallDamping ? (time_step - speed_gain) / damping

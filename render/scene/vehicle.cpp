@@ -327,6 +327,18 @@ VehicleMarks Vehicle::marks(const Frame& frame) {
 
 double Vehicle::length() const { return simulator_->length; }
 
+std::optional<SpacePoint> Vehicle::top() const {
+  const mjModel& model = *simulator_->model;
+  std::optional<SpacePoint> highest;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    if (!is_vehicle(model, geom)) continue;
+    for (const SpacePoint& corner : box_corners(model, *simulator_->data, geom)) {
+      if (!highest || corner[2] > (*highest)[2]) highest = corner;
+    }
+  }
+  return highest;
+}
+
 double Vehicle::lift() const { return simulator_->lift; }
 
 }  // namespace qsmpc::render

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,9 @@ class Vehicle {
   /// m, the longest side of the box about all its visible parts, as the model's file has them; what
   /// stands still in the world is no part of it.
   [[nodiscard]] double length() const;
+
+  /// The highest corner of the boxes about its visible parts, as last placed; nothing without such.
+  [[nodiscard]] std::optional<SpacePoint> top() const;
 
   /// m, that it is raised by; 0 where it need not be.
   [[nodiscard]] double lift() const;

@@ -120,6 +120,53 @@ test("clearance is the same in the table of the moment and in its chart, at the 
   await page.close();
 });
 
+test("what is drawn at the foot of an axis is read as it is", async () => {
+  const {page} = await open();
+  await slideTo(page, 0.5);
+  await page.waitForTimeout(100);
+  const read = await page.evaluate(() => {
+    const figure = [...document.querySelectorAll("#charts > figure")]
+      .find((one) => one.querySelector("figcaption").textContent.startsWith("Expected cost"));
+    const rows = [...figure.querySelectorAll(".u-legend .u-series")];
+    return rows.find((row) => row.textContent.startsWith("nearness to obstacles")).querySelector(".u-value").textContent;
+  });
+  assert.equal(read, "0");
+  await page.close();
+});
+
+// How far from its chart's left edge a plot begins (pixels), and on how many lines of the canvas
+// something is written just before that.
+const axisOf = (page, figure) => page.locator(figure).first().evaluate((one) => {
+  const canvas = one.querySelector("canvas");
+  const room = one.querySelector(".u-over").getBoundingClientRect().left - canvas.getBoundingClientRect().left;
+  const right = Math.floor((room - 14) * devicePixelRatio);  // left of the ticks
+  const {data, width} = canvas.getContext("2d").getImageData(right - 12, 0, 12, canvas.height);
+  const written = new Set();
+  for (let i = 3; i < data.length; i += 4) if (data[i] > 100) written.add(Math.floor(i / 4 / width));
+  return {room, written: written.size};
+});
+
+test("an axis has room for its numbers, and numbers however far it reaches", async () => {
+  const run = async (scenario, ...words) => {
+    const out = temporaryFolder();
+    qsmpc("run", scenario, "--quiet", "--no-video", "--fail-on", "none", "--out", out, "--set", "limit.steps=6", ...words);
+    const {page} = await openPage(browser, join(out, "report.html"));
+    await page.waitForTimeout(300);
+    return page;
+  };
+  const input = "#charts > figure:nth-child(3)";
+  const plain = await axisOf((await open()).page, input);
+  const small = await run("double_integrator", "--set", "initial_state={mean: [2, 3e-5], covariance: [1e-14, 1e-14]}",
+                          "--set", "disturbance.covariance=[1e-14, 1e-14]", "--set", "target.radius=1e-9",
+                          "--set", "controller.kind=lqr");
+  assert.match(await small.locator(`${input} figcaption`).textContent(), /Input/);
+  const {room} = await axisOf(small, input);
+  assert.ok(room > plain.room + 4, `${plain.room} pixels, then ${room} for powers of ten`);
+  // Bounds that grow by decades a stage, beyond what a linear axis or one of 40 decades has numbers for.
+  const budgets = await axisOf(await run("cart_pole"), "#stage-budgets");
+  assert.ok(budgets.written > 20, `${budgets.written} lines of numbers`);
+});
+
 test("what is no bound is not called one", async () => {
   const noisy = temporaryFolder();
   qsmpc("run", "dubins_corridor", "--quiet", "--no-video", "--out", noisy, "--set", "limit.steps=3",

@@ -28,7 +28,7 @@ async function open(options) {
 const whole = (page) => page.locator("#scene .whole").click();
 
 // What is seen at a time (s): how many pixels are like the first one, how many have the car's paint,
-// and the middle of those (shares of the picture). The picture can be read in its own frame only.
+// and the middle of those (shares of the picture); how many are coloured, and how many of those warm. The picture can be read in its own frame only.
 const seenAt = (page, time) => page.evaluate((value) => new Promise((resolve) => {
   const slider = document.getElementById("time");
   slider.value = value;
@@ -41,11 +41,12 @@ const seenAt = (page, time) => page.evaluate((value) => new Promise((resolve) =>
     const context = copy.getContext("2d");
     context.drawImage(canvas, 0, 0);
     const {data} = context.getImageData(0, 0, copy.width, copy.height);
-    const seen = {all: data.length / 4, ground: 0, paint: 0, x: 0, y: 0, coloured: 0};
+    const seen = {all: data.length / 4, ground: 0, paint: 0, x: 0, y: 0, coloured: 0, warm: 0};
     for (let i = 0; i < data.length; i += 4) {
       const [r, g, b] = data.subarray(i, i + 3);
       if (r === data[0] && g === data[1] && b === data[2]) ++seen.ground;
       if (Math.max(r, g, b) - Math.min(r, g, b) > 60) ++seen.coloured;
+      if (r > g && g > b && r - b > 60) ++seen.warm;
       if (r < 150 || g > 0.62 * r || b > 0.25 * r) continue;
       ++seen.paint;
       seen.x += (i / 4) % copy.width / copy.width;
@@ -80,6 +81,22 @@ test("the slider moves the vehicle", async () => {
   const begin = await seenAt(page, 0.2);
   const end = await seenAt(page, 0.8);
   assert.ok(Math.hypot(end.x - begin.x, end.y - begin.y) < 0.02, "the view does not follow");
+  await page.close();
+});
+
+test("an obstacle before the vehicle is seen through", async () => {
+  const out = temporaryFolder();
+  qsmpc("run", "point_mass", "--quiet", "--no-video", "--out", out);
+  const {page} = await openPage(browser, join(out, "report.html"));
+  await page.locator("#scene").scrollIntoViewIfNeeded();
+  await page.locator("#scene canvas").waitFor();
+  for (const layer of ["particles", "plan", "way", "ghost"]) {
+    await page.locator(`[data-scene="${layer}"]`).uncheck();
+  }
+  for (const time of [0.1, 0.7, 1.4, 2]) {  // beside the block, and behind it
+    const {warm} = await seenAt(page, time);
+    assert.ok(warm > 300, `${time} s: ${warm} pixels of the vehicle`);
+  }
   await page.close();
 });
 
@@ -152,22 +169,24 @@ test("without WebGL it says so, and the page works", async () => {
 
 test("pages without a vehicle's file do not carry it", async () => {
   const out = temporaryFolder();
-  qsmpc("run", "double_integrator", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=5");
+  qsmpc("run", "dubins_corridor", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=5",
+        "--set", "plant.kind=analytic", "--set", "plant.mjcf=''");
   const page_text = readFileSync(join(out, "report.html"), "utf8");
   assert.ok(!page_text.includes("three.js"));
   assert.ok(statSync(join(out, "report.html")).size < statSync(join(folder, "report.html")).size - 5e5);
 });
 
-for (const plant of ["mujoco", "analytic"]) {
-  test(`a model without a place in the plane is drawn alone: ${plant}`, async () => {
+for (const [scenario, plant] of [["cart_pole_balance", "mujoco"], ["cart_pole_balance", "analytic"],
+                                  ["double_integrator", "analytic"]]) {
+  test(`a model without a place in the plane is drawn alone: ${scenario}, ${plant}`, async () => {
     const out = temporaryFolder();
-    qsmpc("run", "cart_pole_balance", "--quiet", "--no-video", "--out", out, "--set", "limit.steps=10",
+    qsmpc("run", scenario, "--quiet", "--no-video", "--out", out, "--set", "limit.steps=10",
           "--set", `plant.kind=${plant}`);
     const {page, seen} = await openPage(browser, join(out, "report.html"));
     await page.locator("#scene").scrollIntoViewIfNeeded();
     await page.locator("#scene canvas").waitFor();
     const drawn = await seenAt(page, 0.2);
-    assert.ok(drawn.coloured > 200, `${drawn.coloured} pixels of the cart and its pole`);
+    assert.ok(drawn.coloured > 200, `${drawn.coloured} pixels of what moves`);
     assert.equal(await page.locator('[data-scene="way"]').count(), 0);
     assert.deepEqual(seen.errors, []);
     await page.close();

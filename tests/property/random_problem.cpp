@@ -94,7 +94,8 @@ Family random_family(Generator& generator) {
   }
   Eigen::VectorXd start = uniform_vector(generator, 4, -0.3, 0.3);
   return {.system = "cart_pole",
-          .parameters = {},
+          .parameters = {{"cart_damping", uniform(generator, 0.0, 2.0)},
+                         {"pole_damping", uniform(generator, 0.0, 0.1)}},
           .start = start,
           .walls = {0, 2},
           .largest_deviation = 0.2};

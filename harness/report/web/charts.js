@@ -1,20 +1,25 @@
 // Charts with a cursor, a zoom and a mark of the moment: what the page's drawings show, by uPlot.
 
 const kChartHeight = 250;
+const kLeastAxisWidth = 62;  // pixels, of an upright one: charts one above the other are in line
+const kMostDecades = 8;      // with a tick
+const kLastDecade = 15;      // of a logarithmic axis; uPlot has no ticks from 10¹⁷ on. Lines leave it upwards
 const kNarrow = 480;  // pixels, below which axes have fewer ticks
 
 // The rows of a chart as uPlot takes them: one row of x, and of each series y, with null where it
 // has no value.
 function alignedRows(chart) {
   const tables = chart.series.map((series) => {
-    const x = floatsOf(series.x);
-    const y = Array.from(floatsOf(series.y), (value) => {
-      if (!Number.isFinite(value)) return null;
-      return chart.yScale === "log" ? Math.max(value, chart.leastY) : value;
-    });
-    return [Array.from(x), y];
+    const y = Array.from(floatsOf(series.y), (value) => Number.isFinite(value) ? value : null);
+    return [Array.from(floatsOf(series.x)), y];
   });
   return tables.length > 0 ? uPlot.join(tables) : [[]];
+}
+
+// The same as they are drawn: on a logarithmic axis what is below it stands at its foot.
+function drawnRows(chart, [x, ...rows]) {
+  if (chart.yScale !== "log") return [x, ...rows];
+  return [x, ...rows.map((row) => row.map((y) => Number.isFinite(y) ? Math.max(y, chart.leastY) : y))];
 }
 
 // A series of two points one above the other is a limit of x.
@@ -23,14 +28,18 @@ function verticalLimit(series) {
   return x.length === 2 && x[0] === x[1] ? x[0] : null;
 }
 
-function seriesOptions(series) {
+// `valueAt(series, index)`: what is read there, whatever is drawn.
+function seriesOptions(series, valueAt) {
   const colour = paletteColour(`c${series.colour}`);
   const options = {
     label: series.name,
     stroke: colour,
     width: 1.8,
     dash: series.dashed ? [7, 5] : undefined,
-    value: (_, value) => value === null || value === undefined ? "–" : formatNumber(value),
+    value: (_, drawn, place, index) => {
+      const value = index === null || index === undefined ? drawn : valueAt(place, index);
+      return value === null || value === undefined ? "–" : formatNumber(value);
+    },
     points: {show: false},
   };
   if (series.mark === "steps") options.paths = uPlot.paths.stepped({align: 1});
@@ -39,6 +48,16 @@ function seriesOptions(series) {
     options.points = {show: true, size: 7, fill: colour, stroke: colour};
   }
   return options;
+}
+
+// As wide as its numbers, so that the label stands beside them.
+function axisWidth(plot, texts, index) {
+  const axis = plot.axes[index];
+  plot.ctx.save();
+  plot.ctx.font = axis.font[0];
+  const widths = (texts ?? []).map((text) => plot.ctx.measureText(text).width / devicePixelRatio);
+  plot.ctx.restore();
+  return Math.ceil(Math.max(kLeastAxisWidth, Math.max(0, ...widths) + axis.ticks.size + axis.gap));
 }
 
 function axisOptions(label, isY) {
@@ -51,7 +70,7 @@ function axisOptions(label, isY) {
     labelFont: "12px system-ui, sans-serif",
     grid: {stroke: grid, width: 1},
     ticks: {stroke: grid, width: 1},
-    size: isY ? 62 : 38,
+    size: isY ? axisWidth : 38,
     labelSize: 18,
     values: (_, splits) => splits.map((value) => value === null ? "" : tickText(value)),
   };
@@ -62,9 +81,15 @@ function tickText(value) {
   return formatNumber(Number(value.toPrecision(12))).replace(/^(−?)1 × /, "$1");
 }
 
-// Of a logarithmic axis, the decades alone.
-const decadesOnly = (_, splits) =>
-  splits.map((value) => Number.isInteger(Math.log10(value)) ? value : null);
+// Of a logarithmic axis, the decades alone, and of many of them every second, third, …
+function decadesOnly(_, splits) {
+  const exponents = splits.map((value) => Math.log10(value));
+  const every = Math.ceil((exponents.at(-1) - exponents[0]) / kMostDecades) || 1;
+  return splits.map((value, i) => {
+    const nearest = Math.round(exponents[i]);
+    return Math.abs(exponents[i] - nearest) < 1e-9 && nearest % every === 0 ? value : null;
+  });
+}
 
 // The range of an axis about the data, what it must include, and its rules. A tight one ends there.
 function rangeOf(includes, log, tight) {
@@ -74,7 +99,7 @@ function rangeOf(includes, log, tight) {
     const lower = Math.min(...values);
     const upper = Math.max(...values);
     if (log) {
-      const decades = [Math.floor(Math.log10(lower)), Math.ceil(Math.log10(upper))];
+      const decades = [Math.floor(Math.log10(lower)), Math.min(Math.ceil(Math.log10(upper)), kLastDecade)];
       return [10 ** decades[0], 10 ** Math.max(decades[1], decades[0] + 1)];
     }
     if (tight) return upper > lower ? [lower, upper] : [lower, lower + 1];
@@ -107,7 +132,7 @@ function drawLimits(plot, rules, limits) {
   ctx.restore();
 }
 
-function plotOptions(chart, width, sync) {
+function plotOptions(chart, width, sync, valueAt) {
   const log = chart.yScale === "log";
   const logX = chart.xScale === "log";
   const rules = chart.rules.map((rule) => rule.value).filter(Number.isFinite);
@@ -138,7 +163,7 @@ function plotOptions(chart, width, sync) {
     },
     axes: [x, y],
     series: [{label: chart.xLabel, value: (_, v) => v === null ? "–" : formatNumber(v, 4)},
-             ...chart.series.map(seriesOptions)],
+             ...chart.series.map((series) => seriesOptions(series, valueAt))],
     legend: {live: sync},
     hooks: {draw: [(plot) => drawLimits(plot, rules, limits)]},
   };
@@ -156,12 +181,12 @@ function indexBefore(row, value) {
   return low;
 }
 
-// One chart in its figure, in place of the drawing there. `rows` are as uPlot takes them.
+// One chart in its figure, in place of the drawing there. `rows` are those of alignedRows.
 // `onPick(x)` is called where it is clicked; without it the chart has no moment.
 class LiveChart {
   constructor(figure, chart, rows, onPick) {
     this.chart = chart;
-    this.rows = rows;
+    this.rows = rows;  // what is read; drawnRows says what is drawn
     this.onPick = onPick;
     this.host = document.createElement("div");
     this.host.className = "plot";
@@ -174,9 +199,10 @@ class LiveChart {
   build() {
     if (this.plot) this.plot.destroy();
     const width = Math.max(this.host.clientWidth, 200);
-    const options = plotOptions(this.chart, width, Boolean(this.onPick));
+    const options = plotOptions(this.chart, width, Boolean(this.onPick),
+                                (place, index) => this.rows[place][index]);
     options.hooks.ready = [() => queueMicrotask(() => this.show(this.shown))];
-    this.plot = new uPlot(options, this.rows, this.host);
+    this.plot = new uPlot(options, drawnRows(this.chart, this.rows), this.host);
     if (!this.onPick) return;
     this.line = document.createElement("div");
     this.line.className = "moment";
@@ -210,7 +236,7 @@ class LiveChart {
   // Other values of the same series; the axes stay.
   setRows(rows) {
     this.rows = rows;
-    this.plot.setData(rows);
+    this.plot.setData(drawnRows(this.chart, rows));
   }
 
   recolour() {

@@ -8,6 +8,7 @@
 //   inputs                        [{name, unit, values: one a period}]
 //   certificates                  value, thesis: one a period and stage 1 … horizon; plan: a period
 //   budgets                       {source: one a period and stage 0 … horizon}
+//   budgetScale, leastBudget      linear or log; what is below is drawn there on the latter
 //   status, fallback              one a period
 //   charts                        see charts.js
 //   map (where there is a plane)  xLeft, yTop, scale: plane to drawing;

@@ -2,13 +2,14 @@
 
 const kStageCharts = {
   "stage-certificates": {
-    yLabel: "probability (–)", yScale: "log", first: 1,
+    yLabel: "probability (–)", yScale: () => "log", least: () => 1e-9, first: 1, includes: 1,
     series: [{name: "certificate", colour: 0, of: (data) => data.certificates.value},
              {name: "published method: not a bound", colour: 3, dashed: true,
               of: (data) => data.certificates.thesis}],
   },
   "stage-budgets": {
-    yLabel: "W₂ distance (state units)", yScale: "linear", first: 0,
+    yLabel: "W₂ distance (state units)", yScale: (data) => data.budgetScale, least: (data) => data.leastBudget,
+    first: 0, includes: 0,
     series: [{name: "total", colour: 0, of: (data) => data.budgets.total},
              {name: "belief", colour: 3, of: (data) => data.budgets.belief},
              {name: "noise", colour: 2, dashed: true, of: (data) => data.budgets.noise},
@@ -26,12 +27,13 @@ class StageChart {
     this.data = data;
     this.kind = kind;
     this.count = data.horizon + 1 - kind.first;
-    this.least = 1e-9;
+    this.log = kind.yScale(data) === "log";
+    this.least = kind.least(data);
     const extremes = kind.series.flatMap((series) => this.extremes(series.of(data)));
     const chart = {
-      xLabel: "stage of the plan", yLabel: kind.yLabel, xScale: "linear", yScale: kind.yScale,
+      xLabel: "stage of the plan", yLabel: kind.yLabel, xScale: "linear", yScale: kind.yScale(data), leastY: this.least,
       xIncludes: [kind.first, data.horizon],
-      yIncludes: extremes.concat(kind.yScale === "log" ? [1] : [0]),
+      yIncludes: extremes.concat(kind.includes),
       series: kind.series.map((series) => ({...series, mark: "line"})), rules: [],
     };
     figure.hidden = false;
@@ -43,7 +45,7 @@ class StageChart {
     let high = -Infinity;
     for (const value of values) {
       if (!Number.isFinite(value)) continue;
-      low = Math.min(low, Math.max(value, this.kind.yScale === "log" ? this.least : value));
+      low = Math.min(low, this.log ? Math.max(value, this.least) : value);
       high = Math.max(high, value);
     }
     return low <= high ? [low, high] : [];
@@ -51,8 +53,7 @@ class StageChart {
 
   rows(k) {
     const stages = Array.from({length: this.count}, (_, i) => this.kind.first + i);
-    const value = (v) => !Number.isFinite(v) ? null
-      : this.kind.yScale === "log" ? Math.max(v, this.least) : v;
+    const value = (v) => Number.isFinite(v) ? v : null;
     return [stages, ...this.kind.series.map((series) =>
       Array.from(series.of(this.data).subarray(k * this.count, (k + 1) * this.count), value))];
   }

@@ -209,6 +209,7 @@ class Panel {
     this.sun.target.position.copy(centre);
     this.sun.position.copy(centre).addScaledVector(kSunTowards, this.sunDistance);
     this.shade.position.set(centre.x, centre.y, this.ground.height);
+    this.ground.clear(this.camera.position, centre);
     this.renderer.render(this.scene, this.camera);
   }
 }

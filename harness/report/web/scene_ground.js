@@ -1,7 +1,7 @@
 // What stands still: the plane with its bounds, obstacles and target.
 import {Box3, BoxGeometry, BufferGeometry, CircleGeometry, CylinderGeometry, EdgesGeometry, Group,
         LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry,
-        RingGeometry, Shape, ShapeGeometry, Vector3} from "three";
+        Ray, RingGeometry, Shape, ShapeGeometry, Vector3} from "three";
 
 const kObstacleHeight = 0.4;   // m, at least; higher than the vehicle
 const kWallHeight = 0.1;       // m
@@ -9,6 +9,7 @@ const kWallThickness = 0.06;   // m
 const kPostHeight = 0.75;      // m, of the target's flag, at least
 const kMargin = 0.12;          // of the area, that is shown about it
 const kMostGridLines = 40;
+const kSeenThrough = 0.35;     // opacity
 
 const gridStep = (length) => {
   const least = length / kMostGridLines;
@@ -40,13 +41,14 @@ export function gridAbout(box, colours) {
   const group = new Group();
   const height = Math.min(box.min.z, 0);
   group.add(grid(area, height, colours.of("var(--edge)")));
-  return {group, height, extent: () => box};
+  return {group, height, extent: () => box, clear: () => {}};
 }
 
 export class Ground {
   constructor(data, vehicleHeight, colours) {
     this.height = 0;
     this.group = new Group();
+    this.obstacles = [];
     this.colours = colours;
     const [xl, xh, yl, yh] = data.area;
     const margin = kMargin * Math.max(xh - xl, yh - yl);
@@ -100,12 +102,28 @@ export class Ground {
   obstacle(sides, partial) {
     if (sides[1] <= sides[0] || sides[3] <= sides[2]) return;
     const material = new MeshLambertMaterial({color: this.colours.of("var(--obstacle)"), transparent: partial,
-                                              opacity: partial ? 0.35 : 1, depthWrite: !partial});
+                                              opacity: partial ? kSeenThrough : 1, depthWrite: !partial});
     const box = this.box(sides, this.obstacleHeight, material);
+    if (!partial) this.obstacles.push({material, box: new Box3().setFromObject(box)});
     const edges = new LineSegments(new EdgesGeometry(box.geometry),
                                    new LineBasicMaterial({color: this.colours.of("var(--soft)")}));
     edges.position.copy(box.position);
     this.group.add(edges);
+  }
+
+  // Makes translucent what stands between two places: the eye and the vehicle.
+  clear(from, to) {
+    const way = to.clone().sub(from);
+    const ray = new Ray(from, way.clone().normalize());
+    const met = new Vector3();
+    for (const {material, box} of this.obstacles) {
+      const hides = ray.intersectBox(box, met) !== null && met.distanceTo(from) < way.length();
+      if (material.transparent === hides) continue;
+      material.transparent = hides;
+      material.opacity = hides ? kSeenThrough : 1;
+      material.depthWrite = !hides;
+      material.needsUpdate = true;
+    }
   }
 
   target(x, y, radius) {

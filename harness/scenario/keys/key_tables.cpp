@@ -9,6 +9,7 @@
 #include "harness/scenario/keys/key_words.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/plant_mapping_keys.hpp"
+#include "harness/text/unit_text.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -55,14 +56,6 @@ void add_rows(std::vector<KeyRow>& rows, const std::vector<KeyDescription>& keys
       add_rows(rows, mapping->keys, path + ".");
     }
   }
-}
-
-/// An SI symbol as it is printed: "m/s²" of "m/s^2".
-std::string printed_unit(std::string unit) {
-  for (std::size_t at = unit.find("^2"); at != std::string::npos; at = unit.find("^2")) {
-    unit.replace(at, 2, "²");
-  }
-  return unit;
 }
 
 std::string printed_number(double value) {

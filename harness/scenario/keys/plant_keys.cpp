@@ -20,12 +20,7 @@ constexpr double kShortestSimulatorStep = 1e-6;  // s
 // The vehicle that drives, or is drawn for, a system unless the scenario names another. One that
 // has no place in the plane cannot be drawn without its own simulation.
 std::string default_mjcf(const models::SystemDescription& system, const std::string& kind) {
-  if (kind != "mujoco" && system.position_x < 0) return "";
-  std::string farthest;
-  for (const ShippedPlant& plant : shipped_plants()) {
-    if (plant.system == system.name) farthest = plant.mjcf;
-  }
-  return farthest;
+  return kind != "mujoco" && system.position_x < 0 ? "" : default_vehicle(system.name);
 }
 
 void read_mjcf(ScenarioReading& reading, Section& section, const KeyDescription& about) {

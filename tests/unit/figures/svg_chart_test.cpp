@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "harness/text/text_width.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
@@ -25,6 +26,23 @@ TEST(Axis, ticks_are_at_round_numbers_and_span_the_values) {
   EXPECT_EQ(ticks.front().label, "0");
   EXPECT_EQ(ticks[1].label, "2");
   EXPECT_EQ(ticks.back().label, "10");
+}
+
+TEST(Axis, a_power_of_ten_that_labels_share_is_said_once) {
+  EXPECT_EQ(common_power(rounded_axis({0.0, 2.2e-6}, 5), 5), -6);
+  EXPECT_EQ(common_power(rounded_axis({0.0, 2.4e9}, 5), 5), 9);
+  EXPECT_EQ(common_power(rounded_axis({0.0, 90'000.0}, 5), 5), 0);
+  EXPECT_EQ(common_power(rounded_axis({0.0, 0.01}, 5), 5), 0);
+  EXPECT_EQ(common_power(log_axis({1e-8, 1e8}, 1e-12), 5), 0);
+
+  Chart chart{.title = "t", .x_label = "x", .y_label = "pole_angle (rad)"};
+  chart.series = {{.name = "s", .x = {0.0, 1.0}, .y = {0.0, 2.2e-6}}};
+  const std::string drawing = chart_drawing(chart);
+  EXPECT_TRUE(contains(drawing, ">pole_angle (10⁻⁶ rad)<"));
+  EXPECT_TRUE(contains(drawing, ">1.5<"));
+  EXPECT_FALSE(contains(drawing, "× 10"));
+  chart.y_label = "share (–)";
+  EXPECT_TRUE(contains(chart_drawing(chart), ">share (10⁻⁶)<"));
 }
 
 TEST(Axis, equal_values_still_have_an_axis_about_them) {
@@ -229,6 +247,22 @@ TEST(ChartFigure, is_told_in_words) {
   EXPECT_TRUE(testing::contains(chart_drawing(chart), "aria-label=\"Risk: cost\""));
   chart.in_words = "strict: \"10\"";
   EXPECT_TRUE(testing::contains(chart_drawing(chart), "aria-label=\"strict: &quot;10&quot;\""));
+}
+
+TEST(ChartFigure, the_name_at_the_end_of_an_axis_stays_within_the_drawing) {
+  Chart chart{
+      .title = "t",
+      .x_label = "state",
+      .y_label = "y",
+      .x_names = {"position (m)", "velocity (m/s)", "pole_angle (rad)", "angular_velocity (rad/s)"},
+      .x_includes = {0.5, 4.5}};
+  chart.series = {{.name = "s", .mark = Mark::kPoints, .x = {1.0, 4.0}, .y = {0.0, 1.0}}};
+  const std::string drawing = chart_drawing(chart);
+  const std::size_t end = drawing.find(">angular_velocity");
+  ASSERT_NE(end, std::string::npos);
+  const std::size_t begin = drawing.rfind(" x=\"", end) + 4;
+  const double middle = std::stod(drawing.substr(begin));
+  EXPECT_LE(middle + 0.5 * estimated_width("angular_velocity (rad/s)", 14.5), kChartWidth + 0.1);
 }
 
 }  // namespace svg_chart_test

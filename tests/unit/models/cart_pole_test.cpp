@@ -1,8 +1,10 @@
-// What is particular to the pole on a cart: its equations of motion and its two equilibria.
+// What is particular to the pole on a cart: its equations of motion, their damping, and its two
+// equilibria.
 #include "models/dynamics/cart_pole.hpp"
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -59,6 +61,77 @@ TEST(CartPole, force_does_the_work_that_the_energy_gains) {
   EXPECT_NEAR(energy(model, state) - before, kForce * state[CartPole::kPosition], 1e-9);
 }
 
+TEST(CartPole, damping_takes_what_it_does_not_leave_to_the_energy) {
+  CartPole model = kModel;
+  model.cart_damping = 0.6;
+  model.pole_damping = 0.02;
+  model.time_step = 0.001;
+  State state(0.0, 1.5, 0.5, -1.0);
+  const double before = energy(model, state);
+  const auto loss = [&](const State& x) {
+    return model.cart_damping * x[CartPole::kVelocity] * x[CartPole::kVelocity] +
+           model.pole_damping * x[CartPole::kAngularVelocity] * x[CartPole::kAngularVelocity];
+  };
+  double lost = 0.0;
+  for (int k = 0; k < 2000; ++k) {
+    const double at_start = loss(state);
+    state = step_of(model, state, 0.0);
+    lost += 0.5 * model.time_step * (at_start + loss(state));
+  }
+  // The trapezoidal rule over 2 s: T² times the change of the loss's slope, some 40 W/s, over 12.
+  EXPECT_NEAR(energy(model, state), before - lost, 1e-5);
+  EXPECT_GT(lost, 1.0);
+}
+
+TEST(CartPole, cart_under_a_force_tends_to_force_over_damping) {
+  CartPole model = kModel;
+  model.cart_damping = 2.0;
+  model.pole_damping = 0.1;
+  State state(0.0, 0.0, kPi, 0.0);
+  for (int k = 0; k < 2000; ++k) state = step_of(model, state, 3.0);
+  EXPECT_NEAR(state[CartPole::kVelocity], 1.5, 1e-9);
+  EXPECT_NEAR(state[CartPole::kPoleAngle], kPi, 1e-9);
+}
+
+// Without damping nothing is computed for it: not even the sign of a zero changes.
+TEST(CartPole, damping_is_zero_by_default) {
+  const auto plain = make_dynamics("cart_pole", {}, 0.05);
+  const auto zero =
+      make_dynamics("cart_pole", {{"cart_damping", 0.0}, {"pole_damping", 0.0}}, 0.05);
+  std::mt19937_64 generator(5);
+  const StateBatch states = random_batch(generator, CartPole::kStateDim, 100, 3.0);
+  const StateBatch inputs = random_batch(generator, CartPole::kInputDim, 100, 10.0);
+  StateBatch first(states.rows(), states.cols());
+  StateBatch second(states.rows(), states.cols());
+  plain->step(states, inputs, first);
+  zero->step(states, inputs, second);
+  EXPECT_EQ(first, second);
+  for (Eigen::Index i = 0; i < states.cols(); ++i) {
+    EXPECT_EQ(first.col(i), step_of(kModel, states.col(i), inputs(0, i)));
+  }
+}
+
+TEST(CartPole, enclosures_of_a_damped_one_hold_its_jacobians) {
+  const auto damped =
+      make_dynamics("cart_pole", {{"cart_damping", 1.5}, {"pole_damping", 0.05}}, kTimeStep);
+  std::mt19937_64 generator(6);
+  const StateBatch centres = random_batch(generator, CartPole::kStateDim + 1, 50, 2.0);
+  const StateBatch offsets = random_batch(generator, CartPole::kStateDim + 1, 50, 1.0);
+  for (Eigen::Index i = 0; i < centres.cols(); ++i) {
+    const Eigen::VectorXd lower = centres.col(i).array() - 0.1;
+    const Eigen::VectorXd upper = centres.col(i).array() + 0.1;
+    const DerivativeBounds bounds = damped->derivative_bounds(lower, upper);
+    const Eigen::VectorXd inside = centres.col(i) + 0.1 * offsets.col(i);
+    Eigen::MatrixXd by_state(4, 4);
+    Eigen::MatrixXd by_input(4, 1);
+    damped->jacobians(inside.head(4), inside.tail(1), by_state, by_input);
+    Eigen::MatrixXd jacobian(4, 5);
+    jacobian << by_state, by_input;
+    EXPECT_TRUE((bounds.jacobian_lower.array() <= jacobian.array()).all()) << i;
+    EXPECT_TRUE((bounds.jacobian_upper.array() >= jacobian.array()).all()) << i;
+  }
+}
+
 TEST(CartPole, upright_is_an_equilibrium_that_it_falls_from) {
   EXPECT_EQ(step_of(kModel, State::Zero(), 0.0), State::Zero());
   State state(0.0, 0.0, 0.01, 0.0);
@@ -83,6 +156,14 @@ TEST(CartPole, push_moves_the_cart_forwards_and_tips_the_pole_backwards) {
 TEST(CartPole, senseless_parameters_are_refused) {
   for (const char* name : {"cart_mass", "pole_mass", "pole_half_length", "gravity"}) {
     for (const double value : {0.0, -1.0, std::nan("")}) {
+      EXPECT_THROW((void)make_dynamics("cart_pole", {{name, value}}, 0.1), std::invalid_argument);
+    }
+  }
+}
+
+TEST(CartPole, negative_damping_is_refused) {
+  for (const char* name : {"cart_damping", "pole_damping"}) {
+    for (const double value : {-0.1, std::nan("")}) {
       EXPECT_THROW((void)make_dynamics("cart_pole", {{name, value}}, 0.1), std::invalid_argument);
     }
   }

@@ -1,11 +1,14 @@
 // Plants in MuJoCo's own joints follow the equations of their systems, with the integrator's order.
 #include <cmath>
+#include <fstream>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "harness/random/random_numbers.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc::harness {
@@ -23,6 +26,7 @@ struct JointPlant {
   int order;                        // of convergence
   /// The system whose steps, made small, are the same equations in continuous time.
   std::string reference_system;
+  models::ParameterMap parameters{};  // of that system, besides the defaults
 };
 
 std::ostream& operator<<(std::ostream& out, const JointPlant& plant) { return out << plant.mjcf; }
@@ -42,8 +46,7 @@ Eigen::VectorXd input_of(const JointPlant& plant, int period) {
 /// The states at the ends of the periods, by small steps of the analytic system.
 std::vector<Eigen::VectorXd> analytic_states(const JointPlant& plant, int steps_per_period) {
   const auto model =
-      models::make_dynamics(plant.reference_system, default_parameters(plant.reference_system),
-                            kPeriod / steps_per_period);
+      models::make_dynamics(plant.reference_system, plant.parameters, kPeriod / steps_per_period);
   models::StateBatch state = vector_of(plant.start);
   models::StateBatch next = state;
   std::vector<Eigen::VectorXd> states;
@@ -59,10 +62,8 @@ std::vector<Eigen::VectorXd> analytic_states(const JointPlant& plant, int steps_
 }
 
 /// The largest deviation from `truth` over the periods and states.
-double plant_error(const JointPlant& plant, double time_step,
+double setup_error(const JointPlant& plant, const MujocoPlantSetup& setup,
                    const std::vector<Eigen::VectorXd>& truth) {
-  MujocoPlantSetup setup = shipped_setup(plant.system, plant.mjcf, kPeriod);
-  setup.time_step = time_step;
   const auto vehicle = make_mujoco_plant(setup);
   vehicle->reset(vector_of(plant.start));
   double error = 0.0;
@@ -74,6 +75,14 @@ double plant_error(const JointPlant& plant, double time_step,
         std::max(error, (step.state - truth[static_cast<std::size_t>(k)]).cwiseAbs().maxCoeff());
   }
   return error;
+}
+
+/// The same of the shipped file.
+double plant_error(const JointPlant& plant, double time_step,
+                   const std::vector<Eigen::VectorXd>& truth) {
+  MujocoPlantSetup setup = shipped_setup(plant.system, plant.mjcf, kPeriod);
+  setup.time_step = time_step;
+  return setup_error(plant, setup, truth);
 }
 
 class JointPlants : public ::testing::TestWithParam<JointPlant> {};
@@ -118,6 +127,34 @@ INSTANTIATE_TEST_SUITE_P(all, JointPlants,
                                                       .order = 4,
                                                       .reference_system = "cart_pole"}),
                          [](const auto& test) { return test.param.system; });
+
+// A file of another project's, whose joints are damped.
+TEST(JointPlants, a_damped_cart_pole_answers_as_the_damped_system) {
+  std::ostringstream stream;
+  stream << std::ifstream(QSMPC_SOURCE_DIR "/models/mjcf/cart_pole.xml").rdbuf();
+  const std::string slide = R"(<joint name="slide" )";
+  const std::string hinge = R"(<joint name="hinge" )";
+  std::string text = stream.str();
+  text.insert(text.find(slide) + slide.size(), R"(damping="2" )");
+  text.insert(text.find(hinge) + hinge.size(), R"(damping="0.05" )");
+  const testing::TemporaryFolder folder;
+
+  JointPlant plant{.system = "cart_pole",
+                   .mjcf = folder.file("damped.xml", text),
+                   .start = {0.5, -0.3, 2.0, 1.0},
+                   .input_scale = {10.0},
+                   .coarse_step = 0.01,
+                   .order = 4,
+                   .reference_system = "cart_pole",
+                   .parameters = {{"cart_damping", 2.0}, {"pole_damping", 0.05}}};
+  MujocoPlantSetup setup = shipped_setup(plant.system, "cart_pole.xml", kPeriod);
+  setup.mjcf = plant.mjcf;
+  setup.time_step = plant.coarse_step;
+  // Runge-Kutta of fourth order with steps of 0.01 s, over 2 s.
+  EXPECT_LT(setup_error(plant, setup, analytic_states(plant, 1000)), 1e-4);
+  plant.parameters = {};
+  EXPECT_GT(setup_error(plant, setup, analytic_states(plant, 1000)), 0.5);
+}
 
 TEST(JointPlants, the_slider_is_the_double_integrator) {
   const JointPlant plant{.system = "double_integrator",

@@ -139,9 +139,28 @@ TEST(ComparisonVerdict, names_the_farthest_plant) {
   }
   EXPECT_TRUE(
       testing::contains(comparison_verdict(comparison).sentences[0], "broke on every path"));
-  comparison.plants.pop_back();
+  car = comparison.plants[0];
   EXPECT_EQ(comparison_verdict(comparison).sentences[0],
             "Every plant is the model, but for rounding.");
+}
+
+TEST(ComparisonVerdict, speaks_of_a_single_plant_as_one) {
+  Comparison comparison = example();
+  comparison.plants.erase(comparison.plants.begin());
+  const std::string page = comparison_page(comparison);
+  for (const char* words :
+       {": a plant beside the model</h1>", "1 plant beside the model",
+        "✓ No certificate is exceeded<", "Under the plan the paths of mujoco_car diverge"}) {
+    EXPECT_TRUE(testing::contains(page, words)) << words;
+  }
+  for (const char* words : {"1 plants", "any plant", "of each ·", "Farthest"}) {
+    EXPECT_FALSE(testing::contains(page, words)) << words;
+  }
+  comparison.plants.front().exceeded_stages = {2};
+  EXPECT_EQ(comparison_verdict(comparison).title, "Certificates are exceeded");
+  comparison.plants = {example().plants.front()};
+  EXPECT_EQ(comparison_verdict(comparison).sentences[0],
+            "analytic is the model, but for rounding.");
 }
 
 TEST(ComparisonVerdict, stages_in_a_row_are_a_range) {

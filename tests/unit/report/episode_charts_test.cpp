@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "models/constants.hpp"
 #include "tests/support/example_trace.hpp"
 #include "tests/unit/report/page_checks.hpp"
 
@@ -70,6 +71,25 @@ TEST(EpisodeCharts, say_a_control_period_far_longer_than_all_solve_times) {
   }
   for (StepRecord& step : trace.steps) step.timing.total = 60.0;
   EXPECT_EQ(chart_of(trace, "Solve time against").rules.size(), 1U);
+}
+
+TEST(EpisodeCharts, budgets_of_very_different_sizes_are_on_a_logarithmic_axis) {
+  Trace trace = testing::example_trace({.steps = 5});
+  for (StepRecord& step : trace.steps) step.budgets.back().total = 0.4;
+  EXPECT_EQ(chart_of(trace, "Error budget").y_scale, Scale::kLinear);
+  trace.steps.front().budgets.back().total = 2e9;
+  const Chart chart = chart_of(trace, "Error budget");
+  EXPECT_EQ(chart.y_scale, Scale::kLog);
+  EXPECT_TRUE(contains(chart.note, "drawn at its foot")) << chart.note;
+  // One that is not finite is left out, and makes no scale.
+  trace.steps.front().budgets.back().total = kInfinity;
+  EXPECT_EQ(chart_of(trace, "Error budget").y_scale, Scale::kLinear);
+}
+
+TEST(EpisodeCharts, units_have_raised_powers) {
+  Trace trace = testing::example_trace({.steps = 2});
+  trace.system.inputs.front().unit = "m/s^2";
+  EXPECT_TRUE(contains(chart_of(trace, "Input: ").y_label, "(m/s²)"));
 }
 
 }  // namespace episode_charts_test

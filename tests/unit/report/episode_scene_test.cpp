@@ -150,6 +150,24 @@ TEST(EpisodeScene, of_a_system_without_a_place_in_the_plane_has_its_joints_at_ev
   EXPECT_TRUE(moved);
 }
 
+TEST(EpisodeScene, of_a_system_on_a_rail_shows_the_shipped_vehicle_where_none_is_named) {
+  Trace trace;
+  trace.scenario = load_scenario("double_integrator");
+  ASSERT_EQ(trace.scenario.plant.mjcf, "");
+  StepRecord step;
+  step.state = Eigen::Vector2d(0.0, 1.0);
+  step.input = Eigen::VectorXd::Zero(1);
+  step.disturbance = Eigen::Vector2d::Zero();
+  trace.steps.push_back(step);
+  trace.final_state = Eigen::Vector2d(0.1, 1.0);
+  const Trace described = testing::described(std::move(trace));
+  const nlohmann::json scene =
+      nlohmann::json::parse(episode_scene(EpisodeView(described), nullptr).data);
+  const auto places = numbers_of<float>(scene["places"]);
+  ASSERT_EQ(places.size(), 2 * kPlace);
+  EXPECT_NEAR(places[kPlace] - places[0], 0.1, kSinglePrecision);
+}
+
 TEST(EpisodePage, of_a_system_without_a_place_in_the_plane_has_no_ground_of_its_states) {
   const Trace trace = cart_trace();
   const std::string page = episode_page(EpisodeView(trace), {});

@@ -35,6 +35,13 @@ TEST(PlantChoice, the_same_name_is_another_file_for_another_system) {
               EndsWith("bicycle_car.xml"));
 }
 
+TEST(PlantChoice, mujoco_is_the_default_vehicle_where_the_scenario_names_none) {
+  const Scenario scenario = load_scenario("double_integrator");
+  ASSERT_EQ(scenario.plant.mjcf, "");
+  EXPECT_EQ(with_plant(scenario, "mujoco").plant.mjcf,
+            load_scenario("double_integrator", {"plant.kind=mujoco"}).plant.mjcf);
+}
+
 TEST(PlantChoice, a_mapping_and_a_time_step_stay_with_their_own_file) {
   const Scenario robot = load_scenario("differential_robot", {"plant.time_step=0.001"});
   ASSERT_TRUE(robot.plant.mapping.has_value());

@@ -71,5 +71,40 @@ TEST(RailFrames, clearance_of_the_driven_path_is_that_of_the_whole_state) {
   EXPECT_NEAR(frame.clearances.back(), 0.2, 1e-9);
 }
 
+/// How many pixels of the lines from `begin` on have the red of an alarm.
+int red_pixels(const render::Image& image, int begin, int end) {
+  int count = 0;
+  for (int y = begin; y < end; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const render::Pixel pixel = render::pixel_at(image, {x + 0.5, y + 0.5});
+      count += pixel.red > 180 && pixel.green < 70 && pixel.blue < 70 ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+TEST(RailFrames, the_outcome_does_not_hide_an_upright_pole) {
+  Trace trace;
+  trace.scenario = load_scenario("cart_pole_balance");
+  for (int k = 0; k < 3; ++k) {
+    StepRecord step;
+    step.time = trace.scenario.time_step * k;
+    step.state = Eigen::Vector4d::Zero();
+    step.input = Eigen::VectorXd::Zero(1);
+    step.disturbance = Eigen::Vector4d::Zero();
+    trace.steps.push_back(step);
+  }
+  trace.final_state = Eigen::Vector4d::Zero();
+  trace.outcome = Outcome::kCollision;  // whose words are on red
+  trace = testing::described(std::move(trace));
+  const EpisodeView view(trace);
+  const EpisodePictures pictures(view, {.width = 640, .height = 360});
+  EpisodePainter painter(pictures);
+  render::Image image;
+  painter.draw(pictures.duration(), image);
+  EXPECT_EQ(red_pixels(image, 0, image.height / 2), 0);
+  EXPECT_GT(red_pixels(image, image.height / 2, image.height), 500);
+}
+
 }  // namespace rail_frames_test
 }  // namespace qsmpc::harness
