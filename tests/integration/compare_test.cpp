@@ -80,7 +80,7 @@ TEST(Compare, report_makes_the_page_again_from_the_folder) {
   ASSERT_EQ(compare("dubins_corridor", folder.path(), {"--plant", "mujoco_car"}).exit_code, 0);
   const std::string page = folder.path() + "/report.html";
   const std::string before = read_text(page);
-  EXPECT_THAT(before, HasSubstr("Farthest from the model: mujoco_car"));
+  EXPECT_THAT(before, HasSubstr("Under the plan the paths of mujoco_car diverge"));
   fs::remove(page);
   const ProcessResult result = run_qsmpc({"report", folder.path()});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
