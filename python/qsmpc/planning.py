@@ -45,10 +45,12 @@ def _moment(
 class Plan:
     """What a controller has decided, and what is certified of it."""
 
-    __slots__ = ("core",)
+    __slots__ = ("core", "no_bound")
 
-    def __init__(self, plan: core.Plan) -> None:
+    def __init__(self, plan: core.Plan, no_bound: str = "") -> None:
         self.core = plan
+        #: Why the certificates are no upper bounds; empty where they are.
+        self.no_bound = no_bound
 
     @property
     def input(self) -> Floats:
@@ -119,7 +121,10 @@ class Plan:
         return self.core.solve_ms
 
     def __repr__(self) -> str:
-        words = f", P(unsafe) <= {self.horizon_bound:.3g}" if self.certificates["value"].size else ""
+        words = ""
+        if self.certificates["value"].size:
+            sign = "no bound:" if self.no_bound else "<="
+            words = f", P(unsafe) {sign} {self.horizon_bound:.3g}"
         return f"<qsmpc.Plan input {self.input}, {self.status or 'no solver'}{words}>"
 
 
@@ -170,7 +175,7 @@ class Planner:
         moment = _moment(
             self.scenario, situation, mean, covariance, observation, period, periods_left, deadline
         )
-        return Plan(self._core.decide(moment, self._certify))
+        return Plan(self._core.decide(moment, self._certify), self.scenario.no_bound)
 
 
 class Certifier:
@@ -199,7 +204,9 @@ class Certifier:
             self.scenario, None, mean, covariance, observation, period, _UNKNOWN, math.inf
         )
         all_gains: Any = None if gains is None else np.ascontiguousarray(gains, float)
-        return Plan(self._core.plan(np.asarray(inputs, float), all_gains, moment))
+        return Plan(
+            self._core.plan(np.asarray(inputs, float), all_gains, moment), self.scenario.no_bound
+        )
 
     def input(
         self,
@@ -215,4 +222,4 @@ class Certifier:
         moment = _moment(
             self.scenario, None, mean, covariance, observation, period, _UNKNOWN, math.inf
         )
-        return Plan(self._core.input(np.asarray(input, float), moment))
+        return Plan(self._core.input(np.asarray(input, float), moment), self.scenario.no_bound)

@@ -3,6 +3,9 @@
 #include <atomic>
 #include <string>
 
+#include "harness/assembly/memory_need.hpp"
+#include "harness/errors.hpp"
+
 namespace qsmpc::python {
 namespace {
 
@@ -51,6 +54,13 @@ InterruptScope::~InterruptScope() {
 
 void InterruptScope::raise_if_interrupted() {
   if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+void refuse_beyond_memory(const harness::Scenario& scenario, int count) {
+  const auto problem = harness::memory_problem(scenario, count, harness::usable_memory());
+  if (!problem) return;
+  throw harness::InputError(
+      {.file = scenario.name, .found = problem->found, .expected = problem->expected});
 }
 
 std::string text_of(const nb::handle& value) { return nb::str(value).c_str(); }

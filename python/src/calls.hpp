@@ -7,6 +7,7 @@
 
 #include <nanobind/nanobind.h>
 
+#include "harness/scenario/scenario.hpp"
 #include "harness/threads/interruption.hpp"
 
 namespace qsmpc::python {
@@ -48,6 +49,10 @@ auto without_lock(const Work& work) {
     return result;
   }
 }
+
+/// Throws InputError where `count` drives of `scenario` at the same time need more memory than
+/// there is, before it is asked for.
+void refuse_beyond_memory(const harness::Scenario& scenario, int count = 1);
 
 /// str(value). To be called with the interpreter's lock.
 [[nodiscard]] std::string text_of(const nanobind::handle& value);

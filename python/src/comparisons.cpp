@@ -1,4 +1,5 @@
 // What `qsmpc compare` computes.
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -22,6 +23,7 @@
 #include "harness/report/comparison_charts.hpp"
 #include "harness/report/comparison_page.hpp"
 #include "harness/threads/interruption.hpp"
+#include "harness/threads/workers.hpp"
 
 namespace qsmpc::python {
 namespace {
@@ -33,6 +35,7 @@ using harness::Comparison;
 Comparison compare(const harness::Scenario& scenario, const std::vector<std::string>& plants,
                    int episodes, std::int64_t paths, int threads) {
   if (episodes < 1 || paths < 1) throw nb::value_error("episodes and paths are at least 1");
+  refuse_beyond_memory(scenario, std::min(harness::usable_threads(threads), episodes));
   return without_lock([&] {
     std::optional<Comparison> comparison = harness::compare_plants(
         scenario, {.plants = plants,

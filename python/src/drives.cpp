@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -48,6 +49,7 @@ class OpenDrive {
 
   void begin(std::uint64_t seed, std::optional<std::uint64_t> plant_seed, bool certify) {
     drive_.begin({.seed = seed, .plant_seed = plant_seed, .certify = certify});
+    has_begun_ = true;
   }
 
   Period advance(const Eigen::VectorXd& input) {
@@ -60,11 +62,11 @@ class OpenDrive {
     return period;
   }
 
-  [[nodiscard]] double clearance() const { return controller::clearance(drive_.state(), unsafe_); }
+  [[nodiscard]] double clearance() const { return controller::clearance(drive().state(), unsafe_); }
 
   /// What is seen of the state.
   [[nodiscard]] const Eigen::VectorXd& observation() const {
-    return drive_.situation().observation;
+    return drive().situation().observation;
   }
 
   /// Nothing while the episode goes on.
@@ -74,12 +76,18 @@ class OpenDrive {
   }
 
   [[nodiscard]] const Scenario& scenario() const { return *scenario_; }
-  [[nodiscard]] const harness::Drive& drive() const { return drive_; }
+  /// Throws std::invalid_argument where no episode has begun.
+  [[nodiscard]] const harness::Drive& drive() const {
+    if (!has_begun_) throw std::invalid_argument("no episode has begun: reset it first");
+    return drive_;
+  }
+  [[nodiscard]] const models::Dynamics& model() const { return drive_.model(); }
 
  private:
   std::unique_ptr<const Scenario> scenario_;
   controller::UnsafeSet unsafe_;
   harness::Drive drive_;
+  bool has_begun_ = false;
   controller::Decision decision_;
 };
 
@@ -103,7 +111,7 @@ class DriveBatch {
     if (inputs.rows() != count || std::ssize(seeds) != count) {
       throw nb::value_error("a batch takes an input and a seed for each of its drives");
     }
-    RowMatrix observations(count, drives_.front()->drive().model().state_dim());
+    RowMatrix observations(count, drives_.front()->model().state_dim());
     Eigen::VectorXd costs = Eigen::VectorXd::Zero(count);
     Eigen::VectorXd certified = Eigen::VectorXd::Constant(count, kNotANumber);
     Eigen::VectorXd clearances(count);

@@ -248,6 +248,7 @@ Trace drive(const Scenario& scenario, const RunSettings& settings,
 std::unique_ptr<Episode> run(const Scenario& scenario, const nb::object& controller,
                              std::uint64_t seed, std::optional<std::uint64_t> plant_seed,
                              const std::string& out, const nb::object& on_step) {
+  refuse_beyond_memory(scenario);
   const RunSettings settings{.seed = seed, .plant_seed = plant_seed, .out = out};
   std::optional<harness::ControllerObject> object;
   if (!controller.is_none()) object = controller_object(controller);

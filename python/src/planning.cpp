@@ -69,11 +69,16 @@ Moment moment_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
   return moment;
 }
 
+std::unique_ptr<const Scenario> within_memory(Scenario scenario) {
+  refuse_beyond_memory(scenario);
+  return std::make_unique<const Scenario>(std::move(scenario));
+}
+
 /// The controller of a scenario, outside of any drive.
 class Planner {
  public:
   explicit Planner(Scenario scenario)
-      : scenario_(std::make_unique<const Scenario>(std::move(scenario))),
+      : scenario_(within_memory(std::move(scenario))),
         drive_(*scenario_),
         controller_(harness::make_controller(*scenario_, drive_.model())) {}
 

@@ -29,11 +29,13 @@ using harness::Scenario;
 
 PredictionReport predict(Scenario scenario, const std::optional<RowMatrix>& inputs,
                          std::int64_t monte_carlo) {
+  if (monte_carlo < 0) throw nb::value_error("monte_carlo: a number of paths below 0");
   harness::PredictionOptions options;
   if (inputs) {
     options.inputs = as_columns(*inputs);
     scenario.controller.horizon = static_cast<int>(inputs->rows());
   }
+  refuse_beyond_memory(scenario);
   options.monte_carlo = {.samples = monte_carlo,
                          .should_stop = [] { return harness::interrupts() > 0; }};
   return without_lock([&] { return harness::predict_scenario(scenario, options); });

@@ -87,6 +87,15 @@ Described units_of(const std::vector<models::Coordinate>& coordinates) {
   return described;
 }
 
+double cost_of(const Scenario& scenario, const Eigen::VectorXd& state,
+               const Eigen::VectorXd& input) {
+  if (state.size() != scenario.target.state.size() ||
+      input.size() != scenario.controller.input_lower.size()) {
+    throw nb::value_error("cost: expected a number for each state, and one for each input");
+  }
+  return harness::period_cost(scenario, state, input);
+}
+
 void add_scenario_class(nb::module_& module) {
   nb::class_<Scenario>(module, "Scenario", "An experiment, checked, with its defaults filled in.")
       .def_ro("name", &Scenario::name)
@@ -119,7 +128,7 @@ void add_scenario_class(nb::module_& module) {
                    })
       .def_prop_ro("no_bound", &harness::why_no_bound,
                    "Why certificates are no bounds here; empty where they are.")
-      .def("cost", &harness::period_cost, "state"_a, "input"_a)
+      .def("cost", &cost_of, "state"_a, "input"_a)
       .def("changed", &changed, "overrides"_a)
       .def("with_seed", &with_seed, "seed"_a)
       .def("to_yaml", &harness::to_yaml)

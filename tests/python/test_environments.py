@@ -125,3 +125,12 @@ def test_certificates_that_are_no_bounds_are_not_told():
     env = qsmpc.envs.Environment(noisy)
     env.reset(seed=1)
     assert np.isnan(env.step([0.0])[4]["certified"])
+
+
+def test_a_step_before_a_reset_is_refused(planar):
+    with pytest.raises(ValueError, match="reset"):
+        qsmpc.envs.Environment(planar).step([0.0])
+    with pytest.raises(ValueError, match="reset"):
+        qsmpc.envs.VectorEnvironment(2, planar).step(np.zeros((2, 1)))
+    with pytest.raises(ValueError, match="reset"):
+        qsmpc.envs.Environment(planar, render_mode="rgb_array").render()

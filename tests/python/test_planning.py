@@ -91,3 +91,26 @@ def test_a_campaign_is_driven_and_its_store_is_arrays(small, tmp_path):
     assert again.status()["done"] == 8
     with pytest.raises(qsmpc.InputError):
         qsmpc.open_campaign(tmp_path)
+
+
+def test_what_needs_more_memory_than_there_is_is_refused(small):
+    huge = small.set({"controller.horizon": 1000, "controller.quantisation.compressed": 100_000,
+                      "controller.quantisation.state": 100_000, "controller.quantisation.noise": 100_000})
+    for ask in (qsmpc.run, qsmpc.predict, qsmpc.Planner):
+        with pytest.raises(qsmpc.InputError, match="memory|GB|GiB"):
+            ask(huge)
+
+
+def test_wrong_numbers_are_refused(small):
+    with pytest.raises(ValueError):
+        small.cost([1.0], [1.0])
+    with pytest.raises(ValueError):
+        qsmpc.predict(small, monte_carlo=-1)
+
+
+def test_a_plan_says_where_its_certificates_are_no_bounds(small):
+    assert "<=" in repr(qsmpc.Planner(small).decide())
+    noisy = small.set(
+        {"disturbance.sensor": [0.01, 0.01, 0.001], "estimator.kind": "last_measurement"}
+    )
+    assert "no bound" in repr(qsmpc.Planner(noisy).decide())
