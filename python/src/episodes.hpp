@@ -5,6 +5,8 @@
 #include <string>
 #include <utility>
 
+#include <nanobind/nanobind.h>
+
 #include "harness/trace/episode_view.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -22,5 +24,8 @@ class Episode {
   std::unique_ptr<const harness::Trace> trace_;
   harness::EpisodeView view_;
 };
+
+/// Adds what of an episode is arrays to its class.
+void add_episode_arrays(nanobind::class_<Episode>& type);
 
 }  // namespace qsmpc::python
