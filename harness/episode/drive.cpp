@@ -17,13 +17,13 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
-#include "harness/random/random_numbers.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/interruption.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/version.hpp"
 #include "models/constants.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -100,8 +100,8 @@ struct Drive::Parts {
     trace = header_of(scenario, model->description(), options.seed);
     if (!vehicle_digest) vehicle_digest = digest_of(scenario);
     trace.vehicle_digest = *vehicle_digest;
-    const GaussianSampler initial(belief.mean, belief.covariance);
-    state = initial.sample({.seed = options.seed, .stream = RandomStream::kInitialState});
+    const models::GaussianSampler initial(belief.mean, belief.covariance);
+    state = initial.sample({.seed = options.seed, .stream = models::RandomStream::kInitialState});
     guarded([&] {
       plant = make_plant(scenario, draw_variation(scenario.disturbance, plant_seed()));
       trace.motion.push_back(plant->reset(state));
@@ -154,7 +154,7 @@ struct Drive::Parts {
   [[nodiscard]] Eigen::VectorXd seen() const {
     if (scenario.disturbance.sensor.isZero(0.0)) return state;
     return state + sensor.sample({.seed = options.seed,
-                                  .stream = RandomStream::kSensor,
+                                  .stream = models::RandomStream::kSensor,
                                   .step = static_cast<std::uint64_t>(period)});
   }
 
@@ -222,7 +222,7 @@ struct Drive::Parts {
     StepRecord& record = trace.steps.back();
     record.state = state;
     record.disturbance = disturbance.sample({.seed = plant_seed(),
-                                             .stream = RandomStream::kDisturbance,
+                                             .stream = models::RandomStream::kDisturbance,
                                              .step = static_cast<std::uint64_t>(period)});
     record.residual = unknown_residual(state.size());
     const auto start = Clock::now();
@@ -259,8 +259,8 @@ struct Drive::Parts {
   controller::PlannerSettings settings;
   std::unique_ptr<const controller::Estimator> estimator;
   controller::DecisionMotion motions;
-  GaussianSampler disturbance;
-  GaussianSampler sensor;
+  models::GaussianSampler disturbance;
+  models::GaussianSampler sensor;
   std::optional<std::string> vehicle_digest;  // once it is known
   // Of the episode at hand.
   DriveOptions options;

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -76,9 +76,9 @@ Eigen::MatrixXd draws(Eigen::Index units, std::uint64_t seed) {
   Eigen::MatrixXd times = Eigen::MatrixXd::Zero(kReplicates, units);
   for (int n = 0; n < kReplicates; ++n) {
     const Eigen::VectorXd uniform =
-        uniform_sample(units, {.seed = seed,
-                               .episode = kFirstReplicate + static_cast<std::uint64_t>(n),
-                               .stream = RandomStream::kPrediction});
+        models::uniform_sample(units, {.seed = seed,
+                                       .episode = kFirstReplicate + static_cast<std::uint64_t>(n),
+                                       .stream = models::RandomStream::kPrediction});
     for (const double u : uniform) {
       // u is in (0, 1].
       const auto drawn = static_cast<Eigen::Index>(std::ceil(u * static_cast<double>(units))) - 1;

@@ -54,10 +54,10 @@ PathSource::PathSource(const controller::Policy& policy, const controller::Gauss
       initial_(belief.mean, belief.covariance),
       noise_(Eigen::VectorXd::Zero(belief.mean.size()), noise_covariance) {}
 
-RandomKey PathSource::key(std::int64_t path, Eigen::Index step) const {
+models::RandomKey PathSource::key(std::int64_t path, Eigen::Index step) const {
   return {.seed = numbers_.seed,
           .episode = numbers_.first + static_cast<std::uint64_t>(path),
-          .stream = RandomStream::kPrediction,
+          .stream = models::RandomStream::kPrediction,
           .step = static_cast<std::uint64_t>(step)};
 }
 

@@ -15,9 +15,9 @@
 #include "controller/parallel.hpp"
 #include "controller/prediction/policy.hpp"
 #include "harness/mismatch/plant_pool.hpp"
-#include "harness/random/random_numbers.hpp"
 #include "harness/threads/shared_work.hpp"
 #include "models/dynamics/dynamics.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 
@@ -44,12 +44,12 @@ class PathSource {
   [[nodiscard]] Eigen::VectorXd disturbance(std::int64_t path, Eigen::Index stage) const;
 
  private:
-  [[nodiscard]] RandomKey key(std::int64_t path, Eigen::Index step) const;
+  [[nodiscard]] models::RandomKey key(std::int64_t path, Eigen::Index step) const;
 
   const controller::Policy& policy_;
   PathNumbers numbers_;
-  GaussianSampler initial_;
-  GaussianSampler noise_;
+  models::GaussianSampler initial_;
+  models::GaussianSampler noise_;
 };
 
 /// The states of `count` paths of the model at stages 0 … horizon, each state_dim x count.

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 
@@ -12,8 +12,9 @@ bool varies(const Scenario::Disturbance& disturbance) {
 
 PlantVariation draw_variation(const Scenario::Disturbance& disturbance, std::uint64_t seed,
                               std::uint64_t episode) {
-  const Eigen::VectorXd normal = standard_normal_sample(
-      3, {.seed = seed, .episode = episode, .stream = RandomStream::kParameters, .step = 0});
+  const Eigen::VectorXd normal = models::standard_normal_sample(
+      3,
+      {.seed = seed, .episode = episode, .stream = models::RandomStream::kParameters, .step = 0});
   return {.friction = std::exp(disturbance.friction * normal[0]),
           .mass = std::exp(disturbance.mass * normal[1]),
           .wheelbase = std::exp(disturbance.wheelbase * normal[2])};

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "controller/regions/unsafe_set.hpp"
-#include "harness/random/random_numbers.hpp"
 #include "harness/threads/workers.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -50,10 +50,10 @@ class PathSimulation {
   [[nodiscard]] bool stopped() const { return stopped_; }
 
  private:
-  [[nodiscard]] RandomKey key(std::int64_t path, Eigen::Index stage) const {
+  [[nodiscard]] models::RandomKey key(std::int64_t path, Eigen::Index stage) const {
     return {.seed = options_.seed,
             .episode = static_cast<std::uint64_t>(path),
-            .stream = RandomStream::kPrediction,
+            .stream = models::RandomStream::kPrediction,
             .step = static_cast<std::uint64_t>(stage)};
   }
 
@@ -88,8 +88,8 @@ class PathSimulation {
   const controller::PredictedMotion& motion_;
   controller::UnsafeSet unsafe_;
   const MonteCarloOptions& options_;
-  GaussianSampler initial_;
-  GaussianSampler noise_;
+  models::GaussianSampler initial_;
+  models::GaussianSampler noise_;
   std::atomic<std::int64_t> next_ = 0;  // first path that no thread has taken
   std::atomic<std::int64_t> done_ = 0;
   std::atomic<bool> stopped_ = false;

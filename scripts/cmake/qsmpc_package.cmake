@@ -5,7 +5,7 @@
 
 set(qsmpc_rooms
   qsmpc_models qsmpc_controller qsmpc_render
-  qsmpc_text qsmpc_errors qsmpc_files qsmpc_statistics qsmpc_random qsmpc_threads qsmpc_mujoco
+  qsmpc_text qsmpc_errors qsmpc_files qsmpc_statistics qsmpc_threads qsmpc_mujoco
   qsmpc_scenario qsmpc_control qsmpc_assembly qsmpc_plant qsmpc_trace qsmpc_episode qsmpc_video)
 
 # Made of what the rooms were compiled to. Their archives are linked for the libraries that they need.

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "harness/random/random_numbers.hpp"
 #include "models/constants.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -67,8 +67,8 @@ const std::array<NamedValue, 6>& values() {
 void poisson_weights(std::uint64_t seed, Eigen::ArrayXd& out) {
   static_assert(kBootstrapReplicates % kDrawsPerWord == 0);
   std::array<std::uint64_t, kBootstrapReplicates / kDrawsPerWord> words{};
-  random_words({.seed = kBootstrapSeed, .episode = seed, .stream = RandomStream::kBootstrap},
-               words);
+  models::random_words(
+      {.seed = kBootstrapSeed, .episode = seed, .stream = models::RandomStream::kBootstrap}, words);
   constexpr std::uint64_t kMask = (1U << kDrawBits) - 1U;
   out.resize(kBootstrapReplicates);
   Eigen::Index replicate = 0;

@@ -7,7 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace paired_difference_test {
@@ -154,7 +154,7 @@ BootstrapMean bootstrapped(const Eigen::VectorXd& sample, std::uint64_t first_se
 TEST(BootstrapMean, has_the_interval_of_a_normal_sample) {
   constexpr int kSize = 4000;
   const Eigen::VectorXd sample =
-      (3.0 + 2.0 * standard_normal_sample(kSize, {.seed = 5}).array()).matrix();
+      (3.0 + 2.0 * models::standard_normal_sample(kSize, {.seed = 5}).array()).matrix();
   const BootstrapMean mean = bootstrapped(sample, 0);
   const double deviation = std::sqrt((sample.array() - sample.mean()).square().mean() / kSize);
   const double quantile = boost::math::quantile(boost::math::normal(), 1.0 - kCampaignTail);
@@ -174,7 +174,7 @@ TEST(BootstrapMean, has_an_interval_that_covers_the_true_mean) {
   int missed = 0;
   for (std::uint64_t n = 0; n < kSamples; ++n) {
     const Eigen::VectorXd sample =
-        -uniform_sample(kSize, {.seed = 11, .episode = n}).array().log().matrix();
+        -models::uniform_sample(kSize, {.seed = 11, .episode = n}).array().log().matrix();
     const RateInterval interval = bootstrapped(sample, n * kSize).interval();
     missed += interval.lower > 1.0 || interval.upper < 1.0 ? 1 : 0;
   }

@@ -6,14 +6,15 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace measured_error_test {
 
 Eigen::MatrixXd normal_residuals(std::uint64_t seed, std::uint64_t unit, Eigen::Index periods,
                                  double deviation) {
-  return deviation * standard_normal_sample(periods, {.seed = seed, .episode = unit}).transpose();
+  return deviation *
+         models::standard_normal_sample(periods, {.seed = seed, .episode = unit}).transpose();
 }
 
 TEST(MeasuredModelError, of_residuals_that_are_all_alike_has_no_margin) {
@@ -45,7 +46,7 @@ TEST(MeasuredModelError, episodes_are_what_is_independent) {
   ResidualSample constant;
   ResidualSample changing;
   for (std::uint64_t n = 0; n < 20; ++n) {
-    const double offset = standard_normal_sample(1, {.seed = 2, .episode = n})[0];
+    const double offset = models::standard_normal_sample(1, {.seed = 2, .episode = n})[0];
     constant.units.push_back(Eigen::MatrixXd::Constant(1, 50, offset));
     changing.units.push_back(normal_residuals(2, n, 50, 1.0));
   }

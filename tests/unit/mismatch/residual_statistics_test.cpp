@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace residual_statistics_test {
@@ -69,7 +69,8 @@ TEST(ResidualStatistics, periods_of_different_episodes_are_no_neighbours) {
 std::vector<Eigen::MatrixXd> random_episodes(std::uint64_t seed, double memory) {
   std::vector<Eigen::MatrixXd> episodes;
   for (std::uint64_t n = 0; n < 20; ++n) {
-    Eigen::MatrixXd episode = standard_normal_sample(40, {.seed = seed, .episode = n}).transpose();
+    Eigen::MatrixXd episode =
+        models::standard_normal_sample(40, {.seed = seed, .episode = n}).transpose();
     for (Eigen::Index k = 1; k < episode.cols(); ++k) {
       episode(0, k) += memory * episode(0, k - 1);
     }

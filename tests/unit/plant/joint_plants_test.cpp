@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
@@ -37,9 +37,10 @@ Eigen::VectorXd vector_of(const std::vector<double>& values) {
 
 Eigen::VectorXd input_of(const JointPlant& plant, int period) {
   const Eigen::VectorXd scale = vector_of(plant.input_scale);
-  const RandomKey key{
-      .seed = 4, .stream = RandomStream::kInput, .step = static_cast<std::uint64_t>(period)};
-  return scale.cwiseProduct(2.0 * uniform_sample(scale.size(), key).array().matrix() -
+  const models::RandomKey key{.seed = 4,
+                              .stream = models::RandomStream::kInput,
+                              .step = static_cast<std::uint64_t>(period)};
+  return scale.cwiseProduct(2.0 * models::uniform_sample(scale.size(), key).array().matrix() -
                             Eigen::VectorXd::Ones(scale.size()));
 }
 

@@ -6,8 +6,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
 #include "models/dynamics/dynamics.hpp"
+#include "models/random/random_numbers.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
 namespace qsmpc::harness {
@@ -16,8 +16,8 @@ namespace mujoco_plant_motion_test {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double random_yaw_rate(std::uint64_t seed, std::uint64_t step) {
-  const RandomKey key{.seed = seed, .stream = RandomStream::kInput, .step = step};
-  return 4.0 * uniform_sample(1, key)[0] - 2.0;
+  const models::RandomKey key{.seed = seed, .stream = models::RandomStream::kInput, .step = step};
+  return 4.0 * models::uniform_sample(1, key)[0] - 2.0;
 }
 
 TEST(MujocoPlantMotion, drives_straight_as_the_model_does) {
@@ -94,7 +94,8 @@ TEST(MujocoPlantMotion, residual_of_one_step_is_small_under_random_inputs) {
 TEST(MujocoPlantMotion, stays_upright_on_its_wheels_for_a_minute_of_random_inputs_and_kicks) {
   const auto car = make_car();
   car->reset(pose(0.0, 0.0, 0.0));
-  const GaussianSampler noise(no_disturbance(), Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal());
+  const models::GaussianSampler noise(no_disturbance(),
+                                      Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal());
   for (int k = 0; k < 600; ++k) {
     const Eigen::VectorXd kick = noise.sample({.seed = 2, .step = static_cast<std::uint64_t>(k)});
     const PlantStep step = car->advance(yaw_rate(random_yaw_rate(2, k)), kick);
@@ -113,7 +114,7 @@ TEST(MujocoPlantMotion, a_kick_has_the_covariance_that_was_asked_for) {
   car->reset(pose(0.0, 0.0, 0.0));
   Eigen::Matrix3d covariance;
   covariance << 0.01, 0.004, 0.0, 0.004, 0.0025, 0.0, 0.0, 0.0, 0.0004;
-  const GaussianSampler noise(no_disturbance(), covariance);
+  const models::GaussianSampler noise(no_disturbance(), covariance);
   constexpr int kPeriods = 2000;
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
   for (int k = 0; k < kPeriods; ++k) {
@@ -204,7 +205,7 @@ TEST(MujocoPlantMotion, samples_every_20_ms_and_before_and_after_the_kick) {
 
 std::vector<double> drive(Plant& car) {
   std::vector<double> values = car.reset(pose(0.1, 0.2, 0.3)).qpos;
-  const GaussianSampler noise(no_disturbance(), 0.01 * Eigen::MatrixXd::Identity(3, 3));
+  const models::GaussianSampler noise(no_disturbance(), 0.01 * Eigen::MatrixXd::Identity(3, 3));
   for (int k = 0; k < 50; ++k) {
     const PlantStep step =
         car.advance(yaw_rate(random_yaw_rate(4, k)),

@@ -8,7 +8,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 #include "tests/support/effort.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
@@ -57,14 +57,16 @@ TEST_P(PlantDisturbance, has_the_planned_covariance) {
   const auto twin = make_mujoco_plant(setup);
   if (plant.force) setup.force_covariance = covariance;
   const auto disturbed = make_mujoco_plant(setup);
-  const GaussianSampler noise(Eigen::VectorXd::Zero(dim), covariance);
+  const models::GaussianSampler noise(Eigen::VectorXd::Zero(dim), covariance);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(dim);
   Eigen::MatrixXd squares = Eigen::MatrixXd::Zero(dim, dim);
   Eigen::VectorXd misses = Eigen::VectorXd::Zero(dim);
   for (int k = 0; k < periods; ++k) {
     const auto step = static_cast<std::uint64_t>(k);
     const Eigen::VectorXd random =
-        2.0 * uniform_sample(4, {.seed = 5, .stream = RandomStream::kInput, .step = step}).array() -
+        2.0 * models::uniform_sample(
+                  4, {.seed = 5, .stream = models::RandomStream::kInput, .step = step})
+                  .array() -
         1.0;
     Eigen::VectorXd start = vector_of(plant.start);
     if (setup.system.heading >= 0) start[setup.system.heading] = 3.0 * random[3];

@@ -9,8 +9,8 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
 #include "models/dynamics/bicycle.hpp"
+#include "models/random/random_numbers.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
 
 namespace qsmpc::harness {
@@ -20,9 +20,10 @@ constexpr double kPeriod = 0.1;  // s
 constexpr int kMinute = 600;     // periods
 
 double uniform(std::uint64_t seed, int period, Eigen::Index which, double lower, double upper) {
-  const Eigen::VectorXd values = uniform_sample(
-      2,
-      {.seed = seed, .stream = RandomStream::kInput, .step = static_cast<std::uint64_t>(period)});
+  const Eigen::VectorXd values =
+      models::uniform_sample(2, {.seed = seed,
+                                 .stream = models::RandomStream::kInput,
+                                 .step = static_cast<std::uint64_t>(period)});
   return lower + (upper - lower) * values[which];
 }
 
@@ -178,7 +179,7 @@ TEST_P(PushedCars, drive_on_upright_under_forces_of_several_times_their_weight) 
   setup.force_covariance = variances.asDiagonal();
   const auto car = make_mujoco_plant(setup);
   car->reset(start);
-  const GaussianSampler noise(Eigen::VectorXd::Zero(dim), setup.force_covariance);
+  const models::GaussianSampler noise(Eigen::VectorXd::Zero(dim), setup.force_covariance);
   Eigen::VectorXd before = car->state();
   for (int k = 0; k < 100; ++k) {
     Eigen::VectorXd input =

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 namespace qsmpc::harness {
 namespace exceedance_test {
@@ -49,7 +49,7 @@ TEST(Exceedance, rejects_valid_certificates_no_more_often_than_it_says) {
   int rejected = 0;
   constexpr int kRuns = 4000;
   for (std::uint64_t run = 0; run < kRuns; ++run) {
-    const Eigen::VectorXd uniform = uniform_sample(60, {.seed = 3, .episode = run});
+    const Eigen::VectorXd uniform = models::uniform_sample(60, {.seed = 3, .episode = run});
     EventTally tally;
     double certified = 0.02;
     for (const double u : uniform) {
@@ -69,7 +69,7 @@ TEST(Exceedance, rejects_valid_certificates_no_more_often_than_it_says) {
 
 TEST(Exceedance, finds_certificates_that_are_half_of_what_they_should_be) {
   EventTally tally;
-  const Eigen::VectorXd uniform = uniform_sample(4000, {.seed = 4});
+  const Eigen::VectorXd uniform = models::uniform_sample(4000, {.seed = 4});
   for (const double u : uniform) {
     tally.certified += 0.05;
     tally.events += u <= 0.1 ? 1 : 0;

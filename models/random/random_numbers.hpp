@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-namespace qsmpc::harness {
+namespace qsmpc::models {
 
 /// What random numbers are for. Values are part of what a seed means: never renumber.
 enum class RandomStream : std::uint64_t {
@@ -57,4 +57,4 @@ class GaussianSampler {
   Eigen::MatrixXd root_;
 };
 
-}  // namespace qsmpc::harness
+}  // namespace qsmpc::models

@@ -1,4 +1,4 @@
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 #include <array>
 #include <cstddef>
@@ -11,7 +11,7 @@
 
 #include "models/linear_algebra.hpp"
 
-namespace qsmpc::harness {
+namespace qsmpc::models {
 namespace {
 
 using Generator = r123::Philox4x64;
@@ -32,7 +32,7 @@ Eigen::MatrixXd symmetric_root(const Eigen::MatrixXd& covariance) {
   if (!covariance.isApprox(covariance.transpose(), kRelativeRounding)) {
     throw std::invalid_argument("covariance that is not symmetric");
   }
-  const models::SymmetricEigen eigen = models::symmetric_eigen(covariance);
+  const SymmetricEigen eigen = symmetric_eigen(covariance);
   if (eigen.values.minCoeff() < -kRelativeRounding * scale) {
     throw std::invalid_argument("covariance that is not positive semidefinite");
   }
@@ -88,4 +88,4 @@ Eigen::VectorXd GaussianSampler::sample(const RandomKey& key) const {
   return mean_ + root_ * standard_normal_sample(mean_.size(), key);
 }
 
-}  // namespace qsmpc::harness
+}  // namespace qsmpc::models

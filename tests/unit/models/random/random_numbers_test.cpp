@@ -1,5 +1,5 @@
 // The random numbers: statistics, independence of streams, and that a key is all that matters.
-#include "harness/random/random_numbers.hpp"
+#include "models/random/random_numbers.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace qsmpc::harness {
+namespace qsmpc::models {
 namespace random_numbers_test {
 
 constexpr int kCount = 20000;
@@ -156,4 +156,4 @@ TEST(RandomNumbers, are_distributed_as_they_say) {
 }
 
 }  // namespace random_numbers_test
-}  // namespace qsmpc::harness
+}  // namespace qsmpc::models
