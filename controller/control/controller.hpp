@@ -19,6 +19,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/chance/chance_settings.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/plan.hpp"
@@ -99,10 +100,21 @@ enum class LqrAbout {
   kTarget,  ///< the target state
 };
 
+/// What the shield is about.
+struct ShieldSettings {
+  std::string of = "nominal";  ///< a name of `controllers` but its own
+  /// Of the certified probability of being unsafe at any of the stages that it looks ahead, above
+  /// which the other is overruled.
+  double limit = 0.02;
+  int stages = 0;  ///< how many; 0: the whole horizon
+};
+
 /// The problem that every controller is given; which parts of it it uses is its own affair.
 struct ControllerSettings {
   PlannerSettings problem;  ///< with how the quantised controller solves it
   LqrAbout lqr_about = LqrAbout::kPath;
+  ShieldSettings shield{};
+  ChanceSettings chance{};  ///< of the controllers that keep a chance constraint
   /// Upper limit of the certified probability of ever being unsafe in a drive; infinite for none.
   double mission = std::numeric_limits<double>::infinity();
 };

@@ -9,6 +9,14 @@ namespace qsmpc::controller {
 ControllerEntry quantised_controller();
 ControllerEntry nominal_controller();
 ControllerEntry lqr_controller();
+// Those of one engine are in chance_controllers.cpp.
+ControllerEntry tube_controller();
+ControllerEntry cone_controller();
+ControllerEntry cantelli_controller();
+ControllerEntry scenario_controller();
+ControllerEntry cvar_controller();
+ControllerEntry drcc_controller();
+ControllerEntry shield_controller();
 
 void check_situation(const Situation& situation, Eigen::Index state_dim) {
   const auto require = [](bool holds, const char* message) {
@@ -26,9 +34,9 @@ void check_situation(const Situation& situation, Eigen::Index state_dim) {
 
 const std::vector<ControllerEntry>& controllers() {
   static const std::vector<ControllerEntry> table = {
-      quantised_controller(),
-      nominal_controller(),
-      lqr_controller(),
+      quantised_controller(), nominal_controller(),  lqr_controller(),      tube_controller(),
+      cone_controller(),      cantelli_controller(), scenario_controller(), cvar_controller(),
+      drcc_controller(),      shield_controller(),
   };
   return table;
 }

@@ -9,7 +9,7 @@
 #include "controller/planning/plan_evaluator.hpp"
 #include "controller/planning/plan_in_progress.hpp"
 #include "controller/planning/planner_settings.hpp"
-#include "controller/planning/risk/augmented_lagrangian.hpp"
+#include "controller/planning/solvers/augmented_lagrangian.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "models/dynamics/dynamics.hpp"
 

@@ -32,6 +32,17 @@ class BoxRegion final : public UnsafeRegion {
     least = least.min((to.depth >= 0.0).select(-to.depth, to.squares.sqrt()) - radius_);
   }
 
+  void lower_to_faces(Eigen::Index /*stage*/, const Points& points,
+                      NearestFaces& nearest) const override {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const BoxSurface surface = box_surface(points, i, core_intervals_);
+      const double distance = surface.distance - radius_;
+      if (!(distance < nearest.distance[i])) continue;
+      nearest.distance[i] = distance;
+      surface.write_slope(points, i, core_intervals_, 1.0, nearest.slope);
+    }
+  }
+
   double add_penalty(Eigen::Index /*stage*/, const PenaltyBatch& batch) const override {
     return box_penalty(intervals_, batch);
   }

@@ -76,6 +76,41 @@ BoxDistances::BoxDistances(const Points& points, const std::vector<AxisInterval>
   }
 }
 
+BoxSurface box_surface(const Points& points, Eigen::Index i,
+                       const std::vector<AxisInterval>& intervals) {
+  BoxSurface surface;
+  double squares = 0.0;
+  double depth = kInfinity;
+  for (std::size_t k = 0; k < intervals.size(); ++k) {
+    const double below = points(intervals[k].axis, i) - intervals[k].lower;
+    const double above = intervals[k].upper - points(intervals[k].axis, i);
+    const double least = std::min(below, above);
+    if (least < 0.0) squares += least * least;
+    if (least >= depth) continue;
+    depth = least;
+    surface.face = k;
+    surface.outward = below < above ? -1.0 : 1.0;
+  }
+  surface.distance = depth >= 0.0 ? -depth : std::sqrt(squares);
+  return surface;
+}
+
+void BoxSurface::write_slope(const Points& points, Eigen::Index i,
+                             const std::vector<AxisInterval>& intervals, double sign,
+                             Points& slope) const {
+  slope.col(i).setZero();
+  if (intervals.empty()) return;
+  if (!(distance > 0.0)) {
+    slope(intervals[face].axis, i) = sign * outward;
+    return;
+  }
+  for (const AxisInterval& interval : intervals) {
+    const double x = points(interval.axis, i);
+    const double beyond = std::max(0.0, x - interval.upper) - std::max(0.0, interval.lower - x);
+    slope(interval.axis, i) = sign * beyond / distance;
+  }
+}
+
 Eigen::Matrix2Xd rectangle_corners(const Box& box, Eigen::Index x, Eigen::Index y) {
   const auto lower = [&](Eigen::Index axis) { return axis < 0 ? -kInfinity : box.lower[axis]; };
   const auto upper = [&](Eigen::Index axis) { return axis < 0 ? kInfinity : box.upper[axis]; };

@@ -1,6 +1,7 @@
 // Closed boxes and half-spaces, which walls and boxes are made of, as certificates see them.
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -36,6 +37,19 @@ struct BoxDistances {
   Eigen::ArrayXd depth;
   Eigen::ArrayXd squares;
 };
+
+/// Where the surface of a box, which is bounded in the given intervals, is seen from a point.
+struct BoxSurface {
+  double distance = 0.0;  ///< to it; less than 0 inside, and −infinity where there is no interval
+  /// Writes ∂distance/∂point times `sign` to column `i` of `slope`.
+  void write_slope(const Points& points, Eigen::Index i, const std::vector<AxisInterval>& intervals,
+                   double sign, Points& slope) const;
+  std::size_t face = 0;  ///< inside: the interval whose end is nearest
+  double outward = 1.0;  ///< and its normal's sign
+};
+
+[[nodiscard]] BoxSurface box_surface(const Points& points, Eigen::Index i,
+                                     const std::vector<AxisInterval>& intervals);
 
 /// The corners of a box in the plane of two of its coordinates, counterclockwise; one that is -1 is
 /// unbounded.

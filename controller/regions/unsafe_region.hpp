@@ -49,6 +49,12 @@ struct RegionProbability {
   double smooth = 0.0;  ///< C4; what a region adds is never above what it adds to C3
 };
 
+/// Signed distances of points, with their derivatives: unit vectors that lead away fastest.
+struct NearestFaces {
+  Eigen::ArrayXd distance;  ///< n
+  Points slope;             ///< state_dim x n
+};
+
 /// Gaussians of one covariance about many centres.
 struct GaussianCentres {
   const Points& centres;  ///< state_dim x n, all finite
@@ -88,6 +94,11 @@ class UnsafeRegion {
   /// for a point that is not finite is not specified.
   virtual void lower_to_distances(Eigen::Index stage, const Points& points,
                                   Eigen::ArrayXd& least) const = 0;
+
+  /// The same with the derivatives, which are overwritten where a distance is lowered. On an edge
+  /// or in a middle, where there are several, it is one of them.
+  virtual void lower_to_faces(Eigen::Index stage, const Points& points,
+                              NearestFaces& nearest) const = 0;
 
   /// Σ weights · penalty over the range; its gradient is added to the adjoint there.
   virtual double add_penalty(Eigen::Index stage, const PenaltyBatch& batch) const = 0;

@@ -107,4 +107,30 @@ Eigen::VectorXd clearances(const Points& states, const UnsafeSet& unsafe, Eigen:
   return least.matrix();
 }
 
+void clearances_with_slopes(const Points& states, const UnsafeSet& unsafe, Eigen::Index stage,
+                            ClearanceScratch& scratch, NearestFaces& out) {
+  out.distance.setConstant(states.cols(), kInfinity);
+  out.slope.setZero(states.rows(), states.cols());
+  const ParticleRange all{.begin = 0, .end = states.cols()};
+  for (const DiscView& disc : unsafe.discs()) {
+    if (disc.placement.at_position()) {
+      for (const RegionPointer& region : disc.regions) region->lower_to_faces(stage, states, out);
+      continue;
+    }
+    NearestFaces& nearest = scratch.of_disc;
+    nearest.distance = out.distance;
+    nearest.slope.setZero(states.rows(), states.cols());
+    disc.placement.of(states, all, scratch.centres);
+    for (const RegionPointer& region : disc.regions) {
+      region->lower_to_faces(stage, scratch.centres, nearest);
+    }
+    scratch.slopes.setZero(states.rows(), states.cols());
+    disc.placement.pull_back(states, all, nearest.slope, scratch.slopes);
+    for (Eigen::Index i = 0; i < states.cols(); ++i) {
+      if (nearest.distance[i] < out.distance[i]) out.slope.col(i) = scratch.slopes.col(i);
+    }
+    out.distance = nearest.distance;
+  }
+}
+
 }  // namespace qsmpc::controller

@@ -119,6 +119,19 @@ class UnsafeSet {
 [[nodiscard]] Eigen::VectorXd clearances(const Points& states, const UnsafeSet& unsafe,
                                          Eigen::Index stage = 0);
 
+/// What `clearances_with_slopes` works on, so that the next call allocates nothing.
+struct ClearanceScratch {
+  NearestFaces of_disc;
+  Points centres;
+  Points slopes;
+};
+
+/// The clearances of all states (dim x n) with their derivatives by the states, written to `out`,
+/// whose storage is reused; +infinity, and a slope of 0, where nothing is unsafe. What it writes
+/// for states that are not finite is not specified.
+void clearances_with_slopes(const Points& states, const UnsafeSet& unsafe, Eigen::Index stage,
+                            ClearanceScratch& scratch, NearestFaces& out);
+
 }  // namespace qsmpc::controller
 
 #pragma GCC visibility pop

@@ -30,6 +30,16 @@ class Walls final : public UnsafeRegion {
     least = least.min((to.depth > 0.0).select(to.depth, -to.squares.sqrt()));
   }
 
+  void lower_to_faces(Eigen::Index /*stage*/, const Points& points,
+                      NearestFaces& nearest) const override {
+    for (Eigen::Index i = 0; i < points.cols(); ++i) {
+      const BoxSurface surface = box_surface(points, i, intervals_);
+      if (!(-surface.distance < nearest.distance[i])) continue;
+      nearest.distance[i] = -surface.distance;
+      surface.write_slope(points, i, intervals_, -1.0, nearest.slope);
+    }
+  }
+
   double add_penalty(Eigen::Index /*stage*/, const PenaltyBatch& batch) const override {
     double value = 0.0;
     for (const AxisInterval& interval : intervals_) value += wall_penalty(interval, batch);

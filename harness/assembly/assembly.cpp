@@ -69,9 +69,17 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
 }
 
 controller::ControllerSettings controller_settings(const Scenario& scenario) {
+  const Scenario::Controller& controller = scenario.controller;
+  controller::ChanceSettings chance = controller.chance;
+  const bool answers_to_noise = controller.policy == "disturbance_feedback";
+  chance.memory = answers_to_noise ? controller.disturbance_memory : 0;
   return {.problem = planner_settings(scenario),
-          .lqr_about = scenario.controller.lqr_about == "target" ? controller::LqrAbout::kTarget
-                                                                 : controller::LqrAbout::kPath,
+          .lqr_about = controller.lqr_about == "target" ? controller::LqrAbout::kTarget
+                                                        : controller::LqrAbout::kPath,
+          .shield = {.of = controller.shield.of,
+                     .limit = controller.shield.limit,
+                     .stages = controller.shield.stages},
+          .chance = chance,
           .mission = scenario.risk.mission};
 }
 
@@ -96,6 +104,16 @@ controller::DecisionParts decision_parts(const Scenario& scenario) {
       .parts(controller_settings(scenario));
 }
 
+namespace {
+
+std::string policy_words(const Scenario::Controller& controller) {
+  if (controller.policy == "disturbance_feedback") return "disturbance feedback";
+  const bool closed = controller.policy == "closed_loop" || controller.kind == "tube";
+  return closed ? "closed-loop policy" : "open-loop policy";
+}
+
+}  // namespace
+
 std::string controller_words(const Scenario& scenario) {
   const Scenario::Controller& controller = scenario.controller;
   std::string words;
@@ -105,7 +123,8 @@ std::string controller_words(const Scenario& scenario) {
     words = "lqr about the " + controller.lqr_about;
   } else {
     if (controller.kind != controller::controllers().front().name) words = controller.kind + ", ";
-    words += controller.policy == "closed_loop" ? "closed-loop policy" : "open-loop policy";
+    if (controller.kind == "shield") words += "of " + controller.shield.of + ", ";
+    words += policy_words(controller);
   }
   const int stages = decision_parts(scenario).stages;
   return stages > 0 ? words + ", horizon " + std::to_string(stages) : words;

@@ -7,7 +7,8 @@ namespace {
 
 /// Whether the input depends on what is seen of the state.
 bool has_feedback(const Scenario::Controller& controller) {
-  if (controller.kind == "lqr" || is_outside(controller)) return true;
+  const std::string& kind = controller.kind;
+  if (kind == "lqr" || kind == "tube" || kind == "shield" || is_outside(controller)) return true;
   if (controller.policy != "closed_loop") return false;
   const bool is_zero = controller.feedback_gain && controller.feedback_gain->isZero(0.0);
   return !is_zero || controller.optimise_gain;

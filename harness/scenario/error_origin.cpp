@@ -17,10 +17,10 @@ constexpr const char* kKey = "measured";
 constexpr const char* kUnknown = "unknown";
 constexpr std::size_t kLongestDigest = 64;  // bytes
 // Of constants that were written with all their digits.
-constexpr double kRounding = 1e-12;
+constexpr double kOriginRounding = 1e-12;
 
 bool is_same(double one, double other) {
-  return std::abs(one - other) <= kRounding * std::abs(other);
+  return std::abs(one - other) <= kOriginRounding * std::abs(other);
 }
 
 std::string file_name(const std::string& path) {

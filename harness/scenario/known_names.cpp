@@ -54,6 +54,15 @@ const std::vector<std::string>& controller_names() {
   return names;
 }
 
+const std::vector<std::string>& shielded_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = names_of(controller::controllers());
+    std::erase(all, "shield");
+    return all;
+  }();
+  return names;
+}
+
 const std::vector<std::string>& estimator_names() {
   static const std::vector<std::string> names = names_of(controller::estimators());
   return names;
@@ -96,7 +105,7 @@ const std::vector<std::string>& quantiser_names() {
 }
 
 const std::vector<std::string>& policy_names() {
-  static const std::vector<std::string> names{"closed_loop", "open_loop"};
+  static const std::vector<std::string> names{"closed_loop", "open_loop", "disturbance_feedback"};
   return names;
 }
 

@@ -17,6 +17,8 @@ namespace qsmpc::harness {
 
 [[nodiscard]] const std::vector<std::string>& system_names();
 [[nodiscard]] const std::vector<std::string>& controller_names();
+/// Controllers that a shield may be about: those of the program but itself.
+[[nodiscard]] const std::vector<std::string>& shielded_names();
 [[nodiscard]] const std::vector<std::string>& estimator_names();
 /// About what "lqr" linearises.
 [[nodiscard]] const std::vector<std::string>& lqr_about_names();

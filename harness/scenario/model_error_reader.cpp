@@ -22,10 +22,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kKey = "model_error";
+constexpr const char* kErrorKey = "model_error";
 constexpr std::size_t kMostPeriods = 1000;  // with errors of their own
 // Of a norm that is to be at least another one: what printing with ten digits may take away.
-constexpr double kRounding = 1e-9;
+constexpr double kErrorRounding = 1e-9;
 constexpr std::array<const char*, controller::kHigherOrders.size()> kNormKeys = {"norm4", "norm8"};
 
 /// Norms of the error's coordinates, none less than `least` but by rounding; nothing, and a noted
@@ -36,7 +36,7 @@ std::optional<Eigen::VectorXd> read_norms(Section& section, const std::string& k
   std::optional<Eigen::VectorXd> norms = section.vector(key, least.size());
   if (!norms) return std::nullopt;
   for (Eigen::Index i = 0; i < least.size(); ++i) {
-    if ((*norms)[i] >= (1.0 - kRounding) * least[i]) continue;
+    if ((*norms)[i] >= (1.0 - kErrorRounding) * least[i]) continue;
     section.note(key, expected, fmt::format("{} as number {}", (*norms)[i], i + 1));
     return std::nullopt;
   }
@@ -65,7 +65,7 @@ void read_radius(Section& section, controller::ModelError& error) {
   }
   const double least = error.radius();  // as long as none is stated
   const double radius = section.number("radius", least, kNotNegative);
-  if (radius >= (1.0 - kRounding) * least) {
+  if (radius >= (1.0 - kErrorRounding) * least) {
     error.stated_radius = radius;
   } else {
     section.note("radius", fmt::format("at least {}, the norm of |offset| + rms", least));
@@ -216,17 +216,17 @@ std::vector<KeyDescription> model_error_keys() {
 
 std::optional<StatedModelError> read_model_error(Section& root, Problems& problems,
                                                  const ModelErrorContext& context) {
-  if (!root.holds_text(kKey)) {
-    Section section = root.section(kKey);
+  if (!root.holds_text(kErrorKey)) {
+    Section section = root.section(kErrorKey);
     if (!section.present()) return std::nullopt;
     return read_mapping(section, context);
   }
-  const std::string name = root.text(kKey, "", kLongestPath);
+  const std::string name = root.text(kErrorKey, "", kLongestPath);
   std::string path = path_from(context.folder, name);
   std::error_code error;
-  if (root.is_override(kKey) && !fs::is_regular_file(path, error)) path = path_from("", name);
+  if (root.is_override(kErrorKey) && !fs::is_regular_file(path, error)) path = path_from("", name);
   if (!name.empty() && fs::is_regular_file(path, error)) return read_file(path, problems, context);
-  root.note(kKey,
+  root.note(kErrorKey,
             "a mapping, or the path of a YAML file from the scenario's folder, or with --set from "
             "the working one",
             "no file " + name);

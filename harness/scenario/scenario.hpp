@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/chance/chance_settings.hpp"
 #include "controller/prediction/model_error.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "harness/scenario/plant_mapping.hpp"
@@ -111,12 +112,20 @@ struct Scenario {
     bool plans = false;                ///< whether it answers a plan of `horizon` stages, too
     double start_deadline = 60.0;      ///< s, from its start until it is ready
   };
+  struct Shield {
+    std::string of = "nominal";  ///< the controller that is shielded
+    double limit = 0.02;         ///< of the certificate of the stages that it looks ahead
+    int stages = 0;              ///< how many; 0: the whole horizon
+  };
   struct Controller {
     std::string kind = "quantised";  ///< a name from `qsmpc list controllers`
     std::string lqr_about = "path";  ///< or "target": about what "lqr" linearises
     OutsideController outside;
     int horizon = 8;
-    std::string policy = "closed_loop";            ///< or "open_loop"
+    controller::ChanceSettings chance;  ///< of controllers that keep a chance constraint …
+    int disturbance_memory = 8;         ///< … and their memory under "disturbance_feedback"
+    Shield shield;
+    std::string policy = "closed_loop";            ///< or "open_loop", "disturbance_feedback"
     std::string guide = "none";                    ///< or "grid": what plans aim along
     std::optional<Eigen::MatrixXd> feedback_gain;  ///< K, input_dim x state_dim; else from LQR
     /// Weight of the input in that LQR, relative to the cost's; 0 where it is not given: 1, and

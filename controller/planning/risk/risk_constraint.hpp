@@ -11,21 +11,17 @@
 #include "controller/planning/planner_settings.hpp"
 #include "controller/planning/risk/risk_limits.hpp"
 #include "controller/planning/risk/risk_model.hpp"
+#include "controller/planning/solvers/augmented_lagrangian.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/regions/unsafe_set.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::controller {
 
-class RiskConstraint {
+class RiskConstraint final : public SummedConstraints {
  public:
   /// Refers to both.
   RiskConstraint(const models::Dynamics& dynamics, const PlannerSettings& settings);
-  RiskConstraint(const RiskConstraint&) = delete;
-  RiskConstraint& operator=(const RiskConstraint&) = delete;
-  RiskConstraint(RiskConstraint&&) = delete;
-  RiskConstraint& operator=(RiskConstraint&&) = delete;
-  ~RiskConstraint() = default;
 
   /// Of the plan that is made in period `period` of a drive, from now on.
   void set_limits(const RiskLimits& limits, Eigen::Index period);
@@ -47,11 +43,11 @@ class RiskConstraint {
   [[nodiscard]] double margin() const { return margin_; }
   void set_margin(double margin) { margin_ = margin; }
 
-  [[nodiscard]] Eigen::Index count() const { return values_.size(); }
+  [[nodiscard]] Eigen::Index count() const override { return values_.size(); }
   /// c at a decision.
-  const Eigen::VectorXd& values(const Eigen::VectorXd& z);
+  const Eigen::VectorXd& values(const Eigen::VectorXd& z) override;
   /// Adds Σ_j multipliers_j ∂c_j/∂z at the decision last asked for.
-  void add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient);
+  void add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient) override;
   /// ½ Σ max(0, c)² and its gradient, which is added, times `scale`.
   double add_excess(const Eigen::VectorXd& z, double scale, Eigen::VectorXd* gradient);
   /// The logarithm of the sum of all stages' risks, and its gradient (overwritten).

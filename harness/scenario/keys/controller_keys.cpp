@@ -54,7 +54,11 @@ void check_guide(const ScenarioReading& reading, Section& section) {
   const bool takes_it = std::any_of(known.begin(), known.end(), [&](const auto& entry) {
     return entry.name == controller.kind && entry.takes_guide;
   });
-  if (!takes_it) section.note("guide", "none, or controller.kind: quantised or nominal");
+  std::string guided;
+  for (const controller::ControllerEntry& entry : known) {
+    if (entry.takes_guide) guided += (guided.empty() ? "" : ", ") + entry.name;
+  }
+  if (!takes_it) section.note("guide", "none, or a controller.kind that takes one: " + guided);
   const models::SystemDescription& system = reading.system();
   const controller::Box& bounds = reading.scenario.safe_set.bounds;
   for (const int axis : {system.position_x, system.position_y}) {
@@ -158,7 +162,8 @@ std::vector<ScenarioKey> plan_keys() {
                  .words = "steps that are planned ahead"},
        .member = [](Scenario& scenario) -> int& { return scenario.controller.horizon; }},
       {.about = {.name = "policy", .values = {NameValue{policy_names()}}, .words = "{names}"},
-       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.policy; }},
+       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.policy; },
+       .check = check_policy},
       {.about = {.name = "guide",
                  .values = {NameValue{guide_names()}},
                  .words = "what plans aim at: the target (`none`), or the farthest point in sight "
@@ -373,6 +378,7 @@ void append(std::vector<ScenarioKey>& keys, std::vector<ScenarioKey> more) {
 ScenarioKey controller_key() {
   std::vector<ScenarioKey> keys = kind_keys();
   append(keys, outside_controller_keys());
+  for (ScenarioKey (*make)() : {chance_key, shield_key}) keys.push_back(make());
   append(keys, plan_keys());
   keys.push_back(quantisation_key());
   append(keys, propagation_keys());

@@ -82,6 +82,11 @@ struct ScenarioKey {
 [[nodiscard]] ScenarioKey controller_key();
 /// Within it, those of controllers that are no part of the program.
 [[nodiscard]] std::vector<ScenarioKey> outside_controller_keys();
+/// Those of controllers that keep a chance constraint, and of the shield.
+[[nodiscard]] ScenarioKey chance_key();
+[[nodiscard]] ScenarioKey shield_key();
+/// Notes a policy that the controller does not know.
+void check_policy(const ScenarioReading& reading, Section& section);
 [[nodiscard]] ScenarioKey video_key();
 
 /// All of them.

@@ -25,7 +25,9 @@ std::vector<Choice> choices(const PlannerSettings& problem) {
   std::vector<Choice> all;
   for (const ControllerEntry& entry : controllers()) {
     for (const LqrAbout about : {LqrAbout::kPath, LqrAbout::kTarget}) {
-      all.push_back({entry.name, {.problem = problem, .lqr_about = about}});
+      // A risk that the small room has space for, whatever the method.
+      all.push_back(
+          {entry.name, {.problem = problem, .lqr_about = about, .chance = {.risk = 0.3}}});
     }
   }
   return all;

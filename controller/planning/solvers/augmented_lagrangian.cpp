@@ -1,4 +1,4 @@
-#include "controller/planning/risk/augmented_lagrangian.hpp"
+#include "controller/planning/solvers/augmented_lagrangian.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ constexpr double kIdlePush = 1e-4;
 
 }  // namespace
 
-void AugmentedLagrangian::start(RiskConstraint& constraint, double cost, bool warm) {
+void AugmentedLagrangian::start(SummedConstraints& constraint, double cost, bool warm) {
   constraint_ = &constraint;
   last_violation_ = std::numeric_limits<double>::infinity();
   const double scale = std::max(std::abs(cost), 1e-12);
@@ -31,6 +31,12 @@ void AugmentedLagrangian::start(RiskConstraint& constraint, double cost, bool wa
     return;
   }
   weight_ = std::clamp(weight_, kLeastShare * scale, kMostShare * scale);
+}
+
+void AugmentedLagrangian::shift(Eigen::Index of_stage) {
+  for (Eigen::Index j = 0; j + of_stage < multipliers_.size(); ++j) {
+    multipliers_[j] = multipliers_[j + of_stage];
+  }
 }
 
 double AugmentedLagrangian::add(const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {

@@ -1,0 +1,16 @@
+// The distributionally robust chance constraint: the conditional value at risk of every law whose
+// 1-Wasserstein distance from the sampled one is at most ε. It is at most L ε/δ more than the
+// sampled one for a loss with Lipschitz constant L, and as much where the loss grows at that rate
+// (Mohajerin Esfahani, Kuhn: "Data-driven distributionally robust optimization using the
+// Wasserstein metric", 2018).
+#include "controller/chance/tail_constraint.hpp"
+
+namespace qsmpc::controller {
+
+std::unique_ptr<ChanceConstraint> make_drcc_constraint(const ChanceProblem& problem) {
+  const ChanceSettings& settings = problem.settings;
+  return std::make_unique<TailConstraint>(
+      problem, problem.unsafe.lipschitz() * settings.radius / settings.risk);
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,127 @@
+// The keys of controllers that keep a chance constraint of the literature, and of the shield.
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "controller/chance/chance_constraint.hpp"
+#include "controller/control/controller.hpp"
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/known_names.hpp"
+#include "harness/scenario/value_checks.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr NumberRange kRiskRange{.least = 0.0, .most = 0.5, .above_least = true};
+constexpr NumberRange kConfidenceRange{.least = 0.0, .most = 0.999999, .above_least = true};
+constexpr NumberRange kLimitRange{.least = 0.0, .most = 1.0, .above_least = true};
+constexpr NumberRange kRadiusRange{.least = 0.0, .most = 1e6};
+constexpr NumberRange kSmoothingRange{.least = 0.0, .most = 1e6, .above_least = true};
+constexpr WholeValue kPathsRange{0, 100'000};
+constexpr WholeValue kMemoryRange{1, kMostStages};
+
+bool keeps_chance_constraint(const Scenario& scenario) {
+  const std::string& kind = scenario.controller.kind;
+  if (kind == "tube") return true;
+  const auto& known = controller::chance_constraints();
+  return std::any_of(known.begin(), known.end(),
+                     [&](const auto& entry) { return entry.name == kind; });
+}
+
+/// Whether its paths are sampled, so that inputs can answer to their noise.
+bool samples_paths(const Scenario& scenario) {
+  const auto& known = controller::chance_constraints();
+  return std::any_of(known.begin(), known.end(), [&](const auto& entry) {
+    return entry.name == scenario.controller.kind && entry.samples;
+  });
+}
+
+controller::ChanceSettings& chance_of(Scenario& scenario) { return scenario.controller.chance; }
+
+/// A shield about itself would never be made.
+void check_shielded(const ScenarioReading& reading, Section& section) {
+  const std::string& of = reading.scenario.controller.shield.of;
+  if (of == "shield") section.note("of", "a controller of another kind");
+}
+
+}  // namespace
+
+void check_policy(const ScenarioReading& reading, Section& section) {
+  if (reading.scenario.controller.policy != "disturbance_feedback") return;
+  if (samples_paths(reading.scenario)) return;
+  section.note("policy",
+               "closed_loop or open_loop, or controller.kind: scenario, cvar or drcc, whose paths "
+               "have a noise that inputs can answer to");
+}
+
+ScenarioKey chance_key() {
+  return {
+      .about = {.name = "chance"},
+      .is_written = keeps_chance_constraint,
+      .keys =
+          {{.about = {.name = "risk",
+                      .values = {NumberValue{kRiskRange}},
+                      .words = "probability with which a stage of a plan may be unsafe, as the "
+                               "method believes; with `scenario` any stage of it"},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).risk; }},
+           {.about = {.name = "paths",
+                      .values = {kPathsRange},
+                      .words = "paths that are sampled for a plan, {range}; 0: with `scenario` as "
+                               "many as the sample bound asks for, with `cvar` and `drcc` 200"},
+            .member = [](Scenario& scenario) -> int& { return chance_of(scenario).paths; }},
+           {.about = {.name = "confidence",
+                      .values = {NumberValue{kConfidenceRange}},
+                      .words = "of the sample bound of `scenario`: how sure it is to be"},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).confidence; }},
+           {.about = {.name = "radius",
+                      .values = {NumberValue{kRadiusRange}},
+                      .words = "of `drcc`: of the ball of laws about the sampled one, in the "
+                               "1-Wasserstein distance",
+                      .unit = "m"},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).radius; }},
+           {.about = {.name = "smoothing",
+                      .values = {NumberValue{kSmoothingRange}},
+                      .words = "of `cvar` and `drcc`: over how much of the clearance the beginning "
+                               "of the tail is rounded off",
+                      .unit = "m"},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).smoothing; }},
+           {.about = {.name = "memory",
+                      .values = {kMemoryRange},
+                      .words = "with `controller.policy: disturbance_feedback`: how many of the "
+                               "last noises an input answers to"},
+            .member = [](Scenario& scenario) -> int& {
+              return scenario.controller.disturbance_memory;
+            }}},
+      .layout = SectionLayout::kFlow};
+}
+
+ScenarioKey shield_key() {
+  return {
+      .about = {.name = "shield"},
+      .is_written = [](const Scenario& scenario) { return scenario.controller.kind == "shield"; },
+      .keys = {{.about = {.name = "of",
+                          .values = {NameValue{shielded_names()}},
+                          .words = "the controller that drives while it is certified within the "
+                                   "limit"},
+                .member = [](Scenario& scenario) -> std::string& {
+                  return scenario.controller.shield.of;
+                },
+                .check = check_shielded},
+               {.about = {.name = "limit",
+                          .values = {NumberValue{kLimitRange}},
+                          .words = "certified probability of being unsafe, at any of the stages "
+                                   "looked ahead, above which it is overruled"},
+                .member = [](Scenario& scenario) -> double& {
+                  return scenario.controller.shield.limit;
+                }},
+               {.about = {.name = "stages",
+                          .values = {WholeValue{0, kMostStages}},
+                          .words = "how many stages are looked ahead; 0: the whole horizon"},
+                .member = [](Scenario& scenario) -> int& {
+                  return scenario.controller.shield.stages;
+                }}},
+      .layout = SectionLayout::kFlow};
+}
+
+}  // namespace qsmpc::harness
