@@ -137,10 +137,12 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libosmesa6, fonts-dejavu-core, fonts-l
 # The shipped scenarios, which the library finds by name.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "qsmpc, libosmesa6, fonts-dejavu-core")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} (= ${PROJECT_VERSION}-1), libeigen3-dev")
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/debian/triggers)
-file(WRITE ${CMAKE_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
-file(CHMOD ${CMAKE_BINARY_DIR}/debian/triggers PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+# Written here: CPack would look for a version in the name of the Python module, too.
+set(control ${CMAKE_BINARY_DIR}/debian/library)
+file(WRITE ${control}/triggers "activate-noawait ldconfig\n")
+file(WRITE ${control}/shlibs "libqsmpc ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${library_package} (= ${PROJECT_VERSION}-1)\n")
+file(CHMOD ${control}/triggers ${control}/shlibs PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${control}/triggers ${control}/shlibs)
 string(CONCAT what
   "Plans under uncertainty: turns a Gaussian belief into particles, certifies\n"
   "the probability of being unsafe, and drives MuJoCo vehicles to see whether\n"
@@ -211,5 +213,15 @@ foreach(pair IN LISTS package_names)
   install(FILES ${CMAKE_SOURCE_DIR}/scripts/packages/copyright ${CMAKE_BINARY_DIR}/debian/changelog.gz
                 ${CMAKE_BINARY_DIR}/debian/changelog.Debian.gz
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+  # What lintian is to be quiet about.
+  set(overrides "# No upload to Debian's archive, where a bug would ask for it.\n")
+  string(APPEND overrides "${package}: initial-upload-closes-no-bugs\n")
+  if(component STREQUAL "library")
+    string(APPEND overrides "# CPack calls ldconfig, whatever triggers there are.\n"
+                            "${package}: maintscript-calls-ldconfig\n")
+  endif()
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/debian/overrides/${package} CONTENT "${overrides}" @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/debian/overrides/${package}
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT ${component})
 endforeach()
 include(CPack)
