@@ -29,14 +29,21 @@ std::string own_object_file() {
   return error ? std::string() : program.string();
 }
 
-std::vector<std::string> installation_prefixes() {
+std::vector<std::string> installation_prefixes_of(const std::string& object_file) {
   std::vector<std::string> prefixes;
-  fs::path folder = fs::path(own_object_file()).parent_path();
+  fs::path folder = fs::path(object_file).parent_path();
   for (int level = 0; level < 2 && folder.has_relative_path(); ++level) {
     folder = folder.parent_path();
     prefixes.push_back(folder.string());
   }
+  if (folder.filename() == "dist-packages" || folder.filename() == "site-packages") {
+    prefixes.push_back(folder.parent_path().parent_path().parent_path().string());
+  }
   return prefixes;
+}
+
+std::vector<std::string> installation_prefixes() {
+  return installation_prefixes_of(own_object_file());
 }
 
 }  // namespace qsmpc::harness

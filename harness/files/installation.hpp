@@ -10,8 +10,13 @@ namespace qsmpc::harness {
 /// the system does not tell.
 [[nodiscard]] std::string own_object_file();
 
-/// What may be the prefix that it is installed under, the nearest first: PREFIX/bin/qsmpc,
-/// PREFIX/lib/libqsmpc.so, PREFIX/lib/ARCHITECTURE/libqsmpc.so.
+/// What may be the prefix that an object file is installed under, the nearest first:
+/// PREFIX/bin/qsmpc, PREFIX/lib/libqsmpc.so, PREFIX/lib/ARCHITECTURE/libqsmpc.so; and for the
+/// Python module PREFIX/_native/core.so, where a wheel is its own prefix, or
+/// PREFIX/lib/python3/dist-packages/qsmpc/_native/core.so.
+[[nodiscard]] std::vector<std::string> installation_prefixes_of(const std::string& object_file);
+
+/// Those of own_object_file().
 [[nodiscard]] std::vector<std::string> installation_prefixes();
 
 }  // namespace qsmpc::harness

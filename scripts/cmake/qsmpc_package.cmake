@@ -1,7 +1,8 @@
 # The library as others use it: one shared library, its public headers, and the files by which CMake
 # and pkg-config find it.
 #
-# Components, each a Debian package: program (with what it ships), library, development, documentation.
+# Components, each a Debian package: program (with what it ships), library, development, documentation,
+# and python where the module is for Debian's Python.
 
 set(qsmpc_rooms
   qsmpc_models qsmpc_controller qsmpc_render
@@ -136,10 +137,12 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libosmesa6, fonts-dejavu-core, fonts-l
 # The shipped scenarios, which the library finds by name.
 set(CPACK_DEBIAN_LIBRARY_PACKAGE_RECOMMENDS "qsmpc, libosmesa6, fonts-dejavu-core")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${library_package} (= ${PROJECT_VERSION}-1), libeigen3-dev")
-set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
-set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${CMAKE_BINARY_DIR}/debian/triggers)
-file(WRITE ${CMAKE_BINARY_DIR}/debian/triggers "activate-noawait ldconfig\n")
-file(CHMOD ${CMAKE_BINARY_DIR}/debian/triggers PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+# Written here: CPack would look for a version in the name of the Python module, too.
+set(control ${CMAKE_BINARY_DIR}/debian/library)
+file(WRITE ${control}/triggers "activate-noawait ldconfig\n")
+file(WRITE ${control}/shlibs "libqsmpc ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} ${library_package} (= ${PROJECT_VERSION}-1)\n")
+file(CHMOD ${control}/triggers ${control}/shlibs PERMISSIONS OWNER_READ OWNER_WRITE GROUP_READ WORLD_READ)
+set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${control}/triggers ${control}/shlibs)
 string(CONCAT what
   "Plans under uncertainty: turns a Gaussian belief into particles, certifies\n"
   "the probability of being unsafe, and drives MuJoCo vehicles to see whether\n"
@@ -151,6 +154,45 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
   "certified stochastic model predictive control - headers\n${what}\n.\nThis package has what programs are built with.")
 set(CPACK_COMPONENT_DOCUMENTATION_DESCRIPTION
   "certified stochastic model predictive control - documents\n${what}\n.\nThis package has the documents and the reference of the library.")
+set(package_names program:qsmpc library:${library_package} development:libqsmpc-dev documentation:qsmpc-doc)
+
+# The Python module, of Debian's Python alone: no other finds what is in dist-packages.
+if(QSMPC_PYTHON AND QSMPC_PYTHON_EXECUTABLE MATCHES "^/usr/bin/python3[.0-9]*$")
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  list(APPEND package_names python:python3-qsmpc)
+  string(REGEX MATCH "^([0-9]+)[.]([0-9]+)" python ${QSMPC_PYTHON_VERSION})
+  math(EXPR next_minor "${CMAKE_MATCH_2} + 1")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-qsmpc)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  string(CONCAT CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+    "qsmpc (= ${PROJECT_VERSION}-1), python3 (>= ${python}~), "
+    "python3 (<< ${CMAKE_MATCH_1}.${next_minor}), python3-numpy")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS python3-matplotlib)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION
+    "certified stochastic model predictive control - Python module\n${what}\n.\nThis package has the module for Python 3.")
+  # Compiled where it is installed, as other packages of Python modules are.
+  set(scripts ${CMAKE_BINARY_DIR}/debian/python)
+  file(CONFIGURE OUTPUT ${scripts}/postinst @ONLY CONTENT [[
+#!/bin/sh
+set -e
+if [ "$1" = configure ] && command -v py3compile > /dev/null; then
+  py3compile -p python3-qsmpc
+fi
+]])
+  file(CONFIGURE OUTPUT ${scripts}/prerm @ONLY CONTENT [[
+#!/bin/sh
+set -e
+if command -v py3clean > /dev/null; then
+  py3clean -p python3-qsmpc
+fi
+]])
+  file(CHMOD ${scripts}/postinst ${scripts}/prerm PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${scripts}/postinst ${scripts}/prerm)
+elseif(QSMPC_PYTHON)
+  message(STATUS "No package python3-qsmpc: the Python module is for ${QSMPC_PYTHON_EXECUTABLE}")
+endif()
+
 # Each package says the licences of what it is linked with, and what has changed.
 find_program(GZIP gzip REQUIRED)
 execute_process(COMMAND ${GZIP} -9nc INPUT_FILE ${CMAKE_SOURCE_DIR}/CHANGELOG.md
@@ -164,12 +206,22 @@ file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/debian/changelog CONTENT "qsmpc (@PROJ
 " @ONLY)
 execute_process(COMMAND ${GZIP} -9nc INPUT_FILE ${CMAKE_BINARY_DIR}/debian/changelog
   OUTPUT_FILE ${CMAKE_BINARY_DIR}/debian/changelog.Debian.gz COMMAND_ERROR_IS_FATAL ANY)
-foreach(pair program:qsmpc library:${library_package} development:libqsmpc-dev documentation:qsmpc-doc)
+foreach(pair IN LISTS package_names)
   string(REPLACE ":" ";" pair ${pair})
   list(GET pair 0 component)
   list(GET pair 1 package)
   install(FILES ${CMAKE_SOURCE_DIR}/scripts/packages/copyright ${CMAKE_BINARY_DIR}/debian/changelog.gz
                 ${CMAKE_BINARY_DIR}/debian/changelog.Debian.gz
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${component})
+  # What lintian is to be quiet about.
+  set(overrides "# No upload to Debian's archive, where a bug would ask for it.\n")
+  string(APPEND overrides "${package}: initial-upload-closes-no-bugs\n")
+  if(component STREQUAL "library")
+    string(APPEND overrides "# CPack calls ldconfig, whatever triggers there are.\n"
+                            "${package}: maintscript-calls-ldconfig\n")
+  endif()
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/debian/overrides/${package} CONTENT "${overrides}" @ONLY)
+  install(FILES ${CMAKE_BINARY_DIR}/debian/overrides/${package}
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/lintian/overrides COMPONENT ${component})
 endforeach()
 include(CPack)
