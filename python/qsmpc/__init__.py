@@ -18,6 +18,7 @@ from qsmpc._native.core import InputError, IoError, Situation, __version__
 from qsmpc.campaigns import Store, campaign, campaigns, open_campaign
 from qsmpc.comparisons import Comparison, compare
 from qsmpc.episodes import Episode, read, run
+from qsmpc.exports import export_mcap, export_rerun
 from qsmpc.planning import Certifier, Plan, Planner
 from qsmpc.predictions import Prediction, predict
 from qsmpc.scenarios import Model, Scenario, controllers, load, parse, scenarios, systems
@@ -41,6 +42,8 @@ __all__ = [
     "campaigns",
     "compare",
     "controllers",
+    "export_mcap",
+    "export_rerun",
     "load",
     "open_campaign",
     "parse",

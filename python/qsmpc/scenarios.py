@@ -125,6 +125,12 @@ class Scenario:
         return self.core.obstacles
 
     @property
+    def footprint(self) -> NDArray[np.float64]:
+        """The discs that cover the vehicle, discs × 3: radius, and the centre forward and left of
+        the position, m. None of a vehicle that is a point."""
+        return self.core.footprint
+
+    @property
     def no_bound(self) -> str:
         """Why certificates are no upper bounds here; empty where they are."""
         return self.core.no_bound

@@ -12,6 +12,7 @@ NB_MODULE(core, module) {
   add_scenarios(module);
   add_controllers(module);
   add_episodes(module);
+  add_exports(module);
   add_drives(module);
   add_planning(module);
   add_predictions(module);

@@ -79,12 +79,15 @@ nb::object as_dict(const Scenario& scenario) {
   return object_of(harness::parse_yaml(harness::to_yaml(scenario), scenario.name));
 }
 
-using Described = std::vector<std::pair<std::string, std::string>>;
-
-Described units_of(const std::vector<models::Coordinate>& coordinates) {
-  Described described;
-  for (const models::Coordinate& one : coordinates) described.emplace_back(one.name, one.unit);
-  return described;
+/// discs x 3: radius, and the centre forward and left of the position, m.
+RowMatrix footprint_of(const Scenario& scenario) {
+  const std::vector<controller::Disc>& discs = scenario.safe_set.body.discs;
+  RowMatrix rows(std::ssize(discs), 3);
+  for (Eigen::Index k = 0; k < rows.rows(); ++k) {
+    const controller::Disc& disc = discs[static_cast<std::size_t>(k)];
+    rows.row(k) << disc.radius, disc.offset.x(), disc.offset.y();
+  }
+  return rows;
 }
 
 double cost_of(const Scenario& scenario, const Eigen::VectorXd& state,
@@ -126,6 +129,7 @@ void add_scenario_class(nb::module_& module) {
                      }
                      return boxes;
                    })
+      .def_prop_ro("footprint", &footprint_of)
       .def_prop_ro("no_bound", &harness::why_no_bound,
                    "Why certificates are no bounds here; empty where they are.")
       .def("cost", &cost_of, "state"_a, "input"_a)
@@ -213,6 +217,12 @@ Described shipped(const std::vector<harness::ShippedFile>& files) {
 }
 
 }  // namespace
+
+Described units_of(const std::vector<models::Coordinate>& coordinates) {
+  Described described;
+  for (const models::Coordinate& one : coordinates) described.emplace_back(one.name, one.unit);
+  return described;
+}
 
 void add_scenarios(nb::module_& module) {
   add_scenario_class(module);
