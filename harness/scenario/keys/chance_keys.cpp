@@ -39,12 +39,6 @@ bool samples_paths(const Scenario& scenario) {
 
 controller::ChanceSettings& chance_of(Scenario& scenario) { return scenario.controller.chance; }
 
-/// A shield about itself would never be made.
-void check_shielded(const ScenarioReading& reading, Section& section) {
-  const std::string& of = reading.scenario.controller.shield.of;
-  if (of == "shield") section.note("of", "a controller of another kind");
-}
-
 }  // namespace
 
 void check_policy(const ScenarioReading& reading, Section& section) {
@@ -106,8 +100,7 @@ ScenarioKey shield_key() {
                                    "limit"},
                 .member = [](Scenario& scenario) -> std::string& {
                   return scenario.controller.shield.of;
-                },
-                .check = check_shielded},
+                }},
                {.about = {.name = "limit",
                           .values = {NumberValue{kLimitRange}},
                           .words = "certified probability of being unsafe, at any of the stages "

@@ -27,6 +27,12 @@ TEST(CertificateScope, depends_on_what_the_policy_does) {
   EXPECT_EQ(why_no_bound(minimal_with({noisy, "controller.feedback_gain=[0, 0, 0]"})), "");
   EXPECT_NE(why_no_bound(minimal_with({noisy, "controller.feedback_gain=[0, 0, 1]"})), "");
   EXPECT_NE(why_no_bound(minimal_with({noisy, "controller.kind=lqr"})), "");
+  // A tube has feedback whatever the policy is called, and what a shield is about may have.
+  for (const char* kind : {"tube", "shield"}) {
+    EXPECT_NE(why_no_bound(minimal_with(
+                  {noisy, "controller.policy=open_loop", std::string("controller.kind=") + kind})),
+              "");
+  }
 }
 
 TEST(CertificateScope, is_warned_of) {

@@ -66,6 +66,51 @@ TEST(ControllerKeys, a_guide_needs_a_controller_that_follows_it_and_bounds_of_th
               HasSubstr("finite safe_set.bounds of x"));
 }
 
+TEST(ControllerKeys, chance_constraints_are_read_written_and_refused) {
+  const Scenario scenario = minimal_with(
+      {"controller.kind=cvar",
+       "controller.chance={risk: 0.1, paths: 30, confidence: 0.8, radius: 0.3, smoothing: 0.2}"});
+  EXPECT_EQ(scenario.controller.chance.risk, 0.1);
+  EXPECT_EQ(scenario.controller.chance.paths, 30);
+  EXPECT_EQ(scenario.controller.chance.confidence, 0.8);
+  EXPECT_EQ(scenario.controller.chance.radius, 0.3);
+  EXPECT_EQ(scenario.controller.chance.smoothing, 0.2);
+  expect_round_trip(scenario);
+  // They stay where another controller drives, and have no effect there.
+  EXPECT_THAT(to_yaml(minimal_with({"controller.chance.risk=0.1"})), Not(HasSubstr("chance")));
+  for (const char* risk : {"0", "0.6", "-0.1"}) {
+    const std::string wrong = std::string("controller.chance.risk=") + risk;
+    EXPECT_EQ(refusal_of(minimal_text, {"controller.kind=cone", wrong}).key,
+              "controller.chance.risk");
+  }
+}
+
+TEST(ControllerKeys, inputs_answer_to_noise_only_where_paths_are_sampled) {
+  const std::string answers = "controller.policy=disturbance_feedback";
+  const Scenario scenario =
+      minimal_with({"controller.kind=scenario", answers, "controller.chance.memory=3"});
+  EXPECT_EQ(scenario.controller.disturbance_memory, 3);
+  expect_round_trip(scenario);
+  for (const char* kind : {"quantised", "nominal", "cone", "tube"}) {
+    const std::string other = std::string("controller.kind=") + kind;
+    EXPECT_EQ(refusal_of(minimal_text, {other, answers}).key, "controller.policy");
+  }
+}
+
+TEST(ControllerKeys, a_shield_is_about_another_controller) {
+  const Scenario scenario = minimal_with(
+      {"controller.kind=shield", "controller.shield={of: lqr, limit: 0.1, stages: 2}"});
+  EXPECT_EQ(scenario.controller.shield.of, "lqr");
+  EXPECT_EQ(scenario.controller.shield.limit, 0.1);
+  EXPECT_EQ(scenario.controller.shield.stages, 2);
+  expect_round_trip(scenario);
+  for (const char* of : {"shield", "external"}) {
+    const std::string wrong = std::string("controller.shield.of=") + of;
+    EXPECT_EQ(refusal_of(minimal_text, {"controller.kind=shield", wrong}).key,
+              "controller.shield.of");
+  }
+}
+
 TEST(ControllerKeys, every_bounding_of_the_inputs_can_be_named) {
   for (const controller::InputBoundingEntry& entry : controller::input_boundings()) {
     const Scenario scenario = minimal_with({"controller.input_bounding=" + entry.name});

@@ -71,7 +71,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"indefinite", "initial_state.covariance=[1, 1, -1]", "initial_state.covariance",
                     "eigenvalue -1", "semidefinite"},
         BadOverride{"controller", "controller.kind=quantized", "controller.kind", "quantized",
-                    "quantised (known: quantised, nominal, lqr, external, library, object)"},
+                    "quantised (known: quantised, nominal, lqr, "},
         BadOverride{"lqr_of_another", "controller.lqr.about=target", "controller.lqr.about",
                     "target", "path, or controller.kind: lqr"},
         BadOverride{"estimator", "estimator.kind=kalman", "estimator.kind", "kalman",
