@@ -47,7 +47,10 @@ void BackOffConstraint::hold(const HeldLaws& laws, const SampledPaths& paths) {
     const Eigen::MatrixXd& covariance = laws.covariances[stage];
     const Eigen::MatrixXd& slopes = slopes_[stage - 1];
     for (Eigen::Index j = 0; j < per_stage(); ++j) {
-      const double variance = slopes.col(j).dot(covariance * slopes.col(j));
+      double variance = 0.0;
+      for (Eigen::Index i = 0; i < slopes.rows(); ++i) {
+        variance += slopes(i, j) * covariance.col(i).dot(slopes.col(j));
+      }
       deviations_(j, stage - 1) = std::sqrt(std::max(0.0, variance));
     }
   }
@@ -63,7 +66,7 @@ void BackOffConstraint::values(Eigen::Index stage, const SampledPaths& paths,
 void BackOffConstraint::add_adjoint(Eigen::Index stage,
                                     const Eigen::Ref<const Eigen::VectorXd>& multipliers,
                                     SampledPaths& paths) {
-  paths.adjoint(stage).rightCols<1>() -= slopes_[stage - 1] * multipliers;
+  paths.adjoint(stage).rightCols<1>().noalias() -= slopes_[stage - 1] * multipliers;
 }
 
 double BackOffConstraint::believed(Eigen::Index stage, const SampledPaths& /*paths*/) const {

@@ -96,10 +96,10 @@ class ChancePlanner::Constraints final : public SummedConstraints {
   /// What the paths' adjoints hold already is pulled back with it, in one pass.
   void add_gradient(const Eigen::VectorXd& multipliers, Eigen::VectorXd& gradient) override {
     const Eigen::Index n = constraint_.per_stage();
+    scaled_ = multipliers / kUnit;
     for (Eigen::Index k = 0; k < paths_.horizon(); ++k) {
-      const auto of_stage = multipliers.segment(k * n, n);
-      if (of_stage.isZero(0.0)) continue;
-      constraint_.add_adjoint(k + 1, of_stage / kUnit, paths_);
+      const auto of_stage = scaled_.segment(k * n, n);
+      if (!of_stage.isZero(0.0)) constraint_.add_adjoint(k + 1, of_stage, paths_);
     }
     paths_.pull_back(gradient);
   }
@@ -108,6 +108,7 @@ class ChancePlanner::Constraints final : public SummedConstraints {
   ChanceConstraint& constraint_;
   SampledPaths& paths_;
   Eigen::VectorXd values_;
+  Eigen::VectorXd scaled_;
 };
 
 ChancePlanner::~ChancePlanner() = default;
@@ -160,18 +161,25 @@ void ChancePlanner::reset(std::uint64_t seed) {
 /// New paths: what has been seen of the drive so far tells nothing of them.
 void ChancePlanner::draw(const Gaussian& belief, Eigen::Index period) {
   if (path_count_ == 0) return;
-  const Eigen::Index dim = dynamics_.state_dim();
+  if (belief_covariance_ != belief.covariance) {
+    belief_covariance_ = belief.covariance;
+    belief_root_ = root_of(belief.covariance);
+  }
   models::RandomKey key{.seed = seed_,
                         .episode = static_cast<std::uint64_t>(period),
                         .stream = models::RandomStream::kPlanning};
-  const auto normals = [&]() -> Eigen::MatrixXd {
-    const Eigen::VectorXd numbers = models::standard_normal_sample(dim * path_count_, key);
+  normals_.resize(dynamics_.state_dim(), path_count_);
+  const auto draw_normals = [&] {
+    models::standard_normal_sample(key, normals_.reshaped());
     ++key.step;
-    return numbers.reshaped(dim, path_count_);
   };
-  draw_.start.noalias() = root_of(belief.covariance) * normals();
+  draw_normals();
+  draw_.start.noalias() = belief_root_ * normals_;
   draw_.start.colwise() += belief.mean;
-  for (Points& noise : draw_.noise) noise = noise_root_ * normals();
+  for (Points& noise : draw_.noise) {
+    draw_normals();
+    noise.noalias() = noise_root_ * normals_;
+  }
 }
 
 void ChancePlanner::place_target(const Gaussian& belief) {
@@ -192,26 +200,24 @@ bool ChancePlanner::first_guess(const Gaussian& belief, Clock::time_point deadli
 
 /// Gains, covariances and back-offs that belong to the inputs in z_.
 void ChancePlanner::hold(const Gaussian& belief) {
-  const Eigen::Index inputs = dynamics_.input_dim();
   const Eigen::Index horizon = settings_.problem.horizon;
-  const bool disturbance_feedback = settings_.chance.memory > 0;
-  policies_.make(belief.mean, z_.head(inputs * horizon).reshaped(inputs, horizon), no_change_,
-                 held_);
-  if (disturbance_feedback || !settings_.problem.closed_loop) {
+  const bool feedback = settings_.problem.closed_loop && settings_.chance.memory == 0;
+  inputs_ = z_.head(sampled_.inputs_in_decision()).reshaped(dynamics_.input_dim(), horizon);
+  policies_.make(belief.mean, inputs_, no_change_, held_);
+  if (!feedback) {
     for (Eigen::MatrixXd& gain : held_.gains) gain.setZero();
   }
-  const bool feedback = settings_.problem.closed_loop && !disturbance_feedback;
-  static const std::vector<Eigen::MatrixXd> kNone;
-  sampled_.hold_gains(feedback ? held_.gains : kNone);
+  sampled_.hold_gains(feedback ? held_.gains : no_gains_);
   if (path_count_ > 0) return;
-  const Eigen::Index dim = dynamics_.state_dim();
-  Eigen::MatrixXd a(dim, dim);
-  Eigen::MatrixXd b(dim, inputs);
+  a_.resize(dynamics_.state_dim(), dynamics_.state_dim());
+  b_.resize(dynamics_.state_dim(), dynamics_.input_dim());
   covariances_[0] = belief.covariance;
   for (Eigen::Index k = 0; k < horizon; ++k) {
-    dynamics_.jacobians(held_.states.col(k), held_.inputs.col(k), a, b);
-    a.noalias() += b * held_.gains[k];
-    covariances_[k + 1] = a * covariances_[k] * a.transpose() + settings_.problem.noise_covariance;
+    dynamics_.jacobians(held_.states.col(k), held_.inputs.col(k), a_, b_);
+    a_.noalias() += b_ * held_.gains[k];
+    moved_.noalias() = a_ * covariances_[k];
+    covariances_[k + 1] = settings_.problem.noise_covariance;
+    covariances_[k + 1].noalias() += moved_ * a_.transpose();
   }
   if (settings_.tightened_inputs) tighten();
   sampled_.rollout(z_);
@@ -227,8 +233,11 @@ void ChancePlanner::tighten() {
   for (Eigen::Index k = 0; k < settings_.problem.horizon; ++k) {
     const Eigen::MatrixXd& gain = held_.gains[k];
     for (Eigen::Index i = 0; i < inputs; ++i) {
-      const double deviation =
-          std::sqrt(std::max(0.0, gain.row(i).dot(covariances_[k] * gain.row(i).transpose())));
+      double variance = 0.0;
+      for (Eigen::Index j = 0; j < gain.cols(); ++j) {
+        variance += gain(i, j) * gain.row(i).dot(covariances_[k].col(j));
+      }
+      const double deviation = std::sqrt(std::max(0.0, variance));
       const double range = bounds.upper[i] - bounds.lower[i];
       const double in = std::clamp(factor * deviation, 0.0, 0.5 * (1.0 - kLeastInputShare) * range);
       problem_.lower[k * inputs + i] = bounds.lower[i] + in;
@@ -349,10 +358,9 @@ void ChancePlanner::move_on() {
 
 /// Makes the plan of the decision in z_.
 void ChancePlanner::take_result(const Gaussian& belief) {
-  const Eigen::Index inputs = dynamics_.input_dim();
-  const Eigen::Index horizon = sampled_.horizon();
   plan_.policy = held_;
-  plan_.policy.inputs = z_.head(inputs * horizon).reshaped(inputs, horizon);
+  plan_.policy.inputs =
+      z_.head(sampled_.inputs_in_decision()).reshaped(dynamics_.input_dim(), sampled_.horizon());
   nominal_states(dynamics_, belief.mean, plan_.policy.inputs, plan_.policy.states);
   plan_.violation = violation_at(z_);
   sampled_.clear_adjoints();

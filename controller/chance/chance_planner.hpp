@@ -109,6 +109,14 @@ class ChancePlanner {
   ProjectedBfgsSolver solver_;
   OcpProblem problem_;
   Eigen::MatrixXd noise_root_;
+  Eigen::MatrixXd belief_covariance_;  // that belief_root_ belongs to
+  Eigen::MatrixXd belief_root_;
+  Eigen::MatrixXd normals_;  // scratch: state_dim x paths
+  Eigen::MatrixXd inputs_;   // scratch: input_dim x horizon
+  Eigen::MatrixXd a_;        // scratch of linearisations
+  Eigen::MatrixXd b_;
+  Eigen::MatrixXd moved_;
+  std::vector<Eigen::MatrixXd> no_gains_;
   Eigen::MatrixXd no_change_;
   PathDraw draw_;
   std::vector<Eigen::MatrixXd> covariances_;

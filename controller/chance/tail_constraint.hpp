@@ -23,8 +23,8 @@ class TailConstraint final : public ChanceConstraint {
 
   void values(Eigen::Index stage, const SampledPaths& paths,
               Eigen::Ref<Eigen::VectorXd> values) override {
-    const Eigen::ArrayXd losses = -clearances_.look(stage, paths);
-    values[0] = smoothed_cvar(losses, risk_, smoothing_, tails_[stage - 1]) + allowance_;
+    losses_ = -clearances_.look(stage, paths);
+    values[0] = smoothed_cvar(losses_, risk_, smoothing_, tails_[stage - 1]) + allowance_;
   }
 
   void add_adjoint(Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& multipliers,
@@ -42,7 +42,8 @@ class TailConstraint final : public ChanceConstraint {
   double smoothing_;
   double allowance_;
   SampledClearances clearances_;
-  std::vector<Eigen::ArrayXd> tails_;
+  std::vector<Eigen::ArrayXd> tails_;  // by stage: the derivative by the losses
+  Eigen::ArrayXd losses_;
 };
 
 }  // namespace qsmpc::controller

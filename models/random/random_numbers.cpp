@@ -44,14 +44,19 @@ Eigen::MatrixXd symmetric_root(const Eigen::MatrixXd& covariance) {
 
 Eigen::VectorXd standard_normal_sample(Eigen::Index count, const RandomKey& key) {
   Eigen::VectorXd values(count);
+  standard_normal_sample(key, values);
+  return values;
+}
+
+void standard_normal_sample(const RandomKey& key, Eigen::Ref<Eigen::VectorXd> out) {
+  const Eigen::Index count = out.size();
   for (Eigen::Index i = 0; i < count; i += kBlock) {
     const auto bits = random_block(key, i / kBlock);
     const r123::double2 first = r123::boxmuller(bits[0], bits[1]);
     const r123::double2 second = r123::boxmuller(bits[2], bits[3]);
     const std::array<double, kBlock> block{first.x, first.y, second.x, second.y};
-    for (Eigen::Index k = 0; k < kBlock && i + k < count; ++k) values[i + k] = block[k];
+    for (Eigen::Index k = 0; k < kBlock && i + k < count; ++k) out[i + k] = block[k];
   }
-  return values;
 }
 
 Eigen::VectorXd uniform_sample(Eigen::Index count, const RandomKey& key) {

@@ -36,6 +36,9 @@ struct RandomKey {
 /// `count` independent standard normal numbers.
 [[nodiscard]] Eigen::VectorXd standard_normal_sample(Eigen::Index count, const RandomKey& key);
 
+/// The same, as many as there is room for in `out`.
+void standard_normal_sample(const RandomKey& key, Eigen::Ref<Eigen::VectorXd> out);
+
 /// `count` independent numbers, uniform in (0, 1].
 [[nodiscard]] Eigen::VectorXd uniform_sample(Eigen::Index count, const RandomKey& key);
 

@@ -97,7 +97,7 @@ ScenarioKey shield_key() {
       .keys = {{.about = {.name = "of",
                           .values = {NameValue{shielded_names()}},
                           .words = "the controller that drives while it is certified within the "
-                                   "limit"},
+                                   "limit: {names}"},
                 .member = [](Scenario& scenario) -> std::string& {
                   return scenario.controller.shield.of;
                 }},
