@@ -1,127 +1,182 @@
-"""Scenario MPC with CasADi for the car of constant speed, as an external controller of qsmpc.
+"""Scenario MPC with CasADi and IPOPT, as an external controller of qsmpc.
 
-Every period, one sequence of turn rates is sought that is best on average over sampled noise, with a
-soft constraint for every sample, stage and obstacle. Options: scenarios, how many samples; margin, m,
-that the path keeps from boxes; weight of entering them.
+Every period, one sequence of inputs is sought that is cheapest on average over sampled starts and noise,
+and that keeps every sample clear of bounds and obstacles. A linear-quadratic regulator along the plan of
+the period before counteracts the noise in each sample, as it will in the drive.
+
+Options, each with a default: scenarios, how many samples; weight, of a metre that a sample is unsafe by
+(an exact penalty); feedback_effort, of inputs in the regulator, relative to the cost's.
 """
 
-import json
-import sys
+import math
+from statistics import NormalDist
 
 import casadi
 import numpy
+from problem import serve
 
-
-def answer(message):
-    print(json.dumps(message), flush=True)
+SCENARIOS = 40
+WEIGHT = 2e4
 
 
 class ScenarioMpc:
-    def __init__(self, scenario):
-        self.horizon = scenario["horizon"]
-        self.samples = scenario["options"]["scenarios"]
-        self.noise = numpy.array(scenario["disturbance"]["covariance"])
-        self.lower = scenario["system"]["inputs"][0]["lower"]
-        self.upper = scenario["system"]["inputs"][0]["upper"]
-        self.solver = self.build(scenario)
-        self.reset(0)
+    def __init__(self, problem):
+        self.problem = problem
+        options = problem.options
+        self.samples = 2 * math.ceil(options.get("scenarios", SCENARIOS) / 2)  # in pairs
+        self.spread = self.spread_of(problem.risk_per_stage())
+        self.noise_root = self.root(problem.noise)
+        self.solver = self.build(options.get("weight", WEIGHT))
+        self.reset(problem.message["seed"])
+
+    def spread_of(self, risk):
+        """By how much samples are drawn wider than the noise is: so that the outermost of them is
+        where a normal distribution leaves the ``risk`` of a stage beyond."""
+        if risk is None:
+            return 1.0
+        outermost = NormalDist().inv_cdf(self.samples / (self.samples + 1.0))
+        return max(1.0, NormalDist().inv_cdf(1.0 - risk) / outermost)
+
+    @staticmethod
+    def root(covariance):
+        values, vectors = numpy.linalg.eigh(covariance)
+        return vectors * numpy.sqrt(numpy.maximum(values, 0.0))
 
     def reset(self, seed):
-        self.random = numpy.random.default_rng(seed)
-        self.guess = numpy.zeros(self.horizon)
-        self.first = True
+        """The same standard normal numbers for all periods of a drive: plans change with the
+        situation, not with the draw, and multipliers of one period start the next one's solver."""
+        problem = self.problem
+        shape = (self.samples // 2, problem.horizon + 1, problem.state_dim)
+        half = numpy.random.default_rng(seed).standard_normal(shape)
+        self.normal = self.spread * numpy.concatenate([half, -half])  # no mean
+        self.inputs = numpy.zeros((problem.horizon, problem.input_dim))
+        self.multipliers = None
 
-    def build(self, scenario):
-        step = scenario["time_step"]
-        speed = scenario["system"]["parameters"]["speed"]
-        target = casadi.DM(scenario["target"]["state"])
-        cost = {name: casadi.DM(rows) for name, rows in scenario["cost"].items()}
-        inputs = casadi.SX.sym("u", self.horizon)
-        start = casadi.SX.sym("x0", 3, self.samples)
-        noise = casadi.SX.sym("w", 3 * self.horizon, self.samples)
-        total = self.samples * cost["input"][0, 0] * casadi.sumsqr(inputs)
-        for sample in range(self.samples):
-            state = start[:, sample]
-            for k in range(self.horizon):
-                away = state - target
-                total += 0.5 * away.T @ cost["state"] @ away
-                move = casadi.vertcat(
-                    step * speed * casadi.cos(state[2]),
-                    step * speed * casadi.sin(state[2]),
-                    step * inputs[k],
-                )
-                state = state + move + noise[3 * k : 3 * k + 3, sample]
-                total += self.penalty(state, scenario)
-            away = state - target
-            total += away.T @ cost["terminal"] @ away
-        problem = {
-            "x": inputs,
-            "f": total / self.samples,
-            "p": casadi.vertcat(casadi.vec(start), casadi.vec(noise)),
+    def build(self, weight):
+        """IPOPT for the inputs and one slack for each stage; parameters: target, gains, mean, and
+        start and noise of each sample, a column each."""
+        problem = self.problem
+        n, m, stages = problem.state_dim, problem.input_dim, problem.horizon
+        target, mean = casadi.MX.sym("target", n), casadi.MX.sym("mean", n)
+        gains = casadi.MX.sym("gains", m, n * stages)
+        draws = casadi.MX.sym("draws", n * (stages + 1), self.samples)
+        inputs, slack = casadi.MX.sym("u", m, stages), casadi.MX.sym("slack", stages)
+        sample = self.sample_function()
+        copies = [
+            casadi.repmat(part, 1, self.samples)
+            for part in (casadi.vec(inputs), casadi.vec(gains), target, mean)
+        ]
+        costs, clearances = sample.map(self.samples)(*copies, draws)
+        count = problem.clearance.numel_out(0)
+        slacks = casadi.repmat(casadi.vec(casadi.repmat(slack.T, count, 1)), 1, self.samples)
+        nlp = {
+            "x": casadi.vertcat(casadi.vec(inputs), slack),
+            "f": casadi.sum2(costs) / self.samples + weight * casadi.sum1(slack),
+            "g": casadi.vec(clearances + slacks),
+            "p": casadi.vertcat(target, mean, casadi.vec(gains), casadi.vec(draws)),
         }
-        quiet = {"print_time": False, "ipopt": {"print_level": 0, "sb": "yes", "max_iter": 60}}
-        return casadi.nlpsol("mpc", "ipopt", problem, quiet)
+        # As many solves as guesses in the first period, within the deadline.
+        share = 0.8 / (1 + 2 * m)
+        ipopt = {
+            "print_level": 0,
+            "sb": "yes",
+            "max_iter": 100,
+            "tol": 1e-4,
+            "acceptable_tol": 1e-3,
+            "acceptable_iter": 4,
+            "mu_strategy": "adaptive",
+            "max_wall_time": share * problem.message["deadline"],
+            "warm_start_init_point": "yes",
+            "warm_start_bound_push": 1e-6,
+            "warm_start_mult_bound_push": 1e-6,
+        }
+        return casadi.nlpsol("mpc", "ipopt", nlp, {"print_time": False, "ipopt": ipopt})
 
-    def penalty(self, state, scenario):
-        """Of being within `margin` of a box, or of what is outside of the bounds."""
-        margin = scenario["options"]["margin"]
-        total = 0
-        for box in scenario["safe_set"]["obstacles"]:
-            depths = [
-                casadi.fmin(state[i] - box["lower"][i], box["upper"][i] - state[i]) + margin
-                for i in range(2)
-            ]
-            total += casadi.fmax(casadi.fmin(*depths), 0) ** 2
-        for i in range(2):
-            for beyond in (
-                scenario["safe_set"]["lower"][i] - state[i],
-                state[i] - scenario["safe_set"]["upper"][i],
-            ):
-                total += casadi.fmax(beyond + margin, 0) ** 2
-        return scenario["options"]["weight"] * total
-
-    def plan(self, belief):
-        mean = numpy.array(belief["mean"])
-        covariance = numpy.array(belief["covariance"])
-        start = self.random.multivariate_normal(mean, covariance, self.samples)
-        noise = self.random.multivariate_normal(
-            numpy.zeros(3), self.noise, (self.samples, self.horizon)
+    def sample_function(self):
+        """Cost and clearances of one sample under inputs that its own distance from the noise-free
+        path is fed back to."""
+        problem = self.problem
+        n, m, stages = problem.state_dim, problem.input_dim, problem.horizon
+        inputs, gains = casadi.SX.sym("u", m * stages), casadi.SX.sym("gains", m * n * stages)
+        target, mean = casadi.SX.sym("target", n), casadi.SX.sym("mean", n)
+        draws = casadi.SX.sym("draws", n * (stages + 1))
+        path, state = mean, mean + draws[:n]
+        cost, clearances = 0, []
+        for k in range(stages):
+            nominal = inputs[m * k : m * (k + 1)]
+            gain = casadi.reshape(gains[m * n * k : m * n * (k + 1)], m, n)
+            control = nominal + gain @ (state - path)
+            cost += problem.stage_cost(state, control, target)
+            path = problem.step(path, nominal)
+            state = problem.step(state, control) + draws[n * (k + 1) : n * (k + 2)]
+            clearances.append(problem.clearance(state))
+        cost += problem.terminal_cost(state, target)
+        return casadi.Function(
+            "sample", [inputs, gains, target, mean, draws], [cost, casadi.vertcat(*clearances)]
         )
-        # casadi.vec goes down the columns, a sample each.
-        values = numpy.concatenate([start.ravel(), noise.ravel()])
-        # At first the ways round the boxes are tried from several turns.
-        guesses = [self.guess]
-        if self.first:
-            guesses += [numpy.full(self.horizon, turn) for turn in (-1.0, 1.0)]
-        self.first = False
-        found = []
-        for guess in guesses:
-            result = self.solver(x0=guess, p=values, lbx=self.lower, ubx=self.upper)
-            stats = self.solver.stats()
-            found.append((float(result["f"]), result["x"].full().ravel(), stats))
-        _, best, stats = min(found, key=lambda entry: entry[0])
+
+    def guesses(self):
+        """The plan before, shifted; in the first period others, too: ways round on either side."""
+        problem = self.problem
+        guesses = [numpy.vstack([self.inputs[1:], self.inputs[-1:]])]
+        if self.multipliers is None:
+            for bound in (problem.lower, problem.upper):
+                for i in range(problem.input_dim):
+                    guess = numpy.zeros_like(self.inputs)
+                    guess[:, i] = 0.5 * bound[i]
+                    guesses.append(guess)
+        return [numpy.clip(guess, problem.lower, problem.upper) for guess in guesses]
+
+    def solve(self, guess, parameters):
+        problem = self.problem
+        stages = problem.horizon
+        arguments = {
+            "x0": numpy.concatenate([guess.ravel(), numpy.zeros(stages)]),
+            "p": parameters,
+            "lbx": numpy.concatenate([numpy.tile(problem.lower, stages), numpy.zeros(stages)]),
+            "ubx": numpy.concatenate(
+                [numpy.tile(problem.upper, stages), numpy.full(stages, numpy.inf)]
+            ),
+            "lbg": 0.0,
+            "ubg": numpy.inf,
+        }
+        if self.multipliers is not None:
+            arguments["lam_x0"], arguments["lam_g0"] = self.multipliers
+        return self.solver(**arguments), self.solver.stats()
+
+    def plan(self, situation):
+        problem = self.problem
+        mean = numpy.array(situation["belief"]["mean"])
+        guesses = self.guesses()
+        gains = problem.gains(problem.roll_out(mean, guesses[0]), guesses[0])
+        draws = self.normal @ self.noise_root.T
+        draws[:, 0] = self.normal[:, 0] @ self.root(situation["belief"]["covariance"]).T
+        parameters = numpy.concatenate(
+            [
+                problem.target_near(mean),
+                mean,
+                # CasADi's matrices go down their columns.
+                numpy.concatenate([gain.ravel("F") for gain in gains]),
+                draws.reshape(self.samples, -1).ravel(),
+            ]
+        )
+        found = [self.solve(guess, parameters) for guess in guesses]
+        result, stats = min(found, key=lambda one: float(one[0]["f"]))
+        count = problem.horizon * problem.input_dim
+        inputs = result["x"].full().ravel()[:count].reshape(problem.horizon, problem.input_dim)
+        if not numpy.isfinite(inputs).all():
+            inputs, self.multipliers = guesses[0], None
+        else:
+            self.multipliers = result["lam_x"], result["lam_g"]
         # The solver ends a little beyond the bounds.
-        best = numpy.clip(best, self.lower, self.upper)
-        self.guess = numpy.append(best[1:], best[-1])
+        self.inputs = numpy.clip(inputs, problem.lower, problem.upper)
         return {
-            "inputs": [[turn_rate] for turn_rate in best],
-            "status": "converged" if stats["success"] else "iteration_limit",
-            "evaluations": stats["iter_count"],
+            "inputs": self.inputs.tolist(),
+            "gains": [gain.tolist() for gain in gains],
+            "status": problem.status(stats),
+            "evaluations": sum(stats["iter_count"] for _, stats in found),
         }
 
 
-def main():
-    scenario = json.loads(sys.stdin.readline())
-    mpc = ScenarioMpc(scenario)
-    answer({"protocol": 1})
-    for line in sys.stdin:
-        message = json.loads(line)
-        if message["type"] == "end":
-            break
-        if message["type"] == "reset":
-            mpc.reset(message["seed"])
-        else:
-            answer({"plan": mpc.plan(message["belief"])})
-
-
-main()
+if __name__ == "__main__":
+    serve(ScenarioMpc)
