@@ -1,5 +1,7 @@
 #include "controller/chance/sampled_paths.hpp"
 
+#include <algorithm>
+
 namespace qsmpc::controller {
 
 SampledPaths::SampledPaths(const models::Dynamics& dynamics, const InputBounds& bounds,
@@ -20,11 +22,14 @@ SampledPaths::SampledPaths(const models::Dynamics& dynamics, const InputBounds& 
 
 void SampledPaths::shift(Eigen::VectorXd& z) const {
   const Eigen::Index block = input_dim_ * state_dim_;
+  // What is read stands behind what is written.
+  const auto move = [&z](Eigen::Index to, Eigen::Index from, Eigen::Index count) {
+    std::copy_n(z.data() + from, count, z.data() + to);
+  };
   for (Eigen::Index k = 0; k + 1 < horizon_; ++k) {
-    z.segment(k * input_dim_, input_dim_) = z.segment((k + 1) * input_dim_, input_dim_).eval();
+    move(k * input_dim_, (k + 1) * input_dim_, input_dim_);
     // By lags, so that a matrix goes on answering to the same noise; the first stage has none left.
-    const Eigen::Index kept = lags(k) * block;
-    z.segment(first_matrix_[k], kept) = z.segment(first_matrix_[k + 1], kept).eval();
+    move(first_matrix_[k], first_matrix_[k + 1], lags(k) * block);
   }
 }
 
@@ -46,7 +51,7 @@ void SampledPaths::hold(const Eigen::VectorXd& mean, const PathDraw& draw) {
   draw_ = &draw;
   mean_ = mean;
   paths_ = draw.start.cols();
-  rolled_out_.resize(0);
+  is_rolled_out_ = false;
   resize();
   stages_[0].states.leftCols(paths_) = draw.start;
   stages_[0].states.col(paths_) = mean;
@@ -54,7 +59,7 @@ void SampledPaths::hold(const Eigen::VectorXd& mean, const PathDraw& draw) {
 
 void SampledPaths::hold_gains(const std::vector<Eigen::MatrixXd>& gains) {
   gains_ = gains.empty() ? nullptr : &gains;
-  rolled_out_.resize(0);
+  is_rolled_out_ = false;
 }
 
 /// The inputs of a stage, whose states are known.
@@ -80,7 +85,7 @@ void SampledPaths::apply_policy(Eigen::Index stage, const Eigen::VectorXd& z) {
 }
 
 void SampledPaths::rollout(const Eigen::VectorXd& z) {
-  if (rolled_out_.size() == z.size() && rolled_out_ == z) return;
+  if (is_rolled_out_ && rolled_out_ == z) return;
   for (Eigen::Index k = 0; k < horizon_; ++k) {
     apply_policy(k, z);
     Stage& next = stages_[k + 1];
@@ -88,6 +93,7 @@ void SampledPaths::rollout(const Eigen::VectorXd& z) {
     if (paths_ > 0) next.states.leftCols(paths_) += draw_->noise[k];
   }
   rolled_out_ = z;
+  is_rolled_out_ = true;
 }
 
 void SampledPaths::clear_adjoints() {

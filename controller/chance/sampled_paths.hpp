@@ -94,7 +94,8 @@ class SampledPaths {
   Eigen::VectorXd mean_;
   Eigen::Index paths_ = 0;
   std::vector<Stage> stages_;
-  Eigen::VectorXd rolled_out_;  // the decision that the states belong to; empty if none
+  Eigen::VectorXd rolled_out_;  // the decision that the states belong to, …
+  bool is_rolled_out_ = false;  // … if any
   Points away_;                 // scratch: state_dim x paths
   Points weighted_;
   Points through_input_;  // input_dim x (paths + 1)
