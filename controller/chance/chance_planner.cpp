@@ -161,7 +161,7 @@ void ChancePlanner::reset(std::uint64_t seed) {
 /// New paths: what has been seen of the drive so far tells nothing of them.
 void ChancePlanner::draw(const Gaussian& belief, Eigen::Index period) {
   if (path_count_ == 0) return;
-  if (belief_covariance_ != belief.covariance) {
+  if (belief_covariance_.size() == 0 || belief_covariance_ != belief.covariance) {
     belief_covariance_ = belief.covariance;
     belief_root_ = root_of(belief.covariance);
   }
