@@ -23,6 +23,7 @@ enum class RandomStream : std::uint64_t {
   kSensor = 4,      ///< what the planner sees less what is
   kParameters = 5,  ///< parameters of a plant that are drawn
   kBootstrap = 6,   ///< weights of an episode in the replicates of a sample of episodes
+  kSearch = 7,      ///< the order in which the points of a grid of settings are tried
 };
 
 struct RandomKey {
