@@ -120,9 +120,10 @@ CostParts SampledPaths::add_cost(const QuadraticCost& cost) {
     (last ? terminal : state) += (last ? share : 0.5 * share) * value;
     stage.adjoint.leftCols(n) += (last ? 2.0 * share : share) * weighted;
     if (last) break;
-    stage.input_adjoint.leftCols(n).noalias() +=
-        (2.0 * share) * cost.input * stage.inputs.leftCols(n);
-    input += 0.5 * stage.input_adjoint.leftCols(n).cwiseProduct(stage.inputs.leftCols(n)).sum();
+    auto weighted_inputs = through_input_.leftCols(n);
+    weighted_inputs.noalias() = cost.input * stage.inputs.leftCols(n);
+    stage.input_adjoint.leftCols(n) += 2.0 * share * weighted_inputs;
+    input += share * weighted_inputs.cwiseProduct(stage.inputs.leftCols(n)).sum();
   }
   return {{"state", state}, {"input", input}, {"terminal", terminal}};
 }

@@ -48,6 +48,7 @@ class ChanceController final : public Controller {
     decision_.cost = plan.cost;
     decision_.status = plan.status;
     decision_.evaluations = plan.evaluations;
+    decision_.believed = plan.believed;
     decision_.timing = plan.timing;
     return decision_;
   }

@@ -68,6 +68,9 @@ struct Decision {
   bool fallback = false;           ///< nothing usable came out; the previous plan goes on
   const PlanRisk* risk = nullptr;  ///< of a policy that was planned within limits; else null
   bool risk_exceeded = false;      ///< a limit of the risk is, as far as the controller certifies
+  /// The controller's own estimate of the probability that the state at the end of this period is
+  /// unsafe, from 0 to 1; nothing where it has none. It is what the controller believes, no bound.
+  std::optional<double> believed{};
   PlanTiming timing{};
 };
 

@@ -22,6 +22,7 @@ const Decision& PlanningController::decide(const Situation& situation) {
   decision_.fallback = plan.fallback;
   decision_.risk = plan.risk.stages.empty() ? nullptr : &plan.risk;
   decision_.risk_exceeded = !plan.risk.kept;
+  decision_.believed = unsafe_weight(plan.prediction.stages[1], unsafe_, 1, weighing_);
   decision_.timing = plan.timing;
   return decision_;
 }

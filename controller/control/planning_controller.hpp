@@ -5,6 +5,7 @@
 #include "controller/control/controller.hpp"
 #include "controller/control/mission_budget.hpp"
 #include "controller/planning/planner.hpp"
+#include "controller/regions/unsafe_weight.hpp"
 
 namespace qsmpc::controller {
 
@@ -13,7 +14,8 @@ class PlanningController final : public Controller {
   /// `dynamics` must outlive it. Throws std::invalid_argument as Planner.
   PlanningController(const models::Dynamics& dynamics, const ControllerSettings& settings)
       : planner_(dynamics, settings.problem),
-        mission_(dynamics, settings.mission, settings.problem.cost.target) {}
+        mission_(dynamics, settings.mission, settings.problem.cost.target),
+        unsafe_(settings.problem.safe_set) {}
 
   [[nodiscard]] static DecisionParts parts(const ControllerSettings& settings) {
     return {.stages = settings.problem.horizon,
@@ -33,6 +35,8 @@ class PlanningController final : public Controller {
  private:
   Planner planner_;
   MissionBudget mission_;
+  UnsafeSet unsafe_;
+  UnsafeWeightScratch weighing_;
   Eigen::VectorXd offset_;  // of what is observed from the nominal state
   Decision decision_;
 };

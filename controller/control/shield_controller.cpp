@@ -44,6 +44,7 @@ class Shield final : public Controller {
     const Decision& inner = inner_->decide(situation);
     decision_.input = inner.input;
     decision_.evaluations = inner.evaluations;
+    decision_.believed = inner.believed;
     decision_.timing = inner.timing;
     decision_.status = inner.status.value_or(SolverStatus::kConverged);
     decision_.risk_exceeded = false;
@@ -100,6 +101,7 @@ class Shield final : public Controller {
     decision_.risk_exceeded = !less || !plan.risk.kept;
     if (decision_.risk_exceeded) decision_.status = SolverStatus::kRiskExceeded;
     if (!less) return;
+    decision_.believed = plan.risk.stages.front();  // what it is certified for
     const Eigen::Index stages = std::min(policy_.horizon(), plan.policy.horizon());
     policy_.inputs.leftCols(stages) = plan.policy.inputs.leftCols(stages);
     std::copy_n(plan.policy.gains.begin(), stages, policy_.gains.begin());

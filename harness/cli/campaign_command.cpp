@@ -9,19 +9,16 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "harness/assembly/memory_need.hpp"
 #include "harness/campaign/plan/campaign_file.hpp"
 #include "harness/campaign/plan/campaign_plan.hpp"
 #include "harness/campaign/runner.hpp"
-#include "harness/campaign/status.hpp"
+#include "harness/cli/campaign_driving.hpp"
 #include "harness/cli/campaign_results.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/fail_on.hpp"
-#include "harness/cli/interrupt.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/plant_warnings.hpp"
-#include "harness/cli/progress.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/files/text_file.hpp"
@@ -72,39 +69,6 @@ Shard parse_shard(const std::string& text) {
                     .expected = fmt::format("I/N with 1 <= I <= N <= {}, e.g. 1/4", kMostShards)});
 }
 
-void tell_update(const StoreUpdate& update) {
-  std::cerr << fmt::format(
-      "qsmpc: the campaign has changed: {} episodes are kept, {} are no longer asked for and were "
-      "removed\n",
-      update.kept, update.dropped);
-}
-
-CampaignProgress drive(const Campaign& campaign, const std::string& folder,
-                       CampaignArguments& arguments) {
-  Progress progress("driving", arguments.quiet);
-  CampaignOptions& options = arguments.options;
-  options.should_stop = [] { return interrupts() > 0; };
-  options.should_hurry = [] { return interrupts() > 1; };
-  if (!arguments.quiet) options.on_update = tell_update;
-  options.on_progress = [&](const CampaignProgress& now) {
-    progress.update(now.done, now.total, progress_note(now));
-  };
-  const InterruptPatience patience(2);  // the first lets episodes end
-  return run_campaign(campaign, folder, options);
-}
-
-void refuse_beyond_memory(const Campaign& campaign, const CampaignArguments& arguments) {
-  const double usable = usable_memory();
-  for (const CampaignVariant& variant : campaign.variants) {
-    const auto problem = memory_problem(variant.resolved, arguments.options.jobs, usable);
-    if (!problem) continue;
-    throw InputError({.file = arguments.campaign,
-                      .key = "variant " + variant.name,
-                      .found = problem->found,
-                      .expected = problem->expected + ", e.g. with fewer --jobs"});
-  }
-}
-
 int campaign_command(CampaignArguments& arguments) {
   const Campaign campaign = load_campaign(arguments.campaign);
   if (!arguments.shard.empty()) arguments.options.shard = parse_shard(arguments.shard);
@@ -112,11 +76,12 @@ int campaign_command(CampaignArguments& arguments) {
     print_result(arguments.json ? campaign_plan_json(campaign) : campaign_plan_text(campaign));
     return kDone;
   }
-  refuse_beyond_memory(campaign, arguments);
+  refuse_beyond_memory(campaign, arguments.campaign, arguments.options.jobs);
   const std::string folder =
       arguments.out.empty() ? default_folder(campaign.name, "campaign") : arguments.out;
   tell_plant_warnings(campaign);
-  const CampaignProgress end = drive(campaign, folder, arguments);
+  const CampaignProgress end =
+      drive_campaign(campaign, folder, arguments.options, {.quiet = arguments.quiet});
   write_file(folder + "/" + kCampaignCopy, read_text_file(find_campaign(arguments.campaign)));
   const CampaignStatistics statistics = write_campaign_results(folder);
   print_campaign_results(statistics, folder, arguments.json);

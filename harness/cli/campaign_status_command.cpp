@@ -1,14 +1,32 @@
+#include <filesystem>
 #include <memory>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
 #include "harness/campaign/status.hpp"
+#include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/commands.hpp"
+#include "harness/cli/contest_files.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
 
 namespace qsmpc::harness {
+namespace {
+
+bool has_store(const std::string& folder) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(folder + "/" + kStoreFile, ignored);
+}
+
+/// A contest that still searches for settings has no store but that of the search.
+std::string store_folder(const std::string& folder) {
+  const std::string tuning = folder + "/" + kTuningFolder;
+  return !has_store(folder) && has_store(tuning) ? tuning : folder;
+}
+
+}  // namespace
 
 void add_campaign_status_command(CLI::App& campaign, int& exit_code) {
   CLI::App* command = campaign.add_subcommand(
@@ -16,10 +34,10 @@ void add_campaign_status_command(CLI::App& campaign, int& exit_code) {
   command->footer("Example: qsmpc campaign status out/policies");
   const auto folder = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("folder", *folder, "folder of a campaign")->required();
+  command->add_option("folder", *folder, "folder of a campaign or contest")->required();
   command->add_flag("--json", *json, "as JSON");
   command->callback([folder, json, &exit_code] {
-    const CampaignStatus status = campaign_status(*folder);
+    const CampaignStatus status = campaign_status(store_folder(*folder));
     print_result(*json ? status_json(status) : status_table(status));
     exit_code = kDone;
   });

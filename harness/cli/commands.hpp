@@ -17,6 +17,7 @@ void add_campaign_merge_command(CLI::App& campaign, int& exit_code);
 /// `app` must outlive the parsing: its commands are what is completed.
 void add_completion_command(CLI::App& app, int& exit_code);
 void add_compare_command(CLI::App& app, int& exit_code);
+void add_contest_command(CLI::App& app, int& exit_code);
 void add_export_command(CLI::App& app, int& exit_code);
 void add_render_command(CLI::App& app, int& exit_code);
 void add_reproduce_command(CLI::App& app, int& exit_code);

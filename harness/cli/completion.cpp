@@ -12,13 +12,23 @@ namespace qsmpc::harness {
 namespace {
 
 /// What may stand for a command's first argument without a name.
-enum class ArgumentKind { kNone, kScenario, kCampaign, kFolder, kFile, kChoice, kCommand };
+enum class ArgumentKind {
+  kNone,
+  kScenario,
+  kCampaign,
+  kContest,
+  kFolder,
+  kFile,
+  kChoice,
+  kCommand
+};
 
 ArgumentKind kind_of(const CLI::Option& option) {
   if (!option_choices(option).empty()) return ArgumentKind::kChoice;
   const std::string name = option.get_name(true);
   if (name == "scenario") return ArgumentKind::kScenario;
   if (name == "campaign") return ArgumentKind::kCampaign;
+  if (name == "contest") return ArgumentKind::kContest;
   if (name.starts_with("folder")) return ArgumentKind::kFolder;
   if (name == "command") return ArgumentKind::kCommand;
   return ArgumentKind::kFile;
@@ -65,6 +75,8 @@ std::string bash_argument(const CLI::App& command, const CLI::App& app) {
       return fmt::format("_qsmpc_words \"{} $(_qsmpc_shipped scenarios)\" -f", words);
     case ArgumentKind::kCampaign:
       return fmt::format("_qsmpc_words \"{} $(_qsmpc_shipped campaigns)\" -f", words);
+    case ArgumentKind::kContest:
+      return fmt::format("_qsmpc_words \"{} $(_qsmpc_shipped contests)\" -f", words);
     case ArgumentKind::kFolder:
       return fmt::format("_qsmpc_words '{}' -d", words);
     case ArgumentKind::kChoice:
@@ -134,6 +146,8 @@ std::string zsh_action(const CLI::Option& option) {
       return "{_qsmpc_shipped scenarios}";
     case ArgumentKind::kCampaign:
       return "{_qsmpc_shipped campaigns}";
+    case ArgumentKind::kContest:
+      return "{_qsmpc_shipped contests}";
     case ArgumentKind::kFolder:
       return "_files -/";
     default:

@@ -55,6 +55,10 @@ std::vector<Table> tables() {
   for (const ShippedCampaign& campaign : shipped_campaigns()) {
     campaigns.items.push_back({campaign.name, campaign.description});
   }
+  Table contests{.title = "contests", .items = {}};
+  for (const ShippedContest& contest : shipped_contests()) {
+    contests.items.push_back({contest.name, contest.description});
+  }
   Table all_controllers = make_table("controllers", controller::controllers());
   for (const OutsideControllerEntry& entry : outside_controllers()) {
     all_controllers.items.push_back({entry.name, entry.summary});
@@ -68,7 +72,8 @@ std::vector<Table> tables() {
           make_table("propagators", controller::propagators()),
           make_table("quantisers", controller::quantisers()),
           scenarios,
-          campaigns};
+          campaigns,
+          contests};
 }
 
 std::string as_text(const std::vector<Table>& chosen) {
@@ -113,9 +118,10 @@ void add_list_command(CLI::App& app, int& exit_code) {
       ->add_option(
           "kind", *kind,
           "systems, plants, controllers, estimators, solvers, boundings, propagators, quantisers, "
-          "scenarios or campaigns")
-      ->check(CLI::IsMember({"systems", "plants", "controllers", "estimators", "solvers",
-                             "boundings", "propagators", "quantisers", "scenarios", "campaigns"}));
+          "scenarios, campaigns or contests")
+      ->check(
+          CLI::IsMember({"systems", "plants", "controllers", "estimators", "solvers", "boundings",
+                         "propagators", "quantisers", "scenarios", "campaigns", "contests"}));
   command->add_flag("--json", *json, "as JSON");
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }

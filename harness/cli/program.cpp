@@ -29,6 +29,7 @@ int parse_and_run(int argc, char** argv) {
   add_predict_command(app, exit_code);
   add_compare_command(app, exit_code);
   add_campaign_command(app, exit_code);
+  add_contest_command(app, exit_code);
   add_render_command(app, exit_code);
   add_report_command(app, exit_code);
   add_export_command(app, exit_code);

@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -9,6 +12,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/contest/contest_keys.hpp"
 #include "harness/scenario/keys/key_schema.hpp"
 #include "harness/scenario/keys/key_tables.hpp"
 #include "harness/text/json_text.hpp"
@@ -25,12 +29,20 @@ std::string tables_text(const std::vector<DocumentTable>& tables) {
   return text;
 }
 
-int print_schema(bool of_campaign, bool as_markdown) {
-  if (as_markdown) {
-    print_result(tables_text(of_campaign ? campaign_tables() : scenario_tables()));
-  } else {
-    print_result(json_text(of_campaign ? campaign_schema() : scenario_schema()));
-  }
+/// What there is of a kind of file.
+struct FileKind {
+  const char* name;
+  nlohmann::ordered_json (*schema)();
+  std::vector<DocumentTable> (*tables)();
+};
+
+constexpr std::array<FileKind, 3> kFileKinds{{{"scenario", scenario_schema, scenario_tables},
+                                              {"campaign", campaign_schema, campaign_tables},
+                                              {"contest", contest_schema, contest_tables}}};
+
+int print_schema(const std::string& kind, bool as_markdown) {
+  const auto* found = std::ranges::find(kFileKinds, kind, &FileKind::name);
+  print_result(as_markdown ? tables_text(found->tables()) : json_text(found->schema()));
   return kDone;
 }
 
@@ -38,17 +50,16 @@ int print_schema(bool of_campaign, bool as_markdown) {
 
 void add_schema_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "schema", "Prints the JSON Schema of scenario or campaign files, for editors.");
+      "schema", "Prints the JSON Schema of scenario, campaign or contest files, for editors.");
   command->footer("Example: qsmpc schema > qsmpc-scenario.schema.json");
   const auto kind = std::make_shared<std::string>("scenario");
   const auto format = std::make_shared<std::string>("json");
-  command->add_option("kind", *kind, "scenario (default) or campaign")
-      ->check(CLI::IsMember({"scenario", "campaign"}));
+  command->add_option("kind", *kind, "scenario (default), campaign or contest")
+      ->check(CLI::IsMember({"scenario", "campaign", "contest"}));
   command->add_option("--format", *format, "json (default), or markdown: tables of the keys")
       ->check(CLI::IsMember({"json", "markdown"}));
-  command->callback([kind, format, &exit_code] {
-    exit_code = print_schema(*kind == "campaign", *format == "markdown");
-  });
+  command->callback(
+      [kind, format, &exit_code] { exit_code = print_schema(*kind, *format == "markdown"); });
 }
 
 }  // namespace qsmpc::harness

@@ -12,6 +12,7 @@
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/contest/contest_file.hpp"
 #include "harness/doctor/diagnosis.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_check.hpp"
@@ -24,12 +25,13 @@ namespace {
 
 using Errors = std::vector<InputError::Where>;
 
-/// What is said of a scenario or campaign.
+/// What is said of a scenario, campaign or contest.
 struct FileVerdict {
   std::string file;
   Errors errors{};
   std::vector<std::string> warnings{};  ///< about a valid scenario
   std::optional<Campaign> campaign{};   ///< if it is a valid one
+  std::optional<LoadedContest> contest{};
 };
 
 FileVerdict verdict_on_scenario(const std::string& file) {
@@ -51,7 +53,18 @@ FileVerdict verdict_on_scenario(const std::string& file) {
   return verdict;
 }
 
+FileVerdict verdict_on_contest(const std::string& file) {
+  try {
+    return {.file = file, .contest = load_contest(file)};
+  } catch (const InputError& error) {
+    Errors errors = validate_contest_file(file);
+    if (errors.empty()) errors.push_back(error.where());  // of a file that was changed since
+    return {.file = file, .errors = std::move(errors)};
+  }
+}
+
 FileVerdict verdict_on(const std::string& file) {
+  if (is_contest_file(file)) return verdict_on_contest(file);
   if (!is_campaign_file(file)) return verdict_on_scenario(file);
   try {
     return {.file = file, .campaign = load_campaign(file)};
@@ -71,7 +84,9 @@ std::string as_text(const FileVerdict& verdict) {
   for (const std::string& warning : verdict.warnings) {
     text += verdict.file + ": warning: " + warning + "\n";
   }
-  const std::string size = verdict.campaign ? campaign_size_text(*verdict.campaign) + ", " : "";
+  std::string size;
+  if (verdict.campaign) size = campaign_size_text(*verdict.campaign) + ", ";
+  if (verdict.contest) size = contest_size_text(*verdict.contest) + ", ";
   return text + verdict.file + ": " + size + "ok\n";
 }
 
@@ -84,6 +99,14 @@ nlohmann::ordered_json as_json(const FileVerdict& verdict) {
                         {"variants", verdict.campaign->variants.size()},
                         {"seeds", verdict.campaign->seeds.size()},
                         {"episodes", verdict.campaign->episodes()}};
+  }
+  if (verdict.contest) {
+    const Contest& contest = verdict.contest->contest;
+    json["contest"] = {{"name", contest.name},
+                       {"controllers", contest.controllers.size()},
+                       {"cells", contest.cells().size()},
+                       {"seeds", contest.seeds.size()},
+                       {"drives", verdict.contest->drives.episodes()}};
   }
   json["errors"] = nlohmann::ordered_json::array();
   for (const InputError::Where& error : verdict.errors) {
@@ -116,12 +139,13 @@ int validate(const std::vector<std::string>& files, bool json) {
 }  // namespace
 
 void add_validate_command(CLI::App& app, int& exit_code) {
-  CLI::App* command =
-      app.add_subcommand("validate", "Checks scenario and campaign files without running them.");
+  CLI::App* command = app.add_subcommand(
+      "validate", "Checks scenario, campaign and contest files without running them.");
   command->footer("Example: qsmpc validate my_scenario.yaml");
   const auto files = std::make_shared<std::vector<std::string>>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("files", *files, "scenario or campaign files, or names of shipped ones")
+  command
+      ->add_option("files", *files, "scenario, campaign or contest files, or names of shipped ones")
       ->required();
   command->add_flag("--json", *json, "as JSON");
   command->callback([files, json, &exit_code] { exit_code = validate(*files, *json); });

@@ -23,6 +23,7 @@ const controller::Decision& AnsweredDecision::take(const ControllerAnswer& answe
                                                    const controller::Situation& situation,
                                                    double optimise_ms) {
   decision_.timing.optimise = optimise_ms;
+  decision_.believed = answer.believed;
   if (stages_ == 0) {
     decision_.input = answer.input;
     return decision_;

@@ -67,7 +67,13 @@ void check_input(const Eigen::VectorXd& input, const AnswerShape& shape, const s
   }
 }
 
+void check_believed(double believed) {
+  if (believed >= 0.0 && believed <= 1.0) return;
+  refuse_answer(fmt::format("believed {}", believed), "a probability from 0 to 1");
+}
+
 void complete_answer(ControllerAnswer& answer, const AnswerShape& shape) {
+  if (answer.believed) check_believed(*answer.believed);
   if (shape.stages == 0) {
     check_input(answer.input, shape, "input");
   } else {

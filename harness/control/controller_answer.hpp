@@ -2,6 +2,7 @@
 // decision that it becomes.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -22,6 +23,9 @@ struct ControllerAnswer {
                                 ///< loop); the rest is not used
   controller::SolverStatus status = controller::SolverStatus::kConverged;  ///< of the plan
   int evaluations = 0;                                                     ///< of cost and gradient
+  /// Its own estimate of the probability that the state at the end of the period is unsafe, from 0
+  /// to 1; nothing where it has none.
+  std::optional<double> believed{};
 };
 
 #pragma GCC visibility pop
@@ -42,6 +46,9 @@ struct WrongAnswer {
 /// Throws WrongAnswer unless `input`, which messages call `what`, has a finite number within the
 /// bounds for each input.
 void check_input(const Eigen::VectorXd& input, const AnswerShape& shape, const std::string& what);
+
+/// Throws WrongAnswer unless `believed` is a probability.
+void check_believed(double believed);
 
 /// Throws WrongAnswer unless `answer` is of this shape. Gains that are not there become zeros.
 void complete_answer(ControllerAnswer& answer, const AnswerShape& shape);

@@ -1,6 +1,7 @@
 // The controller's side of controller_protocol.hpp, read as what anybody may have written.
 #include <array>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -95,6 +96,17 @@ int count_in(const AnswerJson& count) {
   return count.get<int>();
 }
 
+/// What the controller says of the risk that it takes, if it does.
+std::optional<double> believed_in(const AnswerJson& json) {
+  const auto believed = json.find("believed");
+  if (believed == json.end() || believed->is_null()) return std::nullopt;
+  if (!believed->is_number()) {
+    refuse("believed " + shown(*believed), "a probability from 0 to 1, or null");
+  }
+  check_believed(believed->get<double>());
+  return believed->get<double>();
+}
+
 void read_plan(const AnswerJson& plan, const AnswerShape& shape, ControllerAnswer& answer) {
   const auto inputs = plan.find("inputs");
   if (inputs == plan.end() || !inputs->is_array() || std::ssize(*inputs) != shape.stages) {
@@ -151,6 +163,7 @@ ControllerAnswer read_answer(const std::string& line, std::int64_t period,
   const auto value = json.find(key);
   if (value == json.end()) refuse("the answer " + shown(json), expected);
   ControllerAnswer answer;
+  answer.believed = believed_in(json);
   if (!plans) {
     answer.input = input_in(*value, shape, "input");
     return answer;

@@ -194,6 +194,7 @@ struct Drive::Parts {
     if (decision.status) record.solver_status = controller::solver_status_name(*decision.status);
     record.fallback = decision.fallback;
     record.iterations = decision.evaluations;
+    record.believed = decision.believed.value_or(kNotANumber);
     record.timing.quantise = decision.timing.quantise;
     record.timing.propagate = decision.timing.propagate;
     record.timing.optimise = decision.timing.optimise;

@@ -99,8 +99,8 @@ std::string spread_table(const CampaignStatistics& statistics) {
 
 std::string certificates_table(const CampaignStatistics& statistics) {
   PageTable table{.label = "Certificates of the next step, by variant",
-                  .heads = {"variant", "periods", "unsafe", "observed", "certified", "p",
-                            "bins exceeded", "planning, median (ms)", "99 % (ms)"},
+                  .heads = {"variant", "periods", "unsafe", "observed", "certified", "believed",
+                            "p", "bins exceeded", "planning, median (ms)", "99 % (ms)"},
                   .rows = {}};
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     const VariantStatistics& variant = statistics.variants[n];
@@ -110,13 +110,15 @@ std::string certificates_table(const CampaignStatistics& statistics) {
     table.rows.push_back({variant_head(statistics, n), fmt::format("{}", variant.periods),
                           fmt::format("{}", variant.unsafe_periods),
                           number_html(variant.unsafe_step_rate()), certified,
-                          number_html(variant.p_value),
+                          number_html(variant.believed_step_rate()), number_html(variant.p_value),
                           exceeded > 0 ? fmt::format("<strong>{}</strong>", exceeded) : "0",
                           number_html(variant.ocp_ms.median), number_html(variant.ocp_ms.p99)});
   }
-  return section_head("Certificates of the next step, and planning",
-                      "p is small where more periods end unsafe than certified for them." +
-                          no_bound_words(statistics)) +
+  return section_head(
+             "Certificates of the next step, and planning",
+             "Believed: what the controller itself took for the probability, no bound. p is "
+             "small where more periods end unsafe than certified for them." +
+                 no_bound_words(statistics)) +
          verdict_html(certificate_verdict(statistics)) + table_html(table);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 #include <system_error>
 
 #include "harness/errors.hpp"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kScenarios = "scenarios";
 constexpr const char* kCampaigns = "campaigns";
+constexpr const char* kContests = "contests";
 
 // A path without "..", links resolved as far as it exists; never throws.
 fs::path normal(const fs::path& path) {
@@ -85,6 +87,27 @@ std::vector<ShippedFile> shipped_files(const char* folder) {
   return files;
 }
 
+/// The folder of the files of a kind, and what one is called.
+struct KindWords {
+  const char* folder;
+  const char* what;
+};
+
+const KindWords& words_of(ShippedKind kind) {
+  static const KindWords scenario{.folder = kScenarios, .what = "scenario"};
+  static const KindWords campaign{.folder = kCampaigns, .what = "campaign"};
+  static const KindWords contest{.folder = kContests, .what = "contest"};
+  switch (kind) {
+    case ShippedKind::kScenario:
+      return scenario;
+    case ShippedKind::kCampaign:
+      return campaign;
+    case ShippedKind::kContest:
+      return contest;
+  }
+  throw std::invalid_argument("shipped files: a kind that has no name");
+}
+
 }  // namespace
 
 std::string shipped_models_folder() {
@@ -111,6 +134,8 @@ std::vector<ShippedScenario> shipped_scenarios() { return shipped_files(kScenari
 
 std::vector<ShippedCampaign> shipped_campaigns() { return shipped_files(kCampaigns); }
 
+std::vector<ShippedContest> shipped_contests() { return shipped_files(kContests); }
+
 std::optional<std::string> find_shipped_scenario(const std::string& name) {
   return find_shipped(kScenarios, name);
 }
@@ -119,9 +144,13 @@ std::optional<std::string> find_shipped_campaign(const std::string& name) {
   return find_shipped(kCampaigns, name);
 }
 
+std::optional<std::string> find_shipped_contest(const std::string& name) {
+  return find_shipped(kContests, name);
+}
+
 std::string find_file_or_shipped(const std::string& path_or_name, ShippedKind kind) {
-  const bool is_scenario = kind == ShippedKind::kScenario;
-  const char* const folder = is_scenario ? kScenarios : kCampaigns;
+  const KindWords& words = words_of(kind);
+  const char* const folder = words.folder;
   if (is_file(path_or_name)) return path_or_name;
   if (const auto shipped = find_shipped(folder, path_or_name)) return *shipped;
   std::error_code error;
@@ -129,7 +158,7 @@ std::string find_file_or_shipped(const std::string& path_or_name, ShippedKind ki
   const bool is_path = path_or_name.find('/') != std::string::npos || extension == ".yaml" ||
                        extension == ".yml" || fs::exists(path_or_name, error);
   if (is_path) return path_or_name;
-  const std::string what = is_scenario ? "scenario" : "campaign";
+  const std::string what = words.what;
   throw InputError({.file = path_or_name,
                     .found = "no such file or shipped " + what,
                     .expected = "the path of a " + what + " file, or " +

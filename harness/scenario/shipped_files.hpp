@@ -15,8 +15,9 @@ struct ShippedFile {
 };
 using ShippedScenario = ShippedFile;
 using ShippedCampaign = ShippedFile;
+using ShippedContest = ShippedFile;
 
-/// The folder of shipped models, with `campaigns`, `scenarios` and `mjcf` in it: the environment
+/// The folder of shipped models, with `campaigns`, `contests`, `scenarios` and `mjcf` in it: the environment
 /// variable QSMPC_MODELS where it is set, else ../share/qsmpc/models beside the program, else the
 /// source tree's.
 [[nodiscard]] std::string shipped_models_folder();
@@ -30,6 +31,7 @@ using ShippedCampaign = ShippedFile;
 /// As for scenarios.
 [[nodiscard]] std::vector<ShippedCampaign> shipped_campaigns();
 [[nodiscard]] std::vector<std::string> shipped_campaign_names();
+[[nodiscard]] std::vector<ShippedContest> shipped_contests();
 
 /// The names of the shipped MuJoCo XML files, e.g. "dubins_car.xml".
 [[nodiscard]] std::vector<std::string> shipped_mjcf_names();
@@ -40,8 +42,11 @@ using ShippedCampaign = ShippedFile;
 /// The path of the shipped campaign called `name`, or nothing.
 [[nodiscard]] std::optional<std::string> find_shipped_campaign(const std::string& name);
 
+/// The path of the shipped contest called `name`, or nothing.
+[[nodiscard]] std::optional<std::string> find_shipped_contest(const std::string& name);
+
 /// Files that are shipped by name.
-enum class ShippedKind { kScenario, kCampaign };
+enum class ShippedKind { kScenario, kCampaign, kContest };
 
 /// `path_or_name` where it is a file, else the path of the shipped file of that name, else again
 /// `path_or_name` where it looks like a path, so that reading it says what is wrong with it.

@@ -111,6 +111,23 @@ void add_certificates(const EpisodeView& view, Summary& summary) {
   summary.risk = risk_use(trace);
 }
 
+void add_believed(const Trace& trace, Summary& summary) {
+  if (trace.steps.empty()) return;
+  BelievedRisk believed;
+  for (const StepRecord& step : trace.steps) {
+    if (std::isnan(step.believed)) return;
+    believed.max = std::max(believed.max, step.believed);
+    believed.sum += step.believed;
+  }
+  believed.mean = believed.sum / summary.steps;
+  summary.believed = believed;
+}
+
+nlohmann::ordered_json believed_json(const std::optional<BelievedRisk>& believed) {
+  if (!believed) return nullptr;
+  return {{"max", believed->max}, {"mean", believed->mean}, {"sum", believed->sum}};
+}
+
 void add_mismatch(const EpisodeView& view, Summary& summary) {
   const Eigen::MatrixXd& residuals = view.residuals();
   const Eigen::Index dim = residuals.rows();
@@ -185,6 +202,7 @@ Summary summarise(const EpisodeView& view) {
   add_cost(trace, summary);
   add_timing(trace, summary);
   add_certificates(view, summary);
+  add_believed(trace, summary);
   add_mismatch(view, summary);
   return summary;
 }
@@ -221,6 +239,7 @@ std::string summary_json(const EpisodeView& view, const SummaryOptions& options)
                          {"horizon", {{"max", summary.horizon_max}}},
                          {"thesis", {{"max", summary.thesis_max}}}};
   json["certificate"].update(scope_json(summary.no_bound));
+  json["believed"] = {{"next_step", believed_json(summary.believed)}};
   add_risk(summary.risk, json);
   json["mismatch"] = {{"one_step",
                        {{"rmse", vector_json(summary.mismatch_rmse)},

@@ -15,6 +15,14 @@
 
 namespace qsmpc::harness {
 
+/// What a controller itself took to be the probability that the next state is unsafe, over the
+/// periods of a drive. No bound.
+struct BelievedRisk {
+  double max = 0.0;
+  double mean = 0.0;
+  double sum = 0.0;
+};
+
 struct Summary {
   std::string scenario;
   std::uint64_t seed = 0;
@@ -49,7 +57,9 @@ struct Summary {
   double next_step_sum = 0.0;  ///< along the drive
   double horizon_max = 0.0;    ///< of the plans' sums over their stages; not a number without plans
   double thesis_max = 0.0;     ///< of the published value; not a bound
-  RiskUse risk;                ///< the same certificates, against the scenario's limits
+  /// Nothing where the controller has no estimate in some period, or there is no period.
+  std::optional<BelievedRisk> believed;
+  RiskUse risk;  ///< the same certificates, against the scenario's limits
   /// One-step residual x_{k+1} − w_k − f(x_k, u_k) of the plant against the model, by state.
   Eigen::VectorXd mismatch_rmse;
   Eigen::VectorXd mismatch_mean;

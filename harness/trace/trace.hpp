@@ -60,7 +60,10 @@ struct StepRecord {
   std::string solver_status;                ///< name of the solver's status; empty without a solver
   bool fallback = false;                    ///< the shifted previous plan was applied instead
   int iterations = 0;                       ///< cost-and-gradient evaluations
-  std::vector<StageParticles> particles;    ///< horizon + 1; empty where the controller has none
+  /// The controller's own estimate of the probability that the state at the end of the period is
+  /// unsafe; not a number where it has none, and in traces of earlier versions. No bound.
+  double believed = kNotANumber;
+  std::vector<StageParticles> particles;  ///< horizon + 1; empty where the controller has none
   /// Stages 0 … horizon, or 0 and 1 where nothing is planned.
   std::vector<controller::StageBudget> budgets;
   std::vector<controller::StageCertificate> certificates;  ///< the same without stage 0

@@ -178,6 +178,15 @@ void add_solution(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .comment = "evaluations of the cost and its gradient"});
 }
 
+void add_believed(std::vector<DatasetSpec>& layout) {
+  layout.push_back({.path = kBelievedPath,
+                    .axes = {"step"},
+                    .units = {"1"},
+                    .comment = "the controller's own estimate of the probability that the state at "
+                               "the end of the period is unsafe, no bound; not a number where it "
+                               "has none"});
+}
+
 void add_particles(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
   const std::string slices =
       "the points of step k and stage s (0 is the present) are the rows offsets[k, s] up to, "
@@ -223,6 +232,7 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario,
   add_belief(layout, sizes);
   if (sizes.parts.stages > 0) add_policy(layout, sizes);
   add_solution(layout, sizes);
+  add_believed(layout);
   if (sizes.parts.particles) add_particles(layout, sizes);
   for (DatasetSpec& spec : certificate_layout(sizes.certified)) layout.push_back(std::move(spec));
   add_timing(layout);
@@ -231,8 +241,8 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario,
 
 bool may_be_missing(std::string_view path) {
   return path == kObservationPath || path == kResidualPath || path == kGainsPath ||
-         path == kBetweenPath || path == kDynamicsPath || path == kModelErrorPath ||
-         path == "/certificate/smoothed";
+         path == kBetweenPath || path == kBelievedPath || path == kDynamicsPath ||
+         path == kModelErrorPath || path == "/certificate/smoothed";
 }
 
 }  // namespace qsmpc::harness

@@ -28,6 +28,9 @@ inline constexpr const char* kBetweenPath = "/plant/clearance_between";
 inline constexpr const char* kContactForcePath = "/plant/contact_force";
 inline constexpr const char* kContactTimePath = "/plant/contact_time";
 
+/// Of what controllers believe of the risk that they take.
+inline constexpr const char* kBelievedPath = "/controller/believed";
+
 /// Of the policies' gains.
 inline constexpr const char* kGainsPath = "/plan/gains";
 

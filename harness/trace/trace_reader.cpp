@@ -47,6 +47,7 @@ class TraceReader {
   void read_final_state();
   void read_plant_and_belief();
   void read_between();
+  void read_believed();
   void read_policy();
   void read_solution();
   void read_particles();
@@ -80,6 +81,7 @@ Trace TraceReader::read() {
   read_final_state();
   read_plant_and_belief();
   read_between();
+  read_believed();
   if (parts_.stages > 0) read_policy();
   read_solution();
   if (parts_.particles) read_particles();
@@ -226,6 +228,12 @@ void TraceReader::read_plant_and_belief() {
     step.belief_covariance = Eigen::Map<const RowMajor>(
         row_of(covariances, k, state_dim_ * state_dim_), state_dim_, state_dim_);
   }
+}
+
+void TraceReader::read_believed() {
+  const auto believed = doubles_if_there(kBelievedPath);
+  if (believed.empty()) return;
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) trace_.steps[k].believed = believed[k];
 }
 
 void TraceReader::read_between() {

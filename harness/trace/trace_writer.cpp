@@ -64,6 +64,7 @@ void TraceWriter::append(const StepRecord& record, std::span<const MotionSample>
   append_motion(motion);
   append_vectors(record);
   append_plan(record);
+  file_.append(kBelievedPath, std::vector<double>{record.believed});
   if (parts_.particles) append_particles(record);
   append_certificates(file_, record.budgets, record.certificates);
   append_timing(record.timing);

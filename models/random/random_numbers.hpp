@@ -24,6 +24,7 @@ enum class RandomStream : std::uint64_t {
   kParameters = 5,  ///< parameters of a plant that are drawn
   kBootstrap = 6,   ///< weights of an episode in the replicates of a sample of episodes
   kPlanning = 7,    ///< paths that a controller samples, a period an episode
+  kSearch = 8,      ///< the order in which the points of a grid of settings are tried
 };
 
 struct RandomKey {

@@ -87,6 +87,12 @@ class Plan:
         return self.core.fallback
 
     @property
+    def believed(self) -> float:
+        """The controller's own estimate of the probability that the next state is unsafe, no bound;
+        not a number where it has none."""
+        return self.core.believed
+
+    @property
     def costs(self) -> dict[str, float]:
         """The expected cost by part; not a number where the controller has none."""
         return self.core.costs

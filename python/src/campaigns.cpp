@@ -57,6 +57,8 @@ void add_row(const harness::EpisodeRow& row, Columns& columns) {
   numbers["cost"].push_back(row.cost);
   numbers["next_step_max"].push_back(row.next_step_max);
   numbers["next_step_sum"].push_back(row.next_step_sum);
+  numbers["believed_max"].push_back(or_nan(row.believed_max));
+  numbers["believed_sum"].push_back(or_nan(row.believed_sum));
   numbers["horizon_max"].push_back(row.horizon_max);
   numbers["iterations_median"].push_back(row.iterations_median);
   whole["fallbacks"].push_back(row.fallbacks);

@@ -208,6 +208,7 @@ void add_plan_class(nb::module_& module) {
       .def_ro("status", &StepRecord::solver_status)
       .def_ro("evaluations", &StepRecord::iterations)
       .def_ro("fallback", &StepRecord::fallback)
+      .def_ro("believed", &StepRecord::believed)
       .def_prop_ro("costs", &costs_of)
       .def_prop_ro("certificates", &certificates_of)
       .def_prop_ro("horizon_bound",

@@ -44,19 +44,28 @@ before(async () => {
     "greedy: {controller.horizon: 3}}\nseeds: {count: 6}\ngrid: {limit.steps: [60]}\ntraces: none\n");
   campaign("campaign_without_plane", "scenario: cart_pole_balance\nseeds: {count: 4}\ntraces: none\n");
   campaign("campaign_of_one", "scenario: dubins_corridor\nseeds: {count: 6}\ntraces: none\n");
+  folders.contest = temporaryFolder();
+  const contest = join(temporaryFolder(), "contest.yaml");
+  writeFileSync(contest, "description: Three ways to drive\ncontrollers: {quantised: {}, nominal: {controller.kind: " +
+    "nominal, risk: {}}, lqr: {controller.kind: lqr, risk: {}}}\nscenarios: [dubins_obstacles, dubins_alley]\n" +
+    "plants: [analytic]\nseeds: {count: 4}\ntiming: {seeds: 1}\ncommon: {limit.steps: 60}\ntuning: {seeds: [9], " +
+    "budget: 2, search: {lqr: {controller.lqr.about: [path, target]}}}\n");
+  qsmpc("contest", contest, "--quiet", "--out", folders.contest);
   browser = await startBrowser(softwareGl);
 });
 
 after(async () => { await browser?.close(); });
 
 const pages = ["episode", "episode_without_video", "episode_without_plan", "episode_without_plane", "episode_of_a_cart",
-               "comparison", "comparison_of_one", "campaign", "campaign_of_one", "campaign_without_plane"];
+               "comparison", "comparison_of_one", "campaign", "campaign_of_one", "campaign_without_plane",
+               "contest"];
+const pageOf = (name) => join(folders[name], name === "contest" ? "contest.html" : "report.html");
 
 for (const name of pages) {
   for (const [screen, size] of Object.entries(screens)) {
     for (const colorScheme of ["light", "dark"]) {
       test(`${name}: ${screen}, ${colorScheme}: no overlap, no clipping, no empty panel`, async () => {
-        const {page, seen} = await openPage(browser, join(folders[name], "report.html"), {...size, colorScheme});
+        const {page, seen} = await openPage(browser, pageOf(name), {...size, colorScheme});
         await page.waitForTimeout(300);  // charts draw after the page has loaded
         if (await page.locator("#scene").isVisible()) {  // drawn once it is scrolled to
           await page.locator("#scene").scrollIntoViewIfNeeded();
@@ -67,7 +76,7 @@ for (const name of pages) {
         await page.screenshot({path: join(artefacts, `layout-${name}-${screen}-${colorScheme}.png`), fullPage: true});
         assert.deepEqual(await page.evaluate(layoutProblems, {wide: screen === "desktop"}), []);
         assert.deepEqual(await page.evaluate(lonelyTiles), []);
-        if (!name.startsWith("campaign")) assert.deepEqual(await page.evaluate(emptyColumns), []);
+        if (!name.startsWith("campaign") && name !== "contest") assert.deepEqual(await page.evaluate(emptyColumns), []);
         assert.deepEqual(seen.errors, []);
         await page.close();
       });
@@ -128,5 +137,15 @@ test("the near view has axes that follow the vehicle", async () => {
   for (const text of [...start, ...end]) assert.match(text, /^−?\d+(\.\d+)?$/);
   await page.locator("#near-view").uncheck();
   assert.equal(await page.locator(".near-axes text").count(), 0);
+  await page.close();
+});
+
+test("a contest's figure, words and table are on a desktop's first screen", async () => {
+  const {page} = await openPage(browser, pageOf("contest"), screens.desktop);
+  for (const part of [".contest figure", ".rivals li:last-child", ".results"]) {
+    const box = await page.locator(part).first().boundingBox();
+    assert.ok(box.y + box.height <= screens.desktop.viewport.height, part);
+  }
+  assert.equal(await page.locator(".rivals li").count(), 3);
   await page.close();
 });

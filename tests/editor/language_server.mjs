@@ -18,7 +18,7 @@ export const qsmpc = (...words) =>
   execFileSync(required("QSMPC_PROGRAM"), words, {encoding: "utf8", stdio: ["ignore", "pipe", "pipe"]});
 
 // Kinds of files that have a schema; a document of the kind is called *.KIND.yaml here.
-const kinds = ["scenario", "campaign"];
+const kinds = ["scenario", "campaign", "contest"];
 
 // { kind: address } of the schemas that the program prints.
 function writeSchemas() {

@@ -50,6 +50,16 @@ test("every shipped campaign is taken as it is", async () => {
   }
 });
 
+test("every shipped contest is taken as it is, and a wrong key of one is marked", async () => {
+  const contests = shipped("models/contests");
+  assert.ok(contests.length > 0);
+  for (const {name, text} of contests) {
+    assert.deepEqual(await server.diagnose("contest", text), [], name);
+    const found = await server.diagnose("contest", text.replace(/^ {2}budget:/m, "  budgets:"));
+    assert.match(found.map((one) => one.message).join("\n"), /budget/);
+  }
+});
+
 test("the scenario that an episode leaves is taken", async () => {
   const folder = mkdtempSync(join(tmpdir(), "qsmpc_resolved_"));
   for (const {name} of shipped("models/scenarios")) {

@@ -16,11 +16,12 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string row_text(const harness::EpisodeRow& row) {
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", row.variant, row.seed,
-                     row.outcome, row.fault, row.steps, row.time_to_target.value_or(-1.0),
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", row.variant,
+                     row.seed, row.outcome, row.fault, row.steps, row.time_to_target.value_or(-1.0),
                      row.unsafe, row.min_clearance, row.cost, row.next_step_max, row.next_step_sum,
                      row.horizon_max, row.thesis_max, row.iterations_median, row.fallbacks,
-                     row.risk_exceeded.value_or(-1), row.trace);
+                     row.risk_exceeded.value_or(-1), row.believed_max.value_or(-1.0),
+                     row.believed_sum.value_or(-1.0), row.trace);
 }
 
 /// All wall-clock values are under this key.
@@ -102,10 +103,14 @@ std::vector<std::string> rows_of(const std::string& folder) {
   return rows;
 }
 
-std::string results_of(const std::string& folder) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_text(folder + "/campaign.json"));
+std::string json_without_timings(const std::string& path) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(read_text(path));
   strip_timings(json);
-  std::string results = json.dump(1);
+  return json.dump(1);
+}
+
+std::string results_of(const std::string& folder) {
+  std::string results = json_without_timings(folder + "/campaign.json");
   for (const std::string& name : files_below(folder, ".csv")) {
     results += name + "\n" + without_timings(read_text(folder + "/" + name));
   }

@@ -18,6 +18,9 @@ namespace qsmpc::testing {
 /// The bytes of campaign.json and of the CSV files, without what the clock says.
 [[nodiscard]] std::string results_of(const std::string& folder);
 
+/// The JSON file at `path` without its wall-clock values.
+[[nodiscard]] std::string json_without_timings(const std::string& path);
+
 /// Names, relative to `folder`, of all files below it that end in `ending`.
 [[nodiscard]] std::vector<std::string> files_below(const std::string& folder,
                                                    const std::string& ending);

@@ -136,6 +136,7 @@ inline harness::StepRecord example_step(const harness::Scenario& scenario,
   step.solver_status = k % 7 == 3 ? "iteration_limit" : "converged";
   step.fallback = k % 17 == 5;
   step.iterations = 20 + k % 5;
+  step.believed = 1e-4 * k;
   step.timing = {.quantise = 1.0,
                  .propagate = 2.0,
                  .optimise = 30.0 + 20.0 * noise(),

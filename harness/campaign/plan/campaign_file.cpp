@@ -57,7 +57,7 @@ bool is_campaign_file(const std::string& path_or_name) {
   try {
     const YamlNode tree = parse_yaml(read_text_file(path_or_name), path_or_name);
     const auto has = [&](const char* key) { return tree.find(key) != nullptr; };
-    return !has("model") &&
+    return !has("model") && !has("controllers") &&
            std::ranges::any_of(std::initializer_list<const char*>{"scenario", "scenarios",
                                                                   "variants", "grid", "seeds"},
                                has);

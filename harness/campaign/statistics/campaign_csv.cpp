@@ -66,8 +66,9 @@ std::string variant_line(const VariantStatistics& variant) {
          spread_fields(variant.cost) + spread_fields(variant.min_clearance) +
          spread_fields(variant.time_to_target) + "," +
          line_of(variant.periods, variant.unsafe_periods, variant.unsafe_step_rate(),
-                 variant.certified_step_rate(), variant.p_value, times.median, times.p95, times.p99,
-                 times.max, times.mean, variant.deadline_misses);
+                 variant.certified_step_rate(), variant.believed_step_rate(), variant.p_value,
+                 times.median, times.p95, times.p99, times.max, times.mean,
+                 variant.deadline_misses);
 }
 
 std::string bin_lines(const std::string& variant, const char* what,
@@ -98,7 +99,8 @@ std::string variants_csv(const CampaignStatistics& statistics) {
   csv += rate_head("unsafe") + ",risk_exceeded";
   csv += spread_head("cost") + spread_head("min_clearance") + spread_head("time_to_target");
   csv +=
-      ",periods,unsafe_periods,unsafe_step_rate,certified_step_rate,exceedance_p_value,"
+      ",periods,unsafe_periods,unsafe_step_rate,certified_step_rate,believed_step_rate,"
+      "exceedance_p_value,"
       "ocp_ms.median,ocp_ms.p95,ocp_ms.p99,ocp_ms.max,ocp_ms.mean,ocp_ms.deadline_misses\n";
   for (const VariantStatistics& variant : statistics.variants) csv += variant_line(variant);
   return csv;
@@ -133,8 +135,8 @@ std::string calibration_csv(const CampaignStatistics& statistics) {
 
 std::string episodes_csv_head() {
   return "variant,seed,outcome,fault,steps,time_to_target,unsafe,min_clearance,cost,next_step_max,"
-         "next_step_sum,horizon_max,thesis_max,iterations_median,fallbacks,risk_exceeded,trace,"
-         "version,"
+         "next_step_sum,horizon_max,thesis_max,iterations_median,fallbacks,risk_exceeded,"
+         "believed_max,believed_sum,trace,version,"
          "finished_at,wall_ms,deadline_misses\n";
 }
 
@@ -142,8 +144,8 @@ std::string episodes_csv_line(const StoredVariant& variant, const EpisodeRow& ro
   return line_of(variant.name, row.seed, row.outcome, row.fault, row.steps, row.time_to_target,
                  row.unsafe, row.min_clearance, row.cost, row.next_step_max, row.next_step_sum,
                  row.horizon_max, row.thesis_max, row.iterations_median, row.fallbacks,
-                 row.risk_exceeded, row.trace, row.version, row.timing.finished_at,
-                 row.timing.wall_ms, row.timing.deadline_misses);
+                 row.risk_exceeded, row.believed_max, row.believed_sum, row.trace, row.version,
+                 row.timing.finished_at, row.timing.wall_ms, row.timing.deadline_misses);
 }
 
 }  // namespace qsmpc::harness

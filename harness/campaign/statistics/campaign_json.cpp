@@ -106,6 +106,7 @@ Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
                {"unsafe_periods", variant.unsafe_periods},
                {"unsafe_step_rate", variant.unsafe_step_rate()},
                {"certified_step_rate", variant.certified_step_rate()},
+               {"believed_step_rate", variant.believed_step_rate()},
                {"exceedance_p_value", variant.p_value},
                {"certificate", scope_json(variant.no_bound)},
                {"calibration", calibration_json(variant.calibration, variant.published)},

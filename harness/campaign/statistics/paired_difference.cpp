@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "models/constants.hpp"
 #include "models/random/random_numbers.hpp"
@@ -97,10 +98,15 @@ RateInterval BootstrapMean::interval() const {
     // Of few pairs, none may be in a replicate: it says nothing.
     if (weights_[r] > 0.0) means.push_back(sums_[r] / weights_[r]);
   }
-  std::ranges::sort(means);
-  const auto count = static_cast<double>(means.size());
+  return percentile_interval(std::move(means));
+}
+
+RateInterval percentile_interval(std::vector<double> replicates) {
+  if (replicates.empty()) return {.lower = kNotANumber, .upper = kNotANumber};
+  std::ranges::sort(replicates);
+  const auto count = static_cast<double>(replicates.size());
   const auto outside = static_cast<std::size_t>(std::ceil(kCampaignTail * count)) - 1;
-  return {.lower = means[outside], .upper = means[means.size() - 1 - outside]};
+  return {.lower = replicates[outside], .upper = replicates[replicates.size() - 1 - outside]};
 }
 
 const std::vector<std::string>& paired_quantities() {

@@ -51,6 +51,10 @@ double VariantStatistics::certified_step_rate() const {
   return share_of(certified_periods, periods);
 }
 
+double VariantStatistics::believed_step_rate() const {
+  return share_of(believed, believed_periods);
+}
+
 const std::vector<ListedOutcome>& listed_outcomes() {
   static const std::vector<ListedOutcome> listed = {
       {outcome_name(Outcome::kReached), "reached", "reached the target",
@@ -81,6 +85,11 @@ void VariantTally::add(const EpisodeRow& row) {
   unsafe_ += row.unsafe ? 1 : 0;
   risk_exceeded_ += row.risk_exceeded.value_or(0) > 0 ? 1 : 0;
   deadline_misses_ += row.timing.deadline_misses;
+  if (row.believed_sum) {
+    ++believed_drives_;
+    believed_periods_ += row.steps;
+    believed_ += *row.believed_sum;
+  }
   const bool compares = row.outcome != outcome_name(Outcome::kFault);
   const auto add_to = [&](SpreadTally& spread, double value) {
     if (compares && !std::isnan(value)) {
@@ -118,6 +127,9 @@ VariantStatistics VariantTally::result() const {
           .periods = calibration_.periods(),
           .unsafe_periods = calibration_.unsafe(),
           .certified_periods = calibration_.certified(),
+          .believed_drives = believed_drives_,
+          .believed_periods = believed_periods_,
+          .believed = believed_,
           .p_value = calibration_.p_value(),
           .calibration = calibration_.result(),
           .published = published_.result()};

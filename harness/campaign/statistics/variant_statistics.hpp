@@ -98,9 +98,12 @@ struct VariantStatistics {
   Distribution ocp_ms{};           ///< of all periods; not numbers without one
   std::int64_t deadline_misses = 0;
   std::int64_t periods = 0;
-  std::int64_t unsafe_periods = 0;  ///< that ended in the unsafe set
-  double certified_periods = 0.0;   ///< sum of what was certified for them
-  double p_value = 1.0;             ///< exceedance_p_value of all periods
+  std::int64_t unsafe_periods = 0;    ///< that ended in the unsafe set
+  double certified_periods = 0.0;     ///< sum of what was certified for them
+  std::int64_t believed_drives = 0;   ///< in which the controller itself has an estimate
+  std::int64_t believed_periods = 0;  ///< of these drives
+  double believed = 0.0;              ///< sum of what it believed of them
+  double p_value = 1.0;               ///< exceedance_p_value of all periods
   std::vector<CalibrationBin> calibration{};
   std::vector<CalibrationBin> published{};  ///< the same of the thesis's value, which is no bound
   std::vector<DrivenPath> paths{};          ///< at most kMostDrawnPaths, failures first
@@ -108,6 +111,8 @@ struct VariantStatistics {
   /// Shares of the periods; not numbers without one.
   [[nodiscard]] double unsafe_step_rate() const;
   [[nodiscard]] double certified_step_rate() const;
+  /// Mean of what the controller believed; not a number where it has no estimate.
+  [[nodiscard]] double believed_step_rate() const;
 };
 
 /// An outcome as tables and figures show it.
@@ -146,6 +151,9 @@ class VariantTally {
   std::int64_t unsafe_ = 0;
   std::int64_t risk_exceeded_ = 0;
   std::int64_t deadline_misses_ = 0;
+  std::int64_t believed_drives_ = 0;
+  std::int64_t believed_periods_ = 0;
+  double believed_ = 0.0;
   std::map<std::string, std::int64_t> outcomes_{};
   SpreadTally cost_{WorstIs::kHighest};
   SpreadTally min_clearance_{WorstIs::kLowest};

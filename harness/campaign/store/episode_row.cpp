@@ -53,6 +53,12 @@ std::vector<PathPoint> path_of(const EpisodeView& view) {
 
 EpisodeRow episode_row(const EpisodeView& view, std::int64_t variant) {
   const Summary& summary = view.summary();
+  std::optional<double> believed_max;
+  std::optional<double> believed_sum;
+  if (summary.believed) {
+    believed_max = summary.believed->max;
+    believed_sum = summary.believed->sum;
+  }
   return {.variant = variant,
           .seed = summary.seed,
           .outcome = summary.outcome,
@@ -66,6 +72,8 @@ EpisodeRow episode_row(const EpisodeView& view, std::int64_t variant) {
           .next_step_sum = summary.next_step_sum,
           .horizon_max = summary.horizon_max,
           .thesis_max = summary.thesis_max,
+          .believed_max = believed_max,
+          .believed_sum = believed_sum,
           .iterations_median = summary.iterations_median,
           .fallbacks = summary.fallbacks,
           .risk_exceeded = summary.risk.exceeded_periods,

@@ -57,6 +57,10 @@ struct EpisodeRow {
   double next_step_sum = 0.0;
   double horizon_max = 0.0;  ///< of the plans' sums over their stages; not a number without plans
   double thesis_max = 0.0;   ///< of the published value; not a bound
+  /// Of what the controller itself believed of the next step; nothing where it has no estimate, and
+  /// in rows of versions that kept none.
+  std::optional<double> believed_max{};
+  std::optional<double> believed_sum{};
   double iterations_median = 0.0;  ///< cost-and-gradient evaluations of a plan
   int fallbacks = 0;
   /// Periods in which a limit of the risk is exceeded (RiskUse); nothing in rows of versions that

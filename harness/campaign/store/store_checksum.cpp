@@ -12,7 +12,8 @@
 namespace qsmpc::harness {
 namespace {
 
-// Columns by name: those that later schemas add are not in checksums that were made before.
+// Columns by name. Those that later schemas add are in queries of their own, which count only where
+// they have a row: checksums that were made before stay what they are.
 constexpr std::array kQueries{
     "SELECT outcome, fault, steps, time_to_target, unsafe, min_clearance, cost, next_step_max, "
     "next_step_sum, horizon_max, thesis_max, iterations_median, fallbacks, trace, version, "
@@ -22,7 +23,10 @@ constexpr std::array kQueries{
     "SELECT period, certified, published, unsafe FROM period WHERE variant = ? AND seed = ? "
     "ORDER BY period",
     "SELECT period, ocp_ms FROM period_timing WHERE variant = ? AND seed = ? ORDER BY period",
-    "SELECT points FROM path WHERE variant = ? AND seed = ?"};
+    "SELECT points FROM path WHERE variant = ? AND seed = ?",
+    "SELECT believed_max, believed_sum FROM episode WHERE variant = ? AND seed = ? AND "
+    "(believed_max IS NOT NULL OR believed_sum IS NOT NULL)"};
+constexpr std::size_t kFirstQueries = 5;  // that checksums have had from the beginning
 
 using Hash = Fnv1a<std::uint64_t>;
 
@@ -45,12 +49,13 @@ class Checksums {
       : statements_{
             SQLite::Statement(database, kQueries[0]), SQLite::Statement(database, kQueries[1]),
             SQLite::Statement(database, kQueries[2]), SQLite::Statement(database, kQueries[3]),
-            SQLite::Statement(database, kQueries[4])} {}
+            SQLite::Statement(database, kQueries[4]), SQLite::Statement(database, kQueries[5])} {}
 
   std::int64_t of(std::int64_t variant, std::int64_t seed) {
     Hash hash;
     hash.add(static_cast<std::uint64_t>(seed));
-    for (SQLite::Statement& statement : statements_) {
+    for (std::size_t n = 0; n < statements_.size(); ++n) {
+      SQLite::Statement& statement = statements_[n];
       statement.bind(1, variant);
       statement.bind(2, seed);
       std::uint64_t rows = 0;
@@ -59,7 +64,7 @@ class Checksums {
           add_column(statement.getColumn(k), hash);
         }
       }
-      hash.add(rows);
+      if (n < kFirstQueries || rows > 0) hash.add(rows);
       statement.reset();
     }
     return static_cast<std::int64_t>(hash.value());

@@ -98,9 +98,10 @@ std::vector<VariantFamily> read_stored_families(SQLite::Database& database) {
 
 std::string episode_columns(const std::string& e, const std::string& t) {
   std::string columns = fmt::format("{0}.variant, {0}.seed, {1}, ", e, outcome_column(e + "."));
-  for (const char* name : {"fault", "steps", "time_to_target", "unsafe", "min_clearance", "cost",
-                           "next_step_max", "next_step_sum", "horizon_max", "thesis_max",
-                           "iterations_median", "fallbacks", "risk_exceeded", "trace", "version"}) {
+  for (const char* name :
+       {"fault", "steps", "time_to_target", "unsafe", "min_clearance", "cost", "next_step_max",
+        "next_step_sum", "horizon_max", "thesis_max", "iterations_median", "fallbacks",
+        "risk_exceeded", "believed_max", "believed_sum", "trace", "version"}) {
     columns += fmt::format("{}.{}, ", e, name);
   }
   return columns + fmt::format("{0}.finished_at, {0}.wall_ms, {0}.deadline_misses", t);
@@ -150,6 +151,8 @@ EpisodeRow episode_of(SQLite::Statement& statement, int first) {
   if (const SQLite::Column periods = column(); !periods.isNull()) {
     row.risk_exceeded = periods.getInt();
   }
+  if (const SQLite::Column most = column(); !most.isNull()) row.believed_max = most.getDouble();
+  if (const SQLite::Column sum = column(); !sum.isNull()) row.believed_sum = sum.getDouble();
   row.trace = column().getString();
   row.version = column().getString();
   row.timing.finished_at = column().getDouble();
@@ -177,7 +180,7 @@ std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database) {
 void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   SQLite::Statement episode(
       database,
-      "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
+      "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
   episode.bind(1, row.variant);
   episode.bind(2, stored_seed(row.seed));
   episode.bind(3, row.outcome);
@@ -200,6 +203,8 @@ void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   } else {
     episode.bind(18);
   }
+  bind_number(episode, 19, row.believed_max.value_or(std::numeric_limits<double>::quiet_NaN()));
+  bind_number(episode, 20, row.believed_sum.value_or(std::numeric_limits<double>::quiet_NaN()));
   run(episode);
   SQLite::Statement timing(database, "INSERT INTO episode_timing VALUES (?, ?, ?, ?, ?)");
   timing.bind(1, row.variant);

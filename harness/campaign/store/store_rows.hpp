@@ -26,7 +26,7 @@ inline constexpr int kStorePatience = 20'000;
 /// `episode` and `episode_timing` under the names `e` and `t`.
 [[nodiscard]] std::string episode_columns(const std::string& e, const std::string& t);
 /// How many they are.
-inline constexpr int kEpisodeColumns = 21;
+inline constexpr int kEpisodeColumns = 23;
 
 /// The episode in the columns of the row that `statement` is at, from column `first` on.
 [[nodiscard]] EpisodeRow episode_of(SQLite::Statement& statement, int first = 0);

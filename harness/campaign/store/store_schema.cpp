@@ -122,11 +122,17 @@ CREATE TABLE episode_checksum (
 ) STRICT, WITHOUT ROWID;
 )sql";
 
+// Rows of earlier versions do not say what the controller itself believed.
+constexpr const char* kBelievedSchema = R"sql(
+ALTER TABLE episode ADD COLUMN believed_max REAL;
+ALTER TABLE episode ADD COLUMN believed_sum REAL;
+)sql";
+
 }  // namespace
 
 const std::vector<std::string>& store_migrations() {
-  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema, kThirdSchema,
-                                                   kPathSchema, kChecksumSchema};
+  static const std::vector<std::string> migrations{kFirstSchema, kSecondSchema,   kThirdSchema,
+                                                   kPathSchema,  kChecksumSchema, kBelievedSchema};
   return migrations;
 }
 

@@ -104,6 +104,16 @@ TEST_F(Answers, that_are_plans_have_no_gains_unless_they_say_some) {
   EXPECT_EQ(closed.status, controller::SolverStatus::kDeadline);
 }
 
+TEST_F(Answers, say_what_they_believe_only_if_they_want_to) {
+  EXPECT_EQ(read(R"({"input": [0, 0]})").believed, std::nullopt);
+  EXPECT_EQ(read(R"({"input": [0, 0], "believed": null})").believed, std::nullopt);
+  EXPECT_EQ(read(R"({"input": [0, 0], "believed": 0.25})").believed, 0.25);
+  EXPECT_EQ(read(R"({"plan": {"inputs": [[0, 1]]}, "believed": 1})", 1).believed, 1.0);
+  EXPECT_EQ(refusal(R"({"input": [0, 0], "believed": 1.5})"),
+            "believed 1.5; a probability from 0 to 1");
+  EXPECT_THAT(refusal(R"({"input": [0, 0], "believed": "no"})"), HasSubstr("believed \"no\"; "));
+}
+
 TEST_F(Answers, that_are_wrong_are_refused_with_what_was_found) {
   EXPECT_EQ(refusal(""), "an answer that is not JSON: ; {\"input\": […]}");
   EXPECT_THAT(refusal(R"({"input": [NaN, 0]})"), HasSubstr("not JSON: {\"input\": [NaN, 0]}"));

@@ -1,4 +1,5 @@
 // Episodes of every controller and estimator: what they leave in the trace, and what is made of it.
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -100,6 +101,30 @@ TEST(EpisodeControllers, of_every_kind_drive_with_every_estimator_that_fits) {
       EXPECT_EQ(first.final_state, second.final_state);
     }
   }
+}
+
+/// What a controller with particles believes is what the certificates call the unsafe mass of the
+/// next stage; the others have no estimate.
+TEST(EpisodeControllers, that_plan_with_particles_believe_in_their_weight) {
+  double most = 0.0;
+  for (const std::vector<std::string>& choice : choices()) {
+    SCOPED_TRACE(choice.back());
+    // A wall through the start: some of the belief is unsafe at once.
+    std::vector<std::string> more = choice;
+    more.insert(more.end(), {"safe_set.bounds={x: [-1, 12], y: [-0.05, 12]}", "risk={}",
+                             "limit.stop_when_unsafe=false"});
+    const Scenario scenario = scenario_of(more);
+    const Trace trace = run_episode(scenario, {.seed = 3});
+    ASSERT_EQ(trace.steps.size(), 6U);
+    for (const StepRecord& step : trace.steps) {
+      EXPECT_EQ(std::isnan(step.believed), !decision_parts(scenario).particles);
+      if (std::isnan(step.believed)) continue;
+      // 1e-12: sums of weights in another order.
+      EXPECT_NEAR(step.believed, step.certificates.front().of("unsafe_mass"), 1e-12);
+      most = std::max(most, step.believed);
+    }
+  }
+  EXPECT_GT(most, 0.0);
 }
 
 /// Without a plan the certificate is from the state as it is known, and has no error of the period

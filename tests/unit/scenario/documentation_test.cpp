@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/campaign/plan/campaign_keys.hpp"
+#include "harness/contest/contest_keys.hpp"
 #include "harness/scenario/keys/key_tables.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/plant_mapping_keys.hpp"
@@ -56,7 +57,8 @@ TEST(Documentation, describes_every_key_that_a_resolved_scenario_has) {
 TEST(Documentation, has_the_tables_that_the_program_makes) {
   std::vector<DocumentTable> tables = scenario_tables();
   for (const DocumentTable& table : campaign_tables()) tables.push_back(table);
-  EXPECT_EQ(tables.size(), 10U);
+  for (const DocumentTable& table : contest_tables()) tables.push_back(table);
+  EXPECT_EQ(tables.size(), 11U);
   for (const DocumentTable& table : tables) {
     EXPECT_THAT(document(table.file),
                 HasSubstr("<!-- table: " + table.name + " -->\n" + table.text + "\n"))

@@ -166,6 +166,19 @@ TEST(Summary, certificates_are_summed_over_a_plan_and_along_the_drive) {
   EXPECT_DOUBLE_EQ(summary.thesis_max, 0.25);
 }
 
+TEST(Summary, believed_is_summed_where_every_period_has_an_estimate) {
+  Trace trace = straight_trace(3);
+  EXPECT_EQ(nlohmann::json::parse(summary_json(EpisodeView(trace)))["believed"]["next_step"],
+            nullptr);
+  for (std::size_t k = 0; k < 3; ++k) trace.steps[k].believed = 0.125 * static_cast<double>(k);
+  const auto json = nlohmann::json::parse(summary_json(EpisodeView(trace)))["believed"];
+  EXPECT_EQ(json["next_step"]["max"], 0.25);
+  EXPECT_EQ(json["next_step"]["mean"], 0.125);
+  EXPECT_EQ(json["next_step"]["sum"], 0.375);
+  trace.steps[1].believed = std::nan("");
+  EXPECT_FALSE(EpisodeView(trace).summary().believed);
+}
+
 TEST(Summary, risk_is_held_against_its_limits) {
   Trace trace = straight_trace(3);  // certificates 0.01, 0.02, 0.03 of the next step, then 0.5
   trace.scenario.risk = {.stage = 0.5, .plan = 0.515, .mission = 0.05};

@@ -94,6 +94,7 @@ inline void expect_same_step(const harness::StepRecord& a, const harness::StepRe
   }
   EXPECT_EQ(a.solver_status, b.solver_status);
   EXPECT_EQ(a.fallback, b.fallback);
+  EXPECT_TRUE(same_bits(a.believed, b.believed));
   EXPECT_EQ(a.iterations, b.iterations);
   EXPECT_TRUE(same_bits(a.timing.quantise, b.timing.quantise));
   EXPECT_TRUE(same_bits(a.timing.propagate, b.timing.propagate));

@@ -1,0 +1,89 @@
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "harness/contest/contest_results.hpp"
+#include "harness/contest/sentences.hpp"
+#include "harness/text/number_format.hpp"
+#include "harness/text/printable.hpp"
+#include "harness/text/text_width.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr std::size_t kControllerWidth = 14;
+constexpr std::size_t kLineWidth = 106;
+
+std::string short_number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.2g}", value) : "-";
+}
+
+/// "-4 % [-6, -2]" of the cost against the reference's; "1" stands for the reference itself.
+std::string cost_cell(const Standing& standing) {
+  if (!standing.versus) return "reference";
+  const CostDifference& cost = standing.versus->cost;
+  if (!std::isfinite(cost.ratio)) return "-";
+  const auto change = [](double ratio) { return format_short(100.0 * (ratio - 1.0), 2); };
+  return fmt::format("{} % [{}, {}]", change(cost.ratio), change(cost.ratio_interval.lower),
+                     change(cost.ratio_interval.upper));
+}
+
+std::string rate_cell(const EpisodeRate& rate) {
+  if (!std::isfinite(rate.rate)) return "-";
+  return fmt::format("{} [{}, {}]", format_percent(rate.rate), format_percent(rate.interval.lower),
+                     format_percent(rate.interval.upper));
+}
+
+/// `text` with spaces before it; each character takes one column.
+std::string right(const std::string& text, std::size_t width) {
+  const auto columns = static_cast<std::size_t>(std::ranges::count_if(
+      text, [](char byte) { return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U; }));
+  return (columns < width ? std::string(width - columns, ' ') : "") + text;
+}
+
+std::string table_row(const std::string& name, const Standing& standing) {
+  const ContestTimes& times = standing.times;
+  std::string row = "  " + padded(printable(name, kControllerWidth - 2), kControllerWidth);
+  row += right(format_percent(standing.reached.rate), 8);
+  row += right(rate_cell(standing.collision), 18);
+  row += right(format_percent(standing.left_bounds.rate), 6);
+  row += right(format_percent(standing.timeout.rate), 8);
+  row += right(standing.believed.drives == 0 ? "-" : short_number(standing.believed.mean), 9);
+  row += right(short_number(standing.certified.mean), 10);
+  row += right(cost_cell(standing), 22);
+  row += right(times.periods == 0 ? "-" : format_short(times.ocp_ms.median, 2), 6);
+  return row + right(times.periods == 0 ? "-" : format_short(times.ocp_ms.p99, 2), 7) + "\n";
+}
+
+/// `text` in lines, each after two spaces.
+std::string indented(const std::string& text) {
+  std::string lines;
+  for (const std::string& line : wrapped(text, kLineWidth)) lines += "  " + line + "\n";
+  return lines;
+}
+
+}  // namespace
+
+std::string contest_table(const ContestResults& results) {
+  const Contest& contest = results.contest;
+  std::string text = fmt::format("{}: {} of {} drives\n{}\n\n", printable(contest.name, 60),
+                                 results.done, results.asked, contest_headline(results));
+  text += "  " + padded("controller", kControllerWidth) + right("reached", 8) +
+          right("collided [99 %]", 18) + right("left", 6) + right("timeout", 8) +
+          right("believed", 9) + right("certified", 10) + right("cost", 22) + right("ms", 6) +
+          right("99 %", 7) + "\n";
+  for (std::size_t n = 0; n < contest.controllers.size(); ++n) {
+    text += table_row(contest.controllers[n].name, results.overall[n]);
+  }
+  text += "\n";
+  for (std::size_t n = 0; n < contest.controllers.size(); ++n) {
+    text += indented(printable(contest.controllers[n].name, 60) + ": " + words_about(results, n));
+  }
+  return text +
+         "\n  Shares of drives in %. believed, certified: sums over a drive. cost: of the "
+         "drives that arrive, against\n  the reference's on the same seeds. ms: planning and "
+         "certifying, one drive at a time.\n";
+}
+
+}  // namespace qsmpc::harness

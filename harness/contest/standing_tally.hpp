@@ -1,0 +1,73 @@
+// What is counted of a contest's drives while they stream by, of one cell or of several.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "harness/campaign/statistics/paired_difference.hpp"
+#include "harness/campaign/store/episode_row.hpp"
+#include "harness/contest/standings.hpp"
+
+namespace qsmpc::harness {
+
+/// The drives of one controller.
+class StandingTally {
+ public:
+  /// weights: poisson_weights of the row's seed.
+  void add(const EpisodeRow& row, const Eigen::ArrayXd& weights);
+
+  /// Without what the timed drives and the reference say.
+  [[nodiscard]] Standing result() const;
+
+ private:
+  static constexpr std::size_t kCounted = 6;
+  struct SeedCounts {
+    std::int64_t drives = 0;
+    std::array<std::int64_t, kCounted> events{};
+  };
+  [[nodiscard]] EpisodeRate rate_of(std::size_t event) const;
+
+  std::map<std::uint64_t, SeedCounts> seeds_{};
+  BootstrapMean believed_{};
+  BootstrapMean certified_{};
+  BootstrapMean cost_{};
+};
+
+/// The drives of a controller and of the reference with the same seed in the same cell.
+class VersusTally {
+ public:
+  /// weights: poisson_weights of their seed; `cell`: any number of the cell, small.
+  void add(const EpisodeRow& reference, const EpisodeRow& row, std::size_t cell,
+           const Eigen::ArrayXd& weights);
+
+  [[nodiscard]] Versus result() const;
+
+ private:
+  struct Share {
+    BootstrapMean mean{};
+    std::map<std::uint64_t, std::int64_t> more{};  ///< drives, by seed
+    void add(bool reference, bool own, std::uint64_t seed, const Eigen::ArrayXd& weights);
+    [[nodiscard]] ShareDifference result() const;
+  };
+  /// Sums of costs in each replicate, and in the sample itself.
+  struct CellCosts {
+    double own = 0.0;
+    double reference = 0.0;
+    Eigen::ArrayXd owns = Eigen::ArrayXd::Zero(kBootstrapReplicates);
+    Eigen::ArrayXd references = Eigen::ArrayXd::Zero(kBootstrapReplicates);
+  };
+  [[nodiscard]] CostDifference cost() const;
+
+  Share reached_{};
+  Share unsafe_{};
+  BootstrapMean cost_{};
+  std::map<std::size_t, CellCosts> costs_{};
+};
+
+}  // namespace qsmpc::harness

@@ -1,0 +1,84 @@
+#include "harness/contest/tuning.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "harness/campaign/store/episode_row.hpp"
+#include "harness/contest/contest_plan.hpp"
+#include "harness/statistics/quantiles.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+/// The mean of those that are finite; not a number of none.
+double finite_mean(const std::vector<double>& values) {
+  RunningMean mean;
+  for (const double value : values) {
+    if (std::isfinite(value)) mean.add(value);
+  }
+  return mean.mean();
+}
+
+/// The candidates of one controller, which are contenders `first` … of `contenders`.
+std::vector<TriedCandidate> tried_of(const Contest& contest, const StoreReader& search,
+                                     const std::vector<Contender>& contenders, std::size_t first,
+                                     std::size_t count) {
+  std::vector<TriedCandidate> tried(count);
+  std::vector<std::vector<double>> relative(count);  // by candidate, a number a cell
+  for (const ContestCell& cell : contest.cells()) {
+    std::vector<double> costs(count);
+    for (std::size_t n = 0; n < count; ++n) {
+      TriedCandidate& candidate = tried[n];
+      candidate.candidate = contenders[first + n].candidate;
+      RunningMean cost;
+      const std::size_t variant = variant_of(contest, contenders.size(), first + n, cell);
+      search.for_each_episode(search.variants()[variant].id, [&](const EpisodeRow& row) {
+        ++candidate.drives;
+        if (is_failure(row)) {
+          ++candidate.failures;
+        } else if (std::isfinite(row.cost)) {
+          cost.add(row.cost);
+        }
+      });
+      costs[n] = cost.mean();
+    }
+    const double unit = finite_mean(costs);
+    for (std::size_t n = 0; n < count; ++n) {
+      // Where all cost nothing, none costs more than another.
+      relative[n].push_back(unit == 0.0 ? 1.0 : costs[n] / unit);
+    }
+  }
+  for (std::size_t n = 0; n < count; ++n) tried[n].relative_cost = finite_mean(relative[n]);
+  return tried;
+}
+
+}  // namespace
+
+std::size_t best_candidate(const std::vector<TriedCandidate>& tried) {
+  const auto key = [](const TriedCandidate& candidate) {
+    const bool has_none = std::isnan(candidate.relative_cost);
+    return std::tuple(candidate.failures, has_none, has_none ? 0.0 : candidate.relative_cost);
+  };
+  return std::ranges::min_element(tried, {}, key)->candidate;
+}
+
+TuningResult untuned(const Contest& contest) {
+  return {.tried = std::vector<std::vector<TriedCandidate>>(contest.controllers.size()),
+          .choice = ContestChoice(contest.controllers.size(), 0)};
+}
+
+TuningResult tuned(const Contest& contest, const StoreReader& search) {
+  TuningResult result = untuned(contest);
+  const std::vector<Contender> contenders = searched_contenders(contest);
+  for (std::size_t first = 0; first < contenders.size();) {
+    const std::size_t controller = contenders[first].controller;
+    const std::size_t count = contest.controllers[controller].candidates.size();
+    result.tried[controller] = tried_of(contest, search, contenders, first, count);
+    result.choice[controller] = best_candidate(result.tried[controller]);
+    first += count;
+  }
+  return result;
+}
+
+}  // namespace qsmpc::harness
