@@ -27,10 +27,9 @@ constexpr double kTolerance = 5e-4;
 // Minimisations until the multipliers have settled, going on or from nothing.
 constexpr int kWarmRounds = 6;
 constexpr int kColdRounds = 20;
-// Minimisations need be no more precise than this, relatively, while multipliers change, and where
-// there are many decisions of little weight each.
-constexpr double kRoundTolerance = 1e-5;
-constexpr double kFineTolerance = 1e-7;
+// Minimisations need be no more precise than this, relatively: as those of the quantised planner
+// where it goes on from the last plan.
+constexpr double kMinimisationTolerance = 1e-7;
 // A tube leaves the nominal input at least this share of its range.
 constexpr double kLeastInputShare = 0.05;
 
@@ -260,10 +259,9 @@ void ChancePlanner::search(const Gaussian& belief, bool warm, Clock::time_point 
   sampled_.rollout(z_);
   sampled_.clear_adjoints();
   lagrangian_.start(*constraints_, sampled_.add_cost(weights_).total(), warm);
-  SolverOptions options{
-      .max_evaluations = settings_.problem.max_evaluations,
-      .relative_tolerance = settings_.chance.memory > 0 ? kFineTolerance : kRoundTolerance,
-      .deadline = deadline};
+  SolverOptions options{.max_evaluations = settings_.problem.max_evaluations,
+                        .relative_tolerance = kMinimisationTolerance,
+                        .deadline = deadline};
   const int rounds = warm ? kWarmRounds : kColdRounds;
   for (int n = 0; n < rounds; ++n) {
     if (n > 0) hold(belief);

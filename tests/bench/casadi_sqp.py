@@ -32,18 +32,22 @@ SETTINGS = {
 }
 
 
+def square(values):
+    """A matrix, of which a list is the diagonal."""
+    values = numpy.array(values, dtype=float)
+    return numpy.diag(values) if values.ndim == 1 else values
+
+
 class Problem:
     def __init__(self, scenario):
-        resolved = scenario.resolved
-        self.time_step = resolved["time_step"]
-        self.speed = resolved["model"]["parameters"]["speed"]
-        controller = resolved["controller"]
-        self.q = numpy.array(controller["cost"]["state"])
-        self.r = numpy.array(controller["cost"]["input"])[0, 0]
-        self.p = numpy.array(controller["cost"]["terminal"])
-        self.lower, self.upper = list(controller["input_bounds"].values())[0]
-        self.noise = numpy.array(resolved["disturbance"]["covariance"])
-        self.target = numpy.array(resolved["target"]["state"])
+        cost = scenario.to_dict()["controller"]["cost"]
+        self.time_step = scenario.time_step
+        self.speed = scenario["model.speed"]
+        self.q, self.r, self.p = (square(cost[name]) for name in ("state", "input", "terminal"))
+        self.r = self.r[0, 0]
+        (self.lower,), (self.upper,) = scenario.input_bounds
+        self.noise = scenario.disturbance_covariance
+        self.target = scenario.target
 
     def step(self, state, turn, library):
         reach = self.time_step * self.speed
@@ -132,8 +136,8 @@ def draw(random, problem, mean, covariance, paths):
 
 def beliefs(scenario, problem, periods):
     """Along the noise-free drive of the quantised planner."""
-    planner = qsmpc.Planner(scenario)
-    mean = numpy.array(scenario.resolved["initial_state"]["mean"], dtype=float)
+    planner = qsmpc.Planner(scenario, certify=False)
+    mean = numpy.array(scenario.initial_mean)
     for _ in range(periods):
         yield mean.copy()
         plan = planner.decide(mean=mean, covariance=problem.noise)
@@ -141,11 +145,11 @@ def beliefs(scenario, problem, periods):
 
 
 def sweep_own(name, scenario, means, problem):
-    planner = qsmpc.Planner(scenario)
+    planner = qsmpc.Planner(scenario, certify=False)
     plans, times = [], []
-    for mean in means:
+    for k, mean in enumerate(means):
         begin = time.perf_counter()
-        plan = planner.decide(mean=mean, covariance=problem.noise)
+        plan = planner.decide(mean=mean, covariance=problem.noise, period=k)
         times.append(1e3 * (time.perf_counter() - begin))
         plans.append(numpy.array(plan.inputs)[:, 0])
     return name, plans, times
@@ -168,7 +172,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--periods", type=int, default=25)
     arguments = parser.parse_args()
-    scenario = qsmpc.load_scenario(SCENARIO).set(SETTINGS)
+    scenario = qsmpc.load(SCENARIO, SETTINGS)
     problem = Problem(scenario)
     means = list(beliefs(scenario, problem, arguments.periods))
     rows = []
