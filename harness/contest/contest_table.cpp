@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kControllerWidth = 14;
+constexpr std::size_t kControllerWidth = 13;
 constexpr std::size_t kLineWidth = 106;
 
 std::string short_number(double value) {
@@ -51,7 +51,7 @@ std::string table_row(const std::string& name, const Standing& standing) {
   row += right(format_percent(standing.timeout.rate), 8);
   row += right(standing.believed.drives == 0 ? "-" : short_number(standing.believed.mean), 9);
   row += right(short_number(standing.certified.mean), 10);
-  row += right(cost_cell(standing), 22);
+  row += right(cost_cell(standing), 23);
   row += right(times.periods == 0 ? "-" : format_short(times.ocp_ms.median, 2), 6);
   return row + right(times.periods == 0 ? "-" : format_short(times.ocp_ms.p99, 2), 7) + "\n";
 }
@@ -71,7 +71,7 @@ std::string contest_table(const ContestResults& results) {
                                  results.done, results.asked, contest_headline(results));
   text += "  " + padded("controller", kControllerWidth) + right("reached", 8) +
           right("collided [99 %]", 18) + right("left", 6) + right("timeout", 8) +
-          right("believed", 9) + right("certified", 10) + right("cost", 22) + right("ms", 6) +
+          right("believed", 9) + right("certified", 10) + right("cost", 23) + right("ms", 6) +
           right("99 %", 7) + "\n";
   for (std::size_t n = 0; n < contest.controllers.size(); ++n) {
     text += table_row(contest.controllers[n].name, results.overall[n]);

@@ -146,9 +146,10 @@ std::string overall_note(const ContestResults& results) {
   const std::string reference =
       escape_html(results.contest.controllers[results.contest.reference].name);
   std::string note = fmt::format(
-      "<p class=\"note\">In brackets 99 % intervals. Unsafe, in points: share of drives that "
+      "<p class=\"note\">In brackets 99 % intervals. Unsafe, less reference: share of drives that "
       "collided or left the "
-      "bounds, less that of {0} on the same seeds. Believed and certified: sums over a drive of "
+      "bounds, less that of {0} on the same seeds, in points of percent. Believed and certified: "
+      "sums over a drive of "
       "the "
       "probabilities that the next state is unsafe, by the controller itself and by its "
       "certificates. Cost: of drives that arrive, against {0} on the seeds on which both do. ",
