@@ -10,6 +10,7 @@
 #include "controller/certification/error_budget.hpp"
 #include "controller/control/controller.hpp"
 #include "controller/control/decision_motion.hpp"
+#include "controller/laws/law_propagator.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/measure/wasserstein.hpp"

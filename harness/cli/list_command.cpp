@@ -8,6 +8,7 @@
 
 #include "controller/control/controller.hpp"
 #include "controller/estimation/estimator.hpp"
+#include "controller/laws/law_propagator.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "controller/prediction/propagator.hpp"
@@ -71,6 +72,7 @@ std::vector<Table> tables() {
           make_table("boundings", controller::input_boundings()),
           make_table("propagators", controller::propagators()),
           make_table("quantisers", controller::quantisers()),
+          make_table("methods", controller::law_methods()),
           scenarios,
           campaigns,
           contests};
@@ -118,10 +120,10 @@ void add_list_command(CLI::App& app, int& exit_code) {
       ->add_option(
           "kind", *kind,
           "systems, plants, controllers, estimators, solvers, boundings, propagators, quantisers, "
-          "scenarios, campaigns or contests")
-      ->check(
-          CLI::IsMember({"systems", "plants", "controllers", "estimators", "solvers", "boundings",
-                         "propagators", "quantisers", "scenarios", "campaigns", "contests"}));
+          "methods (of prediction), scenarios, campaigns or contests")
+      ->check(CLI::IsMember({"systems", "plants", "controllers", "estimators", "solvers",
+                             "boundings", "propagators", "quantisers", "methods", "scenarios",
+                             "campaigns", "contests"}));
   command->add_flag("--json", *json, "as JSON");
   command->callback([kind, json, &exit_code] { exit_code = list(*kind, *json); });
 }

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <iostream>
 #include <memory>
@@ -8,6 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "controller/laws/law_propagator.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
@@ -16,8 +19,10 @@
 #include "harness/cli/progress.hpp"
 #include "harness/cli/result_folder.hpp"
 #include "harness/cli/scenario_arguments.hpp"
+#include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/prediction/input_table.hpp"
+#include "harness/prediction/law_table.hpp"
 #include "harness/prediction/prediction_file.hpp"
 #include "harness/prediction/prediction_json.hpp"
 #include "harness/prediction/prediction_report.hpp"
@@ -36,11 +41,15 @@ constexpr const char* kPredictHelp =
 constexpr const char* kPredictExample =
     "Examples: qsmpc predict dubins_corridor --steps 6 --monte-carlo 100000\n"
     "          qsmpc predict dubins_corridor --inputs my_inputs.csv --json\n"
+    "          qsmpc predict dubins_prediction --methods unscented,mixture\n"
     "FILE has one line a stage and one number an input, separated by commas; a first line may "
     "name\n"
     "the inputs. A certificate of stage k speaks of this plan followed for k stages.";
 // Paths; their numbers are shown in the progress as whole numbers of 32 bits.
 constexpr std::int64_t kMostSamples = 1'000'000'000;
+/// Where methods are compared and --monte-carlo is not given.
+constexpr std::int64_t kComparedSamples = 1'000'000;
+constexpr const char* kAllMethods = "all";
 
 struct PredictArguments {
   std::string scenario;
@@ -48,6 +57,8 @@ struct PredictArguments {
   std::string inputs;
   std::optional<int> steps;
   std::int64_t samples = 0;
+  std::vector<std::string> methods;
+  std::vector<int> at;
   std::optional<std::uint64_t> seed;
   std::string out;
   bool force = false;
@@ -70,6 +81,38 @@ std::optional<Eigen::MatrixXd> take_inputs(const PredictArguments& arguments, Sc
   return inputs;
 }
 
+/// The methods that are to be compared, in the order of the table, each once.
+std::vector<std::string> chosen_methods(const std::vector<std::string>& asked) {
+  std::vector<std::string> chosen;
+  for (const controller::LawMethod& method : controller::law_methods()) {
+    const bool is_asked = std::ranges::any_of(
+        asked, [&](const std::string& name) { return name == method.name || name == kAllMethods; });
+    if (is_asked) chosen.push_back(method.name);
+  }
+  return chosen;
+}
+
+/// How many paths are simulated, 0 for none.
+std::int64_t simulated_paths(const PredictArguments& arguments) {
+  if (arguments.methods.empty()) return arguments.samples;
+  if (arguments.samples == 0) return kComparedSamples;
+  if (arguments.samples < kKeptPaths) {
+    throw InputError({.key = "--monte-carlo",
+                      .found = std::to_string(arguments.samples),
+                      .expected = fmt::format("at least {} paths with --methods", kKeptPaths)});
+  }
+  return arguments.samples;
+}
+
+void check_stages(const std::vector<int>& stages, int horizon) {
+  for (const int stage : stages) {
+    if (stage <= horizon) continue;
+    throw InputError({.key = "--at",
+                      .found = std::to_string(stage),
+                      .expected = fmt::format("stages from 1 to {}", horizon)});
+  }
+}
+
 std::string files_table(const std::string& folder) {
   std::string text;
   for (const auto& [what, file] : {std::pair("numbers", kPredictionNumbersFile),
@@ -89,7 +132,8 @@ int conclude(const PredictionReport& report) {
     return kInternalError;
   }
   if (report.interrupted) {
-    std::cerr << "qsmpc: interrupted; the files hold the prediction without the simulation\n";
+    std::cerr << fmt::format("qsmpc: interrupted; the files hold the prediction without the {}\n",
+                             report.monte_carlo ? "comparison of methods" : "simulation");
     return kInterruptedExit;
   }
   return kDone;
@@ -99,7 +143,11 @@ int predict(const PredictArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
   print_warnings(scenario_warnings(scenario));
-  PredictionOptions options{.inputs = take_inputs(arguments, scenario)};
+  PredictionOptions options{.inputs = take_inputs(arguments, scenario),
+                            .methods = chosen_methods(arguments.methods)};
+  const std::int64_t samples = simulated_paths(arguments);
+  check_stages(arguments.at, options.inputs ? static_cast<int>(options.inputs->cols())
+                                            : certified_stages(decision_parts(scenario)));
   refuse_beyond_memory(scenario, arguments.scenario, arguments.overrides);
   const std::string folder = arguments.out.empty()
                                  ? default_folder(scenario.name, "predict", arguments.overrides)
@@ -108,7 +156,7 @@ int predict(const PredictArguments& arguments) {
   make_output_folder(folder);
 
   Progress progress("simulating", arguments.quiet);
-  options.monte_carlo = {.samples = arguments.samples,
+  options.monte_carlo = {.samples = samples,
                          .should_stop = [] { return interrupts() > 0; },
                          .on_progress =
                              [&](std::int64_t done, std::int64_t total) {
@@ -119,7 +167,8 @@ int predict(const PredictArguments& arguments) {
   const PredictionReport report = predict_scenario(scenario, options);
   write_prediction(report, folder);
   print_result(arguments.json ? prediction_json(report)
-                              : prediction_table(report) + files_table(folder));
+                              : prediction_table(report) + law_table(report, arguments.at) +
+                                    files_table(folder));
   return conclude(report);
 }
 
@@ -141,6 +190,26 @@ void add_predict_command(CLI::App& app, int& exit_code) {
       ->add_option("--monte-carlo", arguments->samples,
                    "simulate so many paths of the model as a check of the certificates")
       ->check(CLI::Range(std::int64_t{1}, kMostSamples));
+  std::vector<std::string> names{kAllMethods};
+  for (const controller::LawMethod& method : controller::law_methods()) {
+    names.push_back(method.name);
+  }
+  CLI::Option* methods =
+      command
+          ->add_option("--methods", arguments->methods,
+                       "compare these methods of prediction with simulated paths (1,000,000 unless "
+                       "--monte-carlo says how many), separated by commas, or all")
+          ->delimiter(',')
+          ->allow_extra_args(false)
+          ->check(CLI::IsMember(names));
+  command
+      ->add_option("--at", arguments->at,
+                   "stages of which the table of methods is printed, separated by commas; default: "
+                   "the last")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->needs(methods)
+      ->check(CLI::Range(1, kMostStages));
   add_seed_option(*command, arguments->seed, "of the simulated paths; default: the scenario's");
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-predict");
   add_force_option(*command, arguments->force);

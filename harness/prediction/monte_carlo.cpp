@@ -20,11 +20,13 @@ constexpr std::int64_t kBatch = 1024;
 /// Simulates batches of paths; the batches are shared out among threads.
 class PathSimulation {
  public:
+  /// collector: told of every batch, where there is one.
   PathSimulation(const controller::PredictedMotion& motion, const controller::SafeSet& safe_set,
-                 const MonteCarloOptions& options)
+                 const MonteCarloOptions& options, PathCollector* collector)
       : motion_(motion),
         unsafe_(safe_set),
         options_(options),
+        collector_(collector),
         initial_(motion.belief.mean, motion.belief.covariance),
         noise_(Eigen::VectorXd::Zero(motion.belief.mean.size()), motion.noise_covariance) {}
 
@@ -62,6 +64,7 @@ class PathSimulation {
     controller::Points next(states.rows(), size);
     controller::Points inputs(motion_.policy.inputs.rows(), size);
     std::vector<char> was_unsafe(static_cast<std::size_t>(size), 0);
+    std::vector<PathCollector::StageSums> sums;
     for (Eigen::Index i = 0; i < size; ++i) states.col(i) = initial_.sample(key(begin + i, 0));
     for (Eigen::Index k = 0; k < motion_.policy.horizon(); ++k) {
       controller::policy_inputs(motion_.policy, k, states, inputs);
@@ -69,7 +72,9 @@ class PathSimulation {
       for (Eigen::Index i = 0; i < size; ++i) next.col(i) += noise_.sample(key(begin + i, k + 1));
       states.swap(next);
       counts.stages[static_cast<std::size_t>(k)] += count_unsafe(states, was_unsafe);
+      if (collector_ != nullptr) sums.push_back(collector_->collect(k + 1, begin, states));
     }
+    if (collector_ != nullptr) collector_->add(begin / kBatch, std::move(sums));
     counts.samples += size;
     counts.any_stage += std::count(was_unsafe.begin(), was_unsafe.end(), 1);
   }
@@ -88,6 +93,7 @@ class PathSimulation {
   const controller::PredictedMotion& motion_;
   controller::UnsafeSet unsafe_;
   const MonteCarloOptions& options_;
+  PathCollector* collector_;
   models::GaussianSampler initial_;
   models::GaussianSampler noise_;
   std::atomic<std::int64_t> next_ = 0;  // first path that no thread has taken
@@ -101,12 +107,12 @@ void add_to(UnsafeCounts& total, const UnsafeCounts& more) {
   for (std::size_t k = 0; k < total.stages.size(); ++k) total.stages[k] += more.stages[k];
 }
 
-}  // namespace
-
-std::optional<UnsafeCounts> simulate_unsafe_counts(const controller::PredictedMotion& motion,
-                                                   const controller::SafeSet& safe_set,
-                                                   const MonteCarloOptions& options) {
-  PathSimulation simulation(motion, safe_set, options);
+/// Simulates all paths, on all threads.
+std::optional<UnsafeCounts> run_simulation(const controller::PredictedMotion& motion,
+                                           const controller::SafeSet& safe_set,
+                                           const MonteCarloOptions& options,
+                                           PathCollector* collector) {
+  PathSimulation simulation(motion, safe_set, options, collector);
   const int threads = options.threads > 0 ? options.threads : available_threads();
   std::vector<UnsafeCounts> counts(static_cast<std::size_t>(threads));
   run_workers(threads, [&](int worker) {
@@ -119,6 +125,23 @@ std::optional<UnsafeCounts> simulate_unsafe_counts(const controller::PredictedMo
   // The last batch may have been another thread's.
   if (options.on_progress) options.on_progress(total.samples, options.samples);
   return total;
+}
+
+}  // namespace
+
+std::optional<UnsafeCounts> simulate_unsafe_counts(const controller::PredictedMotion& motion,
+                                                   const controller::SafeSet& safe_set,
+                                                   const MonteCarloOptions& options) {
+  return run_simulation(motion, safe_set, options, nullptr);
+}
+
+std::optional<SimulatedPaths> simulate_paths(const controller::PredictedMotion& motion,
+                                             const controller::SafeSet& safe_set,
+                                             const MonteCarloOptions& options, std::int64_t kept) {
+  PathCollector collector(motion.policy, kept);
+  std::optional<UnsafeCounts> counts = run_simulation(motion, safe_set, options, &collector);
+  if (!counts) return std::nullopt;
+  return SimulatedPaths{.counts = *std::move(counts), .laws = collector.laws(options.samples)};
 }
 
 }  // namespace qsmpc::harness

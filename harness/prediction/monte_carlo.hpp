@@ -9,6 +9,7 @@
 
 #include "controller/prediction/prediction.hpp"
 #include "controller/regions/safe_set.hpp"
+#include "harness/prediction/path_collector.hpp"
 
 namespace qsmpc::harness {
 
@@ -36,5 +37,16 @@ struct MonteCarloOptions {
 [[nodiscard]] std::optional<UnsafeCounts> simulate_unsafe_counts(
     const controller::PredictedMotion& motion, const controller::SafeSet& safe_set,
     const MonteCarloOptions& options);
+
+/// The same paths, and what they say of the laws of their states.
+struct SimulatedPaths {
+  UnsafeCounts counts;
+  PathLaws laws;
+};
+
+/// As `simulate_unsafe_counts`; keeps the first `kept` ≤ samples paths.
+[[nodiscard]] std::optional<SimulatedPaths> simulate_paths(
+    const controller::PredictedMotion& motion, const controller::SafeSet& safe_set,
+    const MonteCarloOptions& options, std::int64_t kept);
 
 }  // namespace qsmpc::harness

@@ -52,6 +52,38 @@ Json stage_json(const PredictionReport& report, std::size_t stage) {
   return json;
 }
 
+Json truth_json(const LawComparison& laws) {
+  Json json{{"samples", laws.truth.samples}, {"w2_paths", kTransportPaths}};
+  json["stages"] = Json::array();
+  for (std::size_t k = 0; k < laws.floors.size(); ++k) {
+    json["stages"].push_back({{"stage", k + 1},
+                              {"mean", vector_json(laws.truth.moments[k].mean)},
+                              {"covariance", rows_json(laws.truth.moments[k].covariance)},
+                              {"floor",
+                               {{"w2", laws.floors[k].w2},
+                                {"mean", laws.floors[k].mean},
+                                {"covariance", laws.floors[k].covariance}}}});
+  }
+  return json;
+}
+
+Json methods_json(const LawComparison& laws) {
+  Json json = Json::object();
+  for (const MethodErrors& method : laws.methods) {
+    Json stages = Json::array();
+    for (std::size_t k = 0; k < method.stages.size(); ++k) {
+      const LawErrors& errors = method.stages[k];
+      stages.push_back({{"stage", k + 1},
+                        {"w2", errors.w2},
+                        {"mean", errors.mean},
+                        {"covariance", errors.covariance},
+                        {"unsafe", errors.unsafe}});
+    }
+    json[method.name] = {{"ms", method.milliseconds}, {"stages", stages}};
+  }
+  return json;
+}
+
 }  // namespace
 
 std::string prediction_json(const PredictionReport& report) {
@@ -66,6 +98,10 @@ std::string prediction_json(const PredictionReport& report) {
   if (report.monte_carlo) {
     json["horizon"]["monte_carlo"] =
         rate_json(report.monte_carlo->any_stage, report.monte_carlo->samples);
+  }
+  if (report.laws) {
+    json["truth"] = truth_json(*report.laws);
+    json["methods"] = methods_json(*report.laws);
   }
   json["certificate"] = scope_json(why_no_bound(report.scenario));
   json["particles"] = kPredictionFile;

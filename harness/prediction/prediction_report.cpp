@@ -2,6 +2,8 @@
 
 #include <limits>
 #include <memory>
+#include <stdexcept>
+#include <utility>
 
 #include "controller/planning/planner.hpp"
 #include "harness/assembly/assembly.hpp"
@@ -12,6 +14,39 @@
 namespace qsmpc::harness {
 
 namespace {
+
+controller::LawSettings law_settings(const Scenario& scenario) {
+  const controller::PlannerSettings planner = planner_settings(scenario);
+  return {.seed = scenario.seed,
+          .quantiser = planner.quantiser,
+          .state_points = planner.state_points,
+          .noise_points = planner.noise_points,
+          .compressed_points = planner.compressed_points};
+}
+
+/// Simulates the motion, and compares the methods with its paths.
+void simulate_and_compare(const controller::PredictedMotion& motion,
+                          const PredictionOptions& options, PredictionReport& report) {
+  const Scenario& scenario = report.scenario;
+  MonteCarloOptions simulation = options.monte_carlo;
+  simulation.seed = scenario.seed;
+  if (options.methods.empty()) {
+    report.monte_carlo = simulate_unsafe_counts(motion, scenario.safe_set, simulation);
+    report.interrupted = !report.monte_carlo;
+    return;
+  }
+  std::optional<SimulatedPaths> paths =
+      simulate_paths(motion, scenario.safe_set, simulation, kKeptPaths);
+  if (paths) {
+    report.monte_carlo = std::move(paths->counts);
+    report.laws = compare_laws(motion, scenario.safe_set, std::move(paths->laws),
+                               {.methods = options.methods,
+                                .settings = law_settings(scenario),
+                                .threads = simulation.threads,
+                                .should_stop = simulation.should_stop});
+  }
+  report.interrupted = !report.laws;
+}
 
 /// Certifies the motion, and simulates it where that is wanted.
 void judge(const controller::PredictedMotion& motion, const PredictionOptions& options,
@@ -24,17 +59,16 @@ void judge(const controller::PredictedMotion& motion, const PredictionOptions& o
   report.certificates = controller::certify(motion, scenario.safe_set, report.budgets,
                                             controller::CertificateEffort::kEvery);
   report.horizon_bound = controller::horizon_bound(report.certificates);
-  if (options.monte_carlo.samples > 0) {
-    MonteCarloOptions simulation = options.monte_carlo;
-    simulation.seed = scenario.seed;
-    report.monte_carlo = simulate_unsafe_counts(motion, scenario.safe_set, simulation);
-    report.interrupted = !report.monte_carlo;
-  }
+  if (options.monte_carlo.samples > 0) simulate_and_compare(motion, options, report);
 }
 
 }  // namespace
 
 PredictionReport predict_scenario(const Scenario& scenario, const PredictionOptions& options) {
+  if (!options.methods.empty() && options.monte_carlo.samples < kKeptPaths) {
+    throw std::invalid_argument("prediction: too few simulated paths to compare methods with");
+  }
+  for (const std::string& name : options.methods) (void)controller::law_method(name);
   const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
   PredictionReport report;
   report.scenario = scenario;

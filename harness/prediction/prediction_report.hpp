@@ -18,6 +18,7 @@
 #include "controller/planning/cost/horizon_cost.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
+#include "harness/prediction/law_comparison.hpp"
 #include "harness/prediction/monte_carlo.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "harness/statistics/binomial_interval.hpp"
@@ -29,6 +30,9 @@ struct PredictionOptions {
   std::optional<Eigen::MatrixXd> inputs{};  ///< input_dim x horizon; else they are planned
   /// Its seed is not used: the scenario's is. No samples: no simulation.
   MonteCarloOptions monte_carlo{};
+  /// Names of controller::law_methods() that are compared with the simulated paths, of which there
+  /// are then at least kKeptPaths.
+  std::vector<std::string> methods{};
 };
 
 struct PredictionReport {
@@ -45,12 +49,14 @@ struct PredictionReport {
   std::vector<controller::StageCertificate> certificates;  ///< stages 1 … horizon
   double horizon_bound = 1.0;  ///< of being unsafe at any of these stages
   std::optional<UnsafeCounts> monte_carlo;
-  bool interrupted = false;  ///< the simulation was given up
+  std::optional<LawComparison> laws;  ///< where methods were asked for
+  bool interrupted = false;           ///< the simulation or the comparison was given up
 };
 
 /// Plans for the initial belief of `scenario` over its horizon, or takes the given inputs with the
-/// gains that belong to them; certifies the policy, and simulates it if asked. Throws
-/// std::invalid_argument on given inputs of another size or outside the bounds.
+/// gains that belong to them; certifies the policy, simulates it if asked, and compares the
+/// methods. Throws std::invalid_argument on given inputs of another size or outside the bounds, on
+/// unknown methods, and on methods with less paths than kKeptPaths.
 [[nodiscard]] PredictionReport predict_scenario(const Scenario& scenario,
                                                 const PredictionOptions& options);
 

@@ -30,6 +30,7 @@ TEST(Commands, list_and_validate_and_help) {
   EXPECT_THAT(run_qsmpc({"list", "propagators"}).output, HasSubstr("moment_matched"));
   EXPECT_THAT(run_qsmpc({"list", "boundings"}).output, HasSubstr("sigmoid"));
   EXPECT_THAT(run_qsmpc({"list", "quantisers"}).output, HasSubstr("lloyd"));
+  EXPECT_THAT(run_qsmpc({"list", "methods"}).output, HasSubstr("gaussian_mixture"));
   EXPECT_EQ(run_qsmpc({"list", "wheels"}).exit_code, 2);
   EXPECT_EQ(run_qsmpc({"validate", "dubins_obstacles"}).exit_code, 0);
   for (const char* command : {"run", "predict", "render", "report", "list", "validate"}) {

@@ -73,6 +73,44 @@ INSTANTIATE_TEST_SUITE_P(Shipped, PredictScenario,
                                            "double_integrator", "bicycle_obstacles"),
                          [](const auto& tested) { return std::string(tested.param); });
 
+TEST(Predict, compares_all_methods_with_the_simulated_paths) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> more = {"--steps", "3",   "--methods",     "all",
+                                         "--at",    "1,3", "--monte-carlo", "20000"};
+  const ProcessResult result = predict("dubins_corridor", folder.path(), more);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  EXPECT_THAT(result.output, HasSubstr("Stage 1, against 20000 paths; P(unsafe) from "));
+  EXPECT_THAT(result.output, HasSubstr("Stage 3, "));
+  const auto json = nlohmann::json::parse(read_text(folder.path() + "/predict.json"));
+  const auto listed = nlohmann::json::parse(run_qsmpc({"list", "methods", "--json"}).output);
+  EXPECT_EQ(json["methods"].size(), listed["methods"].size());
+  for (const auto& method : listed["methods"]) {
+    const auto& errors = json["methods"].at(method["name"].get<std::string>());
+    ASSERT_EQ(errors["stages"].size(), 3U) << method["name"];
+    EXPECT_GT(errors["ms"], 0.0) << method["name"];
+    for (const auto& stage : errors["stages"]) {
+      EXPECT_GT(stage["w2"], 0.0) << method["name"];
+      EXPECT_GE(stage["unsafe"], 0.0) << method["name"];
+    }
+  }
+}
+
+TEST(Predict, refuses_methods_that_are_none_and_stages_that_are_not_predicted) {
+  const TemporaryFolder folder;
+  const auto refused = [&](const std::vector<std::string>& more) {
+    const ProcessResult result = predict("dubins_corridor", folder.path(), more);
+    EXPECT_EQ(result.exit_code, 2) << result.output;
+    return result.errors;
+  };
+  EXPECT_THAT(refused({"--methods", "telepathy"}), HasSubstr("telepathy"));
+  EXPECT_THAT(refused({"--at", "1"}), HasSubstr("--methods"));
+  EXPECT_THAT(refused({"--methods", "unscented", "--steps", "3", "--at", "4"}),
+              HasSubstr("--at: found 4, expected stages from 1 to 3"));
+  EXPECT_THAT(refused({"--methods", "unscented", "--monte-carlo", "1999"}),
+              HasSubstr("at least 2000 paths"));
+  EXPECT_TRUE(files_in(folder.path()).empty());
+}
+
 TEST(Predict, prints_a_table_and_uses_the_named_folder_by_default) {
   const TemporaryFolder folder;
   const ProcessResult result =
