@@ -65,17 +65,6 @@ void add_part_probability(const SurrogateLaw& state, const BoxPart& part, Region
   sum.smooth += smooth;
 }
 
-BoxDistances::BoxDistances(const Points& points, const std::vector<AxisInterval>& intervals)
-    : depth(Eigen::ArrayXd::Constant(points.cols(), kInfinity)),
-      squares(Eigen::ArrayXd::Zero(points.cols())) {
-  for (const AxisInterval& interval : intervals) {
-    const Eigen::Map<const Eigen::ArrayXd> x(points.data() + interval.axis * points.cols(),
-                                             points.cols());
-    depth = depth.min(x - interval.lower).min(interval.upper - x);
-    squares += (interval.lower - x).max(x - interval.upper).max(0.0).square();
-  }
-}
-
 Eigen::Matrix2Xd rectangle_corners(const Box& box, Eigen::Index x, Eigen::Index y) {
   const auto lower = [&](Eigen::Index axis) { return axis < 0 ? -kInfinity : box.lower[axis]; };
   const auto upper = [&](Eigen::Index axis) { return axis < 0 ? kInfinity : box.upper[axis]; };

@@ -28,15 +28,6 @@ void add_part_probability(const SurrogateLaw& state, const BoxPart& part, Region
 /// part's nearest point.
 void add_part_tail(const Gaussian& law, const BoxPart& part, TailSum& sum);
 
-/// Of many points from a box, which is bounded in the given intervals: how deep each is inside
-/// (less than 0 outside, infinite where there is no interval), and the squared distance of those
-/// outside.
-struct BoxDistances {
-  BoxDistances(const Points& points, const std::vector<AxisInterval>& intervals);
-  Eigen::ArrayXd depth;
-  Eigen::ArrayXd squares;
-};
-
 /// The corners of a box in the plane of two of its coordinates, counterclockwise; one that is -1 is
 /// unbounded.
 [[nodiscard]] Eigen::Matrix2Xd rectangle_corners(const Box& box, Eigen::Index x, Eigen::Index y);
