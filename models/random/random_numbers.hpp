@@ -23,6 +23,9 @@ enum class RandomStream : std::uint64_t {
   kSensor = 4,      ///< what the planner sees less what is
   kParameters = 5,  ///< parameters of a plant that are drawn
   kBootstrap = 6,   ///< weights of an episode in the replicates of a sample of episodes
+  // Controllers that sample; their "episode" is a chunk of samples.
+  kSampledInputs = 16,  ///< perturbations of inputs
+  kSampledNoise = 17,   ///< process noise of their rollouts
 };
 
 struct RandomKey {
@@ -34,6 +37,9 @@ struct RandomKey {
 
 /// `count` independent standard normal numbers.
 [[nodiscard]] Eigen::VectorXd standard_normal_sample(Eigen::Index count, const RandomKey& key);
+
+/// Fills `out` with the same numbers; allocates nothing.
+void standard_normals(const RandomKey& key, std::span<double> out);
 
 /// `count` independent numbers, uniform in (0, 1].
 [[nodiscard]] Eigen::VectorXd uniform_sample(Eigen::Index count, const RandomKey& key);
