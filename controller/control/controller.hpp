@@ -19,6 +19,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/control/mppi/mppi_settings.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/plan.hpp"
@@ -103,6 +104,7 @@ enum class LqrAbout {
 struct ControllerSettings {
   PlannerSettings problem;  ///< with how the quantised controller solves it
   LqrAbout lqr_about = LqrAbout::kPath;
+  MppiSettings mppi{};  ///< of "mppi" and "risk_mppi"
   /// Upper limit of the certified probability of ever being unsafe in a drive; infinite for none.
   double mission = std::numeric_limits<double>::infinity();
 };
@@ -126,6 +128,7 @@ struct ControllerEntry {
                                       const ControllerSettings& settings) = nullptr;
   bool keeps_limits = false;  ///< whether it plans within limits of the risk
   bool takes_guide = false;   ///< whether its plans aim along the way that a guide knows
+  bool samples = false;       ///< whether it draws input sequences, as MppiSettings says
 };
 
 /// The table of controllers; the first is the default.

@@ -9,6 +9,8 @@ namespace qsmpc::controller {
 ControllerEntry quantised_controller();
 ControllerEntry nominal_controller();
 ControllerEntry lqr_controller();
+ControllerEntry mppi_controller();
+ControllerEntry risk_mppi_controller();
 
 void check_situation(const Situation& situation, Eigen::Index state_dim) {
   const auto require = [](bool holds, const char* message) {
@@ -26,9 +28,8 @@ void check_situation(const Situation& situation, Eigen::Index state_dim) {
 
 const std::vector<ControllerEntry>& controllers() {
   static const std::vector<ControllerEntry> table = {
-      quantised_controller(),
-      nominal_controller(),
-      lqr_controller(),
+      quantised_controller(), nominal_controller(),   lqr_controller(),
+      mppi_controller(),      risk_mppi_controller(),
   };
   return table;
 }

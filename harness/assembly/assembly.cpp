@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "harness/control/outside_controller.hpp"
 #include "harness/errors.hpp"
+#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/outside_controllers.hpp"
 #include "harness/threads/executor.hpp"
@@ -72,6 +75,7 @@ controller::ControllerSettings controller_settings(const Scenario& scenario) {
   return {.problem = planner_settings(scenario),
           .lqr_about = scenario.controller.lqr_about == "target" ? controller::LqrAbout::kTarget
                                                                  : controller::LqrAbout::kPath,
+          .mppi = scenario.controller.mppi,
           .mission = scenario.risk.mission};
 }
 
@@ -103,6 +107,8 @@ std::string controller_words(const Scenario& scenario) {
     words = controller.kind + ", " + outside_controller_name(controller);
   } else if (controller.kind == "lqr") {
     words = "lqr about the " + controller.lqr_about;
+  } else if (is_sampling(controller)) {
+    words = fmt::format("{}, {} samples", controller.kind, controller.mppi.samples);
   } else {
     if (controller.kind != controller::controllers().front().name) words = controller.kind + ", ";
     words += controller.policy == "closed_loop" ? "closed-loop policy" : "open-loop policy";

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -18,6 +19,9 @@ namespace qsmpc::harness {
 [[nodiscard]] const std::vector<std::string>& system_names();
 [[nodiscard]] const std::vector<std::string>& controller_names();
 [[nodiscard]] const std::vector<std::string>& estimator_names();
+/// Whether the controller draws input sequences: "mppi" or "risk_mppi".
+[[nodiscard]] bool is_sampling(const Scenario::Controller& controller);
+
 /// About what "lqr" linearises.
 [[nodiscard]] const std::vector<std::string>& lqr_about_names();
 /// What is done where a limit of the risk can't be kept.

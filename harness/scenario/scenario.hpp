@@ -12,6 +12,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/control/mppi/mppi_settings.hpp"
 #include "controller/prediction/model_error.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "harness/scenario/plant_mapping.hpp"
@@ -114,6 +115,7 @@ struct Scenario {
   struct Controller {
     std::string kind = "quantised";  ///< a name from `qsmpc list controllers`
     std::string lqr_about = "path";  ///< or "target": about what "lqr" linearises
+    controller::MppiSettings mppi;   ///< of "mppi" and "risk_mppi"
     OutsideController outside;
     int horizon = 8;
     std::string policy = "closed_loop";            ///< or "open_loop"

@@ -372,6 +372,7 @@ void append(std::vector<ScenarioKey>& keys, std::vector<ScenarioKey> more) {
 
 ScenarioKey controller_key() {
   std::vector<ScenarioKey> keys = kind_keys();
+  keys.push_back(mppi_key());
   append(keys, outside_controller_keys());
   append(keys, plan_keys());
   keys.push_back(quantisation_key());

@@ -70,8 +70,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadOverride{"one_too_many", "target.state.3=1", "target.state", "a list of 4", "3 numbers"},
         BadOverride{"indefinite", "initial_state.covariance=[1, 1, -1]", "initial_state.covariance",
                     "eigenvalue -1", "semidefinite"},
-        BadOverride{"controller", "controller.kind=quantized", "controller.kind", "quantized",
-                    "quantised (known: quantised, nominal, lqr, external, library, object)"},
+        BadOverride{
+            "controller", "controller.kind=quantized", "controller.kind", "quantized",
+            "quantised (known: quantised, nominal, lqr, mppi, risk_mppi, external, library, "
+            "object)"},
         BadOverride{"lqr_of_another", "controller.lqr.about=target", "controller.lqr.about",
                     "target", "path, or controller.kind: lqr"},
         BadOverride{"estimator", "estimator.kind=kalman", "estimator.kind", "kalman",
