@@ -169,7 +169,7 @@ void ChancePlanner::draw(const Gaussian& belief, Eigen::Index period) {
                         .stream = models::RandomStream::kPlanning};
   normals_.resize(dynamics_.state_dim(), path_count_);
   const auto draw_normals = [&] {
-    models::standard_normal_sample(key, normals_.reshaped());
+    models::standard_normals(key, {normals_.data(), static_cast<std::size_t>(normals_.size())});
     ++key.step;
   };
   draw_normals();

@@ -20,6 +20,7 @@
 #include <Eigen/Core>
 
 #include "controller/chance/chance_settings.hpp"
+#include "controller/control/mppi/mppi_settings.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/planning/plan.hpp"
@@ -118,6 +119,7 @@ struct ControllerSettings {
   LqrAbout lqr_about = LqrAbout::kPath;
   ShieldSettings shield{};
   ChanceSettings chance{};  ///< of the controllers that keep a chance constraint
+  MppiSettings mppi{};  ///< of "mppi" and "risk_mppi"
   /// Upper limit of the certified probability of ever being unsafe in a drive; infinite for none.
   double mission = std::numeric_limits<double>::infinity();
 };
@@ -141,6 +143,7 @@ struct ControllerEntry {
                                       const ControllerSettings& settings) = nullptr;
   bool keeps_limits = false;  ///< whether it plans within limits of the risk
   bool takes_guide = false;   ///< whether its plans aim along the way that a guide knows
+  bool samples = false;       ///< whether it draws input sequences, as MppiSettings says
 };
 
 /// The table of controllers; the first is the default.

@@ -17,6 +17,8 @@ ControllerEntry scenario_controller();
 ControllerEntry cvar_controller();
 ControllerEntry drcc_controller();
 ControllerEntry shield_controller();
+ControllerEntry mppi_controller();
+ControllerEntry risk_mppi_controller();
 
 void check_situation(const Situation& situation, Eigen::Index state_dim) {
   const auto require = [](bool holds, const char* message) {
@@ -34,9 +36,9 @@ void check_situation(const Situation& situation, Eigen::Index state_dim) {
 
 const std::vector<ControllerEntry>& controllers() {
   static const std::vector<ControllerEntry> table = {
-      quantised_controller(), nominal_controller(),  lqr_controller(),      tube_controller(),
-      cone_controller(),      cantelli_controller(), scenario_controller(), cvar_controller(),
-      drcc_controller(),      shield_controller(),
+      quantised_controller(), nominal_controller(),  lqr_controller(),       tube_controller(),
+      cone_controller(),      cantelli_controller(), scenario_controller(),  cvar_controller(),
+      drcc_controller(),      mppi_controller(),     risk_mppi_controller(), shield_controller(),
   };
   return table;
 }

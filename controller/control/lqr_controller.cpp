@@ -27,19 +27,9 @@ constexpr double kGainSettled = 1e-10;
 // … and is cut off after so many stages where it never does.
 constexpr int kLongestRecursion = 5000;
 
-/// The inputs nearest to none, input_dim.
-Eigen::VectorXd resting_input(const InputBounds& bounds) {
-  return bounds.lower.cwiseMax(Eigen::VectorXd::Zero(bounds.lower.size())).cwiseMin(bounds.upper);
-}
-
 /// ½ xᵀQx + uᵀRu over the stages and xᵀPx at the end have the Hessians Q, 2R and 2P.
 LqrWeights curvature_of(const QuadraticCost& cost) {
   return {.state = cost.state, .input = 2.0 * cost.input, .terminal = 2.0 * cost.terminal};
-}
-
-template <class Inputs>
-void clamp(const InputBounds& bounds, Inputs&& inputs) {
-  inputs = inputs.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
 }
 
 /// u = sat(u_0 + K (y − r)).
@@ -58,7 +48,7 @@ class TargetRegulator final : public Controller {
     offset_ = situation.observation - nearest_;
     decision_.input = rest_;
     decision_.input.noalias() += gain_ * offset_;
-    clamp(problem_.bounds, decision_.input);
+    clamp_inputs(problem_.bounds, decision_.input);
     return decision_;
   }
 
@@ -208,7 +198,7 @@ bool PathRegulator::improve(int& evaluations) {
       sweep_.away = trial_.states.col(k) - policy_.states.col(k);
       input = policy_.inputs.col(k) + share * steps_.col(k);
       input.noalias() += policy_.gains[static_cast<std::size_t>(k)] * sweep_.away;
-      clamp(problem_.bounds, input);
+      clamp_inputs(problem_.bounds, input);
       dynamics_.step(View(trial_.states.col(k).data(), dim, 1), View(input.data(), input.rows(), 1),
                      Eigen::Map<models::StateBatch>(trial_.states.col(k + 1).data(), dim, 1));
     }

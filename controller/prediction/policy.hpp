@@ -21,6 +21,19 @@ struct InputBounds {
   Eigen::VectorXd upper;  ///< input_dim, greater than lower
 };
 
+/// The inputs nearest to none, input_dim.
+[[nodiscard]] inline Eigen::VectorXd resting_input(const InputBounds& bounds) {
+  return bounds.lower.cwiseMax(0.0).cwiseMin(bounds.upper);
+}
+
+/// `inputs` (input_dim x n), column by column, clamped to the bounds.
+template <class Inputs>
+void clamp_inputs(const InputBounds& bounds, Inputs&& inputs) {
+  for (auto&& input : inputs.colwise()) {
+    input = input.cwiseMax(bounds.lower).cwiseMin(bounds.upper);
+  }
+}
+
 struct Policy {
   Eigen::MatrixXd inputs;              ///< v, input_dim x horizon, within the bounds
   Eigen::MatrixXd states;              ///< x̄, state_dim x (horizon + 1)

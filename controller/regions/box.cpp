@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "controller/regions/box_part.hpp"
+#include "controller/regions/distance_kernels.hpp"
 #include "controller/regions/penalty_kernels.hpp"
 #include "controller/regions/shapes.hpp"
 #include "controller/regions/soft_part.hpp"
@@ -28,8 +29,7 @@ class BoxRegion final : public UnsafeRegion {
 
   void lower_to_distances(Eigen::Index /*stage*/, const Points& points,
                           Eigen::ArrayXd& least) const override {
-    const BoxDistances to(points, core_intervals_);
-    least = least.min((to.depth >= 0.0).select(-to.depth, to.squares.sqrt()) - radius_);
+    lower_to_box_distances(core_intervals_, radius_, points, least);
   }
 
   void lower_to_faces(Eigen::Index /*stage*/, const Points& points,

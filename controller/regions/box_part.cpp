@@ -65,17 +65,6 @@ void add_part_probability(const SurrogateLaw& state, const BoxPart& part, Region
   sum.smooth += smooth;
 }
 
-BoxDistances::BoxDistances(const Points& points, const std::vector<AxisInterval>& intervals)
-    : depth(Eigen::ArrayXd::Constant(points.cols(), kInfinity)),
-      squares(Eigen::ArrayXd::Zero(points.cols())) {
-  for (const AxisInterval& interval : intervals) {
-    const Eigen::Map<const Eigen::ArrayXd> x(points.data() + interval.axis * points.cols(),
-                                             points.cols());
-    depth = depth.min(x - interval.lower).min(interval.upper - x);
-    squares += (interval.lower - x).max(x - interval.upper).max(0.0).square();
-  }
-}
-
 BoxSurface box_surface(const Points& points, Eigen::Index i,
                        const std::vector<AxisInterval>& intervals) {
   BoxSurface surface;

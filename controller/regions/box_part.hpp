@@ -29,15 +29,6 @@ void add_part_probability(const SurrogateLaw& state, const BoxPart& part, Region
 /// part's nearest point.
 void add_part_tail(const Gaussian& law, const BoxPart& part, TailSum& sum);
 
-/// Of many points from a box, which is bounded in the given intervals: how deep each is inside
-/// (less than 0 outside, infinite where there is no interval), and the squared distance of those
-/// outside.
-struct BoxDistances {
-  BoxDistances(const Points& points, const std::vector<AxisInterval>& intervals);
-  Eigen::ArrayXd depth;
-  Eigen::ArrayXd squares;
-};
-
 /// Where the surface of a box, which is bounded in the given intervals, is seen from a point.
 struct BoxSurface {
   double distance = 0.0;  ///< to it; less than 0 inside, and −infinity where there is no interval

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "controller/regions/box_part.hpp"
+#include "controller/regions/distance_kernels.hpp"
 #include "controller/regions/penalty_kernels.hpp"
 #include "controller/regions/shapes.hpp"
 #include "controller/regions/soft_part.hpp"
@@ -26,8 +27,7 @@ class Walls final : public UnsafeRegion {
 
   void lower_to_distances(Eigen::Index /*stage*/, const Points& points,
                           Eigen::ArrayXd& least) const override {
-    const BoxDistances to(points, intervals_);
-    least = least.min((to.depth > 0.0).select(to.depth, -to.squares.sqrt()));
+    lower_to_wall_distances(intervals_, points, least);
   }
 
   void lower_to_faces(Eigen::Index /*stage*/, const Points& points,

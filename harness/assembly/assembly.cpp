@@ -2,8 +2,11 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
 #include "harness/control/outside_controller.hpp"
 #include "harness/errors.hpp"
+#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/outside_controllers.hpp"
 #include "harness/threads/executor.hpp"
@@ -80,6 +83,7 @@ controller::ControllerSettings controller_settings(const Scenario& scenario) {
                      .limit = controller.shield.limit,
                      .stages = controller.shield.stages},
           .chance = chance,
+          .mppi = controller.mppi,
           .mission = scenario.risk.mission};
 }
 
@@ -121,6 +125,8 @@ std::string controller_words(const Scenario& scenario) {
     words = controller.kind + ", " + outside_controller_name(controller);
   } else if (controller.kind == "lqr") {
     words = "lqr about the " + controller.lqr_about;
+  } else if (is_sampling(controller)) {
+    words = fmt::format("{}, {} samples", controller.kind, controller.mppi.samples);
   } else {
     if (controller.kind != controller::controllers().front().name) words = controller.kind + ", ";
     if (controller.kind == "shield") words += "of " + controller.shield.of + ", ";

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "controller/prediction/propagator.hpp"
+#include "harness/scenario/known_names.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::harness {
@@ -27,6 +28,17 @@ double limit_in(const char* path) {
   return file >> value ? value : kInfinity;
 }
 
+/// Every sample's inputs, and a few numbers for itself and for each path of the noise.
+double samples_need(const Scenario& scenario) {
+  const controller::MppiSettings& mppi = scenario.controller.mppi;
+  const auto dim = static_cast<double>(scenario.initial_state.mean.size());
+  const auto inputs = static_cast<double>(scenario.controller.input_lower.size());
+  const double stages = scenario.controller.horizon;
+  const double paths = mppi.noise_paths;
+  const double sample = stages * inputs + paths + 4.0 * dim + 8.0;
+  return kNumber * (mppi.samples * sample + paths * (stages + 1.0) * dim);
+}
+
 double process_limit(int resource) {
   rlimit limit{};
   const bool is_limited = ::getrlimit(static_cast<__rlimit_resource>(resource), &limit) == 0 &&
@@ -34,10 +46,18 @@ double process_limit(int resource) {
   return is_limited ? static_cast<double>(limit.rlim_cur) : kInfinity;
 }
 
+std::string size_words(const Scenario::Controller& controller) {
+  if (is_sampling(controller)) return fmt::format("{} samples", controller.mppi.samples);
+  const Scenario::Quantisation& points = controller.quantisation;
+  return fmt::format("{} points of the state, {} of the noise, {} compressed", points.state,
+                     points.noise, points.compressed);
+}
+
 }  // namespace
 
 double memory_need(const Scenario& scenario) {
   const Scenario::Controller& controller = scenario.controller;
+  if (is_sampling(controller)) return samples_need(scenario);
   if (controller.kind != "quantised") return 0.0;  // the others hold no particles
   const auto dim = static_cast<double>(scenario.initial_state.mean.size());
   const double stages = controller.horizon;
@@ -64,13 +84,10 @@ std::optional<MemoryProblem> memory_problem(const Scenario& scenario, int count,
   const double need = count * memory_need(scenario);
   if (need <= kMemoryShare * usable) return std::nullopt;
   const Scenario::Controller& controller = scenario.controller;
-  const Scenario::Quantisation& points = controller.quantisation;
   return MemoryProblem{
-      .found = fmt::format(
-          "sizes that need about {:.2g} GB of memory: a horizon of {} with {} points "
-          "of the state, {} of the noise, {} compressed{}",
-          need / kGiga, controller.horizon, points.state, points.noise, points.compressed,
-          count > 1 ? fmt::format(", {} drives at the same time", count) : ""),
+      .found = fmt::format("sizes that need about {:.2g} GB of memory: a horizon of {} with {}{}",
+                           need / kGiga, controller.horizon, size_words(controller),
+                           count > 1 ? fmt::format(", {} drives at the same time", count) : ""),
       .expected = fmt::format("at most {:.2g} GB, {:.0f} % of the memory",
                               kMemoryShare * usable / kGiga, 100.0 * kMemoryShare)};
 }

@@ -8,9 +8,9 @@
 
 namespace qsmpc::harness {
 
-/// About how much memory (bytes) the planner of `scenario` needs, by horizon and numbers of points.
-/// Within a factor of about 4 of what was measured, and made for refusing what is far beyond a
-/// machine.
+/// About how much memory (bytes) the controller of `scenario` needs, by horizon and numbers of
+/// points or samples. Within a factor of about 4 of what was measured, and made for refusing what
+/// is far beyond a machine.
 [[nodiscard]] double memory_need(const Scenario& scenario);
 
 /// The memory (bytes) that this process may use: the machine's, or less where the limits of the

@@ -1,5 +1,6 @@
 #include "harness/scenario/certificate_scope.hpp"
 
+#include "harness/scenario/known_names.hpp"
 #include "harness/scenario/outside_controllers.hpp"
 
 namespace qsmpc::harness {
@@ -9,7 +10,7 @@ namespace {
 bool has_feedback(const Scenario::Controller& controller) {
   const std::string& kind = controller.kind;
   if (kind == "lqr" || kind == "tube" || kind == "shield" || is_outside(controller)) return true;
-  if (controller.policy != "closed_loop") return false;
+  if (controller.policy != "closed_loop" || is_sampling(controller)) return false;
   const bool is_zero = controller.feedback_gain && controller.feedback_gain->isZero(0.0);
   return !is_zero || controller.optimise_gain;
 }

@@ -13,7 +13,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr const char* kKey = "measured";
+constexpr const char* kOriginKey = "measured";
 constexpr const char* kUnknown = "unknown";
 constexpr std::size_t kLongestDigest = 64;  // bytes
 // Of constants that were written with all their digits.
@@ -139,7 +139,7 @@ std::string step_words(const std::optional<double>& step) {
 }  // namespace
 
 KeyDescription error_origin_key() {
-  return {.name = kKey,
+  return {.name = kOriginKey,
           .values = {MappingValue{
               {{.name = "parameters",
                 .values = {MappingValue{{{.name = "PARAMETER",
@@ -160,7 +160,7 @@ KeyDescription error_origin_key() {
 
 std::optional<Scenario::ErrorOrigin> read_error_origin(Section& section,
                                                        const ModelErrorContext& context) {
-  Section measured = section.section(kKey);
+  Section measured = section.section(kOriginKey);
   if (!measured.present()) return std::nullopt;
   Scenario::ErrorOrigin origin;
   read_model(measured, context, origin);
@@ -200,7 +200,7 @@ std::string error_origin_text(const Scenario::ErrorOrigin& origin, const std::st
   number("mass", origin.mass);
   number("wheelbase", origin.wheelbase);
   line("disturbance");
-  return text.empty() ? text : indent + kKey + ":\n" + text;
+  return text.empty() ? text : indent + kOriginKey + ":\n" + text;
 }
 
 Scenario::ErrorOrigin error_origin_of(const Scenario& scenario) {

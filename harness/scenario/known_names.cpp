@@ -63,6 +63,13 @@ const std::vector<std::string>& shielded_names() {
   return names;
 }
 
+bool is_sampling(const Scenario::Controller& controller) {
+  const std::vector<controller::ControllerEntry>& known = controller::controllers();
+  return std::any_of(known.begin(), known.end(), [&](const auto& entry) {
+    return entry.name == controller.kind && entry.samples;
+  });
+}
+
 const std::vector<std::string>& estimator_names() {
   static const std::vector<std::string> names = names_of(controller::estimators());
   return names;

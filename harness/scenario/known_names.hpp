@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 namespace qsmpc::harness {
@@ -20,6 +21,9 @@ namespace qsmpc::harness {
 /// Controllers that a shield may be about: those of the program but itself.
 [[nodiscard]] const std::vector<std::string>& shielded_names();
 [[nodiscard]] const std::vector<std::string>& estimator_names();
+/// Whether the controller draws input sequences: "mppi" or "risk_mppi".
+[[nodiscard]] bool is_sampling(const Scenario::Controller& controller);
+
 /// About what "lqr" linearises.
 [[nodiscard]] const std::vector<std::string>& lqr_about_names();
 /// What is done where a limit of the risk can't be kept.

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "controller/chance/chance_settings.hpp"
+#include "controller/control/mppi/mppi_settings.hpp"
 #include "controller/prediction/model_error.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "harness/scenario/plant_mapping.hpp"
@@ -120,6 +121,7 @@ struct Scenario {
   struct Controller {
     std::string kind = "quantised";  ///< a name from `qsmpc list controllers`
     std::string lqr_about = "path";  ///< or "target": about what "lqr" linearises
+    controller::MppiSettings mppi;   ///< of "mppi" and "risk_mppi"
     OutsideController outside;
     int horizon = 8;
     controller::ChanceSettings chance;  ///< of controllers that keep a chance constraint …

@@ -44,18 +44,17 @@ Eigen::MatrixXd symmetric_root(const Eigen::MatrixXd& covariance) {
 
 Eigen::VectorXd standard_normal_sample(Eigen::Index count, const RandomKey& key) {
   Eigen::VectorXd values(count);
-  standard_normal_sample(key, values);
+  standard_normals(key, {values.data(), static_cast<std::size_t>(count)});
   return values;
 }
 
-void standard_normal_sample(const RandomKey& key, Eigen::Ref<Eigen::VectorXd> out) {
-  const Eigen::Index count = out.size();
-  for (Eigen::Index i = 0; i < count; i += kBlock) {
-    const auto bits = random_block(key, i / kBlock);
+void standard_normals(const RandomKey& key, std::span<double> out) {
+  for (std::size_t i = 0; i < out.size(); i += kBlock) {
+    const auto bits = random_block(key, static_cast<Eigen::Index>(i) / kBlock);
     const r123::double2 first = r123::boxmuller(bits[0], bits[1]);
     const r123::double2 second = r123::boxmuller(bits[2], bits[3]);
     const std::array<double, kBlock> block{first.x, first.y, second.x, second.y};
-    for (Eigen::Index k = 0; k < kBlock && i + k < count; ++k) out[i + k] = block[k];
+    for (std::size_t k = 0; k < kBlock && i + k < out.size(); ++k) out[i + k] = block[k];
   }
 }
 

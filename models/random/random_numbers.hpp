@@ -25,6 +25,9 @@ enum class RandomStream : std::uint64_t {
   kBootstrap = 6,   ///< weights of an episode in the replicates of a sample of episodes
   kPlanning = 7,    ///< paths that a controller samples, a period an episode
   kSearch = 8,      ///< the order in which the points of a grid of settings are tried
+  // Controllers that sample; their "episode" is a chunk of samples.
+  kSampledInputs = 16,  ///< perturbations of inputs
+  kSampledNoise = 17,   ///< process noise of their rollouts
 };
 
 struct RandomKey {
@@ -37,8 +40,8 @@ struct RandomKey {
 /// `count` independent standard normal numbers.
 [[nodiscard]] Eigen::VectorXd standard_normal_sample(Eigen::Index count, const RandomKey& key);
 
-/// The same, as many as there is room for in `out`.
-void standard_normal_sample(const RandomKey& key, Eigen::Ref<Eigen::VectorXd> out);
+/// Fills `out` with the same numbers; allocates nothing.
+void standard_normals(const RandomKey& key, std::span<double> out);
 
 /// `count` independent numbers, uniform in (0, 1].
 [[nodiscard]] Eigen::VectorXd uniform_sample(Eigen::Index count, const RandomKey& key);

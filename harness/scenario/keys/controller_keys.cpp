@@ -377,6 +377,7 @@ void append(std::vector<ScenarioKey>& keys, std::vector<ScenarioKey> more) {
 
 ScenarioKey controller_key() {
   std::vector<ScenarioKey> keys = kind_keys();
+  keys.push_back(mppi_key());
   append(keys, outside_controller_keys());
   for (ScenarioKey (*make)() : {chance_key, shield_key}) keys.push_back(make());
   append(keys, plan_keys());

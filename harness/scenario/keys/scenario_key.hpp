@@ -80,6 +80,8 @@ struct ScenarioKey {
 [[nodiscard]] ScenarioKey risk_key();
 [[nodiscard]] ScenarioKey estimator_key();
 [[nodiscard]] ScenarioKey controller_key();
+/// Within it, those of controllers that sample.
+[[nodiscard]] ScenarioKey mppi_key();
 /// Within it, those of controllers that are no part of the program.
 [[nodiscard]] std::vector<ScenarioKey> outside_controller_keys();
 /// Those of controllers that keep a chance constraint, and of the shield.

@@ -57,5 +57,16 @@ TEST(MemoryNeed, a_controller_without_particles_needs_none) {
   EXPECT_EQ(memory_need(large), 0.0);
 }
 
+TEST(MemoryNeed, of_a_controller_that_samples_is_that_of_its_samples) {
+  Scenario large = with_sizes(1000, 100'000, 100, 100'000);
+  large.controller.kind = "mppi";
+  EXPECT_LT(memory_need(large), 0.1 * kGiga);
+  large.controller.mppi.samples = 1'000'000;
+  EXPECT_GT(memory_need(large), 8.0 * kGiga);  // 1000 inputs of 8 bytes each
+  const auto problem = memory_problem(large, 1, kGiga);
+  ASSERT_TRUE(problem.has_value());
+  EXPECT_THAT(problem->found, HasSubstr("a horizon of 1000 with 1000000 samples"));
+}
+
 }  // namespace memory_need_test
 }  // namespace qsmpc::harness

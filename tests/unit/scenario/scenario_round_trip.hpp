@@ -46,6 +46,7 @@ inline void expect_equal(const Scenario& a, const Scenario& b) {
 inline void expect_equal(const Scenario::Controller& a, const Scenario::Controller& b) {
   EXPECT_EQ(a.kind, b.kind);
   EXPECT_EQ(a.lqr_about, b.lqr_about);
+  EXPECT_TRUE(a.mppi == b.mppi);
   EXPECT_EQ(a.horizon, b.horizon);
   EXPECT_EQ(a.policy, b.policy);
   EXPECT_EQ(a.feedback_gain, b.feedback_gain);

@@ -1,0 +1,48 @@
+// The loops over the samples of a chunk that are not the system's, for the processor's widest
+// vectors. No result depends on how wide these are.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "controller/measure/measures.hpp"
+#include "controller/planning/cost/stage_kernels.hpp"
+#include "controller/regions/disc_placement.hpp"
+
+namespace qsmpc::controller {
+
+/// How one input of one stage is drawn: u = clamp(nominal + deviation · drift), with the drift that
+/// follows drift ← keep · drift + add · ξ.
+struct InputDraw {
+  double nominal = 0.0;
+  double deviation = 0.0;
+  double lower = 0.0;
+  double upper = 0.0;
+  double keep = 0.0;
+  double add = 1.0;
+};
+
+/// Replaces `count` standard normal numbers ξ by inputs, and moves their drifts on.
+void draw_inputs(const InputDraw& draw, Eigen::Index count, double* drift, double* values);
+
+/// totals_i += factor · (x_i − r)ᵀW(x_i − r) for the columns x_i of `points`.
+void add_quadratic(const QuadraticForm& form, double factor, const Eigen::Ref<const Points>& points,
+                   Eigen::ArrayXd& totals);
+
+/// Where the centres of a disc are that is not at the position; `centres` is sized by the caller.
+void place_discs(const DiscPlacement& placement, const Points& states, Points& centres);
+
+/// What a stage costs at a clearance s (m) of the body: `collision` where s ≤ 0, and
+/// `proximity` · h(s / margin) with h of planning/cost/penalty.hpp.
+struct UnsafeCost {
+  double collision = 0.0;
+  double proximity = 0.0;
+  double margin = 1.0;  ///< m, > 0
+};
+
+/// totals_i += the cost at clearances_i.
+void add_unsafe_cost(const UnsafeCost& cost, const Eigen::ArrayXd& clearances, double* totals);
+
+/// Σ a_i b_i of `count` numbers.
+[[nodiscard]] double weighted_total(const double* a, const double* b, Eigen::Index count);
+
+}  // namespace qsmpc::controller

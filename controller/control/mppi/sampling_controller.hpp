@@ -1,0 +1,95 @@
+// Model predictive path integral control: the inputs of a period are the mean of many sampled
+// sequences, weighted by what their rollouts cost. "mppi" and "risk_mppi" are made of it.
+//
+// With the inputs u of the last period, one stage later, an iteration draws v = clamp(u + ε),
+// ε ~ N(0, Σ) with Σ's deviations a share of the input range, correlated along the horizon; rolls
+// each sequence out; and makes u = Σ w v with w ∝ exp(−S / λ − γ/λ · uᵀΣ⁻¹v), Algorithm 2 of
+// Williams et al. 2018 (see mppi_settings.hpp). The first sample is u itself.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/control/controller.hpp"
+#include "controller/control/mppi/input_smoothing.hpp"
+#include "controller/control/mppi/noise_paths.hpp"
+#include "controller/control/mppi/rollouts.hpp"
+#include "controller/control/path_cost.hpp"
+
+namespace qsmpc::controller {
+
+/// What the rollouts of a sequence know of the noise, and how they make its cost.
+enum class SampleNoise {
+  kNone,  ///< one rollout without noise
+  kOwn,   ///< one rollout, in noise of its own
+  /// A rollout in each of M realisations that all sequences share: the mean of the quadratic cost
+  /// and the conditional value at risk of the unsafe cost.
+  kShared,
+};
+
+class SamplingController final : public Controller {
+ public:
+  /// `dynamics` must outlive it. Throws std::invalid_argument as check_planner_settings and
+  /// check_mppi_settings.
+  SamplingController(const models::Dynamics& dynamics, const ControllerSettings& settings,
+                     SampleNoise noise);
+
+  [[nodiscard]] static DecisionParts parts(const ControllerSettings& settings) {
+    return {.stages = settings.problem.horizon, .cost = true, .status = true};
+  }
+
+  const Decision& decide(const Situation& situation) override;
+  using Controller::reset;
+  void reset(std::uint64_t seed) override;
+
+ private:
+  /// A chunk of samples with what is made of their rollouts.
+  struct Samples {
+    SampleChunk chunk;
+    Points drift;          // of the perturbations, input_dim x count
+    Eigen::ArrayXd cost;   // count
+    Eigen::ArrayXd tilt;   // count
+    Points unsafe;         // paths x count
+    Eigen::VectorXd tail;  // of one sample, paths
+  };
+
+  void prepare(const Situation& situation);
+  [[nodiscard]] SolverStatus improve(std::chrono::steady_clock::time_point deadline);
+  void place_tilt();
+  void evaluate(Samples& samples) const;
+  void draw(Samples& samples) const;
+  void evaluate_in_shared_noise(Samples& samples) const;
+  [[nodiscard]] bool take_mean();
+
+  const models::Dynamics& dynamics_;
+  PlannerSettings problem_;
+  MppiSettings settings_;
+  SampleNoise noise_;
+  Eigen::VectorXd rest_;        // the inputs nearest to none
+  Eigen::VectorXd deviations_;  // of the perturbations
+  Rollouts rollouts_;
+  CovarianceRoot belief_root_;
+  CovarianceRoot noise_root_;
+  std::optional<NoiseDraw> noise_draw_;
+  NoisePaths paths_;
+  InputSmoothing smoothing_;
+  std::vector<Samples> samples_;
+  Eigen::MatrixXd slopes_;  // of the tilt by the inputs, input_dim x horizon
+  Eigen::ArrayXd costs_;    // S
+  Eigen::ArrayXd tilts_;    // S
+  Eigen::ArrayXd weights_;  // S
+  std::uint64_t seed_ = 0;
+  std::uint64_t draws_ = 0;  // of the drive so far
+  bool under_way_ = false;   // whether the inputs are those of the period before
+  Eigen::VectorXd target_;   // what means the target, nearest to the belief
+  Policy policy_;
+  Eigen::MatrixXd shifted_;
+  PathCostScratch cost_scratch_;
+  Decision decision_;
+};
+
+}  // namespace qsmpc::controller

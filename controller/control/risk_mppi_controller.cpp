@@ -1,0 +1,25 @@
+// Risk-aware model predictive path integral control: every sampled sequence is rolled out in the
+// same M realisations of the noise, and costs the mean of its quadratic cost and the conditional
+// value at risk of what being unsafe costs it. After Yin, Zhang, Tsiotras: "Risk-aware model
+// predictive path integral control using conditional value-at-risk", ICRA 2023.
+#include "controller/control/mppi/sampling_controller.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+std::unique_ptr<Controller> make_risk_mppi(const models::Dynamics& dynamics,
+                                           const ControllerSettings& settings) {
+  return std::make_unique<SamplingController>(dynamics, settings, SampleNoise::kShared);
+}
+
+}  // namespace
+
+ControllerEntry risk_mppi_controller() {
+  return {.name = "risk_mppi",
+          .summary = "mppi on many noises at once: mean cost, and CVaR of being unsafe",
+          .parts = SamplingController::parts,
+          .make = make_risk_mppi,
+          .samples = true};
+}
+
+}  // namespace qsmpc::controller
