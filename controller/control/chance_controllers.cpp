@@ -71,9 +71,9 @@ DecisionParts parts_of(const ChancePlannerSettings& settings) {
 
 /// The entry of a constraint, which is in the table under the same name.
 template <const char* const& kName>
-ControllerEntry entry_of(std::string summary) {
+ControllerEntry entry_of(const char* summary) {
   return {.name = kName,
-          .summary = std::move(summary),
+          .summary = summary,
           .parts =
               [](const ControllerSettings& settings) {
                 return parts_of(chance_settings(settings, kName));

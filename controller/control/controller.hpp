@@ -119,7 +119,7 @@ struct ControllerSettings {
   LqrAbout lqr_about = LqrAbout::kPath;
   ShieldSettings shield{};
   ChanceSettings chance{};  ///< of the controllers that keep a chance constraint
-  MppiSettings mppi{};  ///< of "mppi" and "risk_mppi"
+  MppiSettings mppi{};      ///< of "mppi" and "risk_mppi"
   /// Upper limit of the certified probability of ever being unsafe in a drive; infinite for none.
   double mission = std::numeric_limits<double>::infinity();
 };

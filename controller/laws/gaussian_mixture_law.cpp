@@ -7,6 +7,7 @@
 
 #include "controller/laws/closed_loop_step.hpp"
 #include "controller/laws/gaussian_split.hpp"
+#include "controller/laws/law_makers.hpp"
 #include "controller/laws/law_propagator.hpp"
 #include "controller/laws/mixture_reduction.hpp"
 #include "controller/laws/unscented_step.hpp"

@@ -1,18 +1,11 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "controller/laws/law_makers.hpp"
 #include "controller/laws/law_propagator.hpp"
 #include "controller/named_entry.hpp"
 
 namespace qsmpc::controller {
-
-// Each is defined in the file of its name.
-LawMethod monte_carlo_law();
-LawMethod unscented_law();
-LawMethod polynomial_chaos_law();
-LawMethod gaussian_mixture_law();
-LawMethod linearised_law();
-std::vector<LawMethod> quantised_laws();
 
 namespace {
 

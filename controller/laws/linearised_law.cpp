@@ -3,6 +3,7 @@
 
 #include "controller/laws/closed_loop_step.hpp"
 #include "controller/laws/covariance_root.hpp"
+#include "controller/laws/law_makers.hpp"
 #include "controller/laws/law_propagator.hpp"
 
 namespace qsmpc::controller {

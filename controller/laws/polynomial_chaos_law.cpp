@@ -6,6 +6,7 @@
 
 #include "controller/laws/closed_loop_step.hpp"
 #include "controller/laws/covariance_root.hpp"
+#include "controller/laws/law_makers.hpp"
 #include "controller/laws/law_propagator.hpp"
 #include "controller/laws/normal_grid.hpp"
 #include "models/linear_algebra.hpp"

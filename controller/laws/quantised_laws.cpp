@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "controller/laws/closed_loop_step.hpp"
+#include "controller/laws/law_makers.hpp"
 #include "controller/laws/law_propagator.hpp"
 #include "controller/prediction/propagator.hpp"
 

@@ -52,8 +52,9 @@ class BootstrapMean {
   Eigen::ArrayXd weights_ = Eigen::ArrayXd::Zero(kBootstrapReplicates);
 };
 
-/// The percentile interval of a statistic of which `replicates` are the bootstrap replicates, in any
-/// order: each limit is outside of as many of them as kCampaignTail says. Not numbers without any.
+/// The percentile interval of a statistic of which `replicates` are the bootstrap replicates, in
+/// any order: each limit is outside of as many of them as kCampaignTail says. Not numbers without
+/// any.
 [[nodiscard]] RateInterval percentile_interval(std::vector<double> replicates);
 
 /// The Poisson(1) weights of the pair of seed `seed` in each replicate, from that seed alone: the
