@@ -11,7 +11,7 @@ namespace qsmpc::harness {
 namespace {
 
 using RateMember = EpisodeRate Standing::*;
-const std::array<std::pair<const char*, RateMember>, 6> kRates{
+constexpr std::array<std::pair<const char*, RateMember>, 6> kRates{
     {{"reached", &Standing::reached},
      {"collision", &Standing::collision},
      {"left_bounds", &Standing::left_bounds},
@@ -19,9 +19,10 @@ const std::array<std::pair<const char*, RateMember>, 6> kRates{
      {"fault", &Standing::fault},
      {"unsafe", &Standing::unsafe}}};
 using MeanMember = DriveMean Standing::*;
-const std::array<std::pair<const char*, MeanMember>, 3> kMeans{{{"believed", &Standing::believed},
-                                                                {"certified", &Standing::certified},
-                                                                {"cost", &Standing::cost}}};
+constexpr std::array<std::pair<const char*, MeanMember>, 3> kMeans{
+    {{"believed", &Standing::believed},
+     {"certified", &Standing::certified},
+     {"cost", &Standing::cost}}};
 constexpr std::array kShareColumns{"pairs",          "mean",    "interval.lower",
                                    "interval.upper", "p_value", "result"};
 constexpr std::array kCostColumns{"pairs",

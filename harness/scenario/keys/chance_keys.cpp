@@ -17,7 +17,7 @@ constexpr NumberRange kRiskRange{.least = 0.0, .most = 0.5, .above_least = true}
 constexpr NumberRange kConfidenceRange{.least = 0.0, .most = 0.999999, .above_least = true};
 constexpr NumberRange kLimitRange{.least = 0.0, .most = 1.0, .above_least = true};
 constexpr NumberRange kRadiusRange{.least = 0.0, .most = 1e6};
-constexpr NumberRange kSmoothingRange{.least = 0.0, .most = 1e6, .above_least = true};
+constexpr NumberRange kRoundingRange{.least = 0.0, .most = 1e6, .above_least = true};
 constexpr WholeValue kPathsRange{0, 100'000};
 constexpr WholeValue kMemoryRange{1, kMostStages};
 
@@ -75,7 +75,7 @@ ScenarioKey chance_key() {
                       .unit = "m"},
             .member = [](Scenario& scenario) -> double& { return chance_of(scenario).radius; }},
            {.about = {.name = "smoothing",
-                      .values = {NumberValue{kSmoothingRange}},
+                      .values = {NumberValue{kRoundingRange}},
                       .words = "of `cvar` and `drcc`: over how much of the clearance the beginning "
                                "of the tail is rounded off",
                       .unit = "m"},

@@ -55,8 +55,8 @@ auto& member_of(Scenario& scenario) {
 
 /// The key of a number that may be left to the controller.
 template <std::optional<double> MppiSettings::*kMember>
-ScenarioKey optional_key(KeyDescription about) {
-  return {.about = std::move(about),
+ScenarioKey optional_key(const KeyDescription& about) {
+  return {.about = about,
           .read =
               [](ScenarioReading& reading, Section& section, const KeyDescription& key) {
                 if (!section.has(key.name)) return;
