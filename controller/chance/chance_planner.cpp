@@ -135,7 +135,7 @@ ChancePlanner::ChancePlanner(const models::Dynamics& dynamics,
   if (problem.guide) guide_.emplace(dynamics_, problem);
   draw_.start.resize(dynamics.state_dim(), path_count_);
   if (path_count_ > 0) draw_.noise.resize(static_cast<std::size_t>(problem.horizon));
-  covariances_.resize(static_cast<std::size_t>(problem.horizon + 1));
+  covariances_.resize(static_cast<std::size_t>(problem.horizon) + 1);
   problem_.cost = [this](const Eigen::VectorXd& z, Eigen::VectorXd& gradient) {
     sampled_.rollout(z);
     sampled_.clear_adjoints();
