@@ -80,7 +80,7 @@ INSTANTIATE_TEST_SUITE_P(
         after_minimal("unknown_section", "contoller:\n  horizon: 3\n", 6, "contoller",
                       "an unknown key", "controller (known: name"),
         after_minimal("unknown_key", "controller:\n  horzon: 3\n", 7, "controller.horzon",
-                      "an unknown key", "horizon (known: kind, lqr, command"),
+                      "an unknown key", "horizon (known: kind, lqr, mppi, command"),
         after_minimal("unknown_far_key", "video: {zzzzzz: 3}\n", 6, "video.zzzzzz",
                       "an unknown key", "one of camera, size, fps, overlays"),
         after_minimal("unknown_state", "safe_set: {bounds: {z: [0, 1]}}\n", 6, "safe_set.bounds.z",

@@ -104,8 +104,11 @@ TEST(ScenarioSchema, has_the_defaults_that_the_reader_fills_in) {
 
 // What is wrong with the least scenario that has `value` at `path`; empty if nothing is.
 std::string refusal_with(const std::string& path, const std::string& value) {
+  std::vector<std::string> overrides{path + "=" + value};
+  // Another controller would refuse these for what they are.
+  if (path.starts_with("controller.mppi.")) overrides.emplace_back("controller.kind=risk_mppi");
   try {
-    (void)parse_scenario(least_text(), {.overrides = {path + "=" + value}});
+    (void)parse_scenario(least_text(), {.overrides = overrides});
   } catch (const InputError& error) {
     return error.what();
   }
