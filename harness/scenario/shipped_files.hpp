@@ -17,9 +17,9 @@ using ShippedScenario = ShippedFile;
 using ShippedCampaign = ShippedFile;
 using ShippedContest = ShippedFile;
 
-/// The folder of shipped models, with `campaigns`, `contests`, `scenarios` and `mjcf` in it: the environment
-/// variable QSMPC_MODELS where it is set, else ../share/qsmpc/models beside the program, else the
-/// source tree's.
+/// The folder of shipped models, with `campaigns`, `contests`, `scenarios` and `mjcf` in it: the
+/// environment variable QSMPC_MODELS where it is set, else ../share/qsmpc/models beside the
+/// program, else the source tree's.
 [[nodiscard]] std::string shipped_models_folder();
 
 /// All of them, by name; empty where the folder cannot be read.
