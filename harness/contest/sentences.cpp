@@ -32,7 +32,7 @@ std::string safety_words(const ContestResults& results, std::size_t controller) 
   const std::size_t reference = results.contest.reference;
   const Standing& own = results.overall[controller];
   const std::string other = name_of_controller(results, reference);
-  std::string how = fmt::format("As safe as {}, as far as these drives tell", other);
+  std::string how = fmt::format("Not told apart from {} in safety by these drives", other);
   if (own.versus->safety() == MatchResult::kWin) how = "Safer than " + other;
   if (own.versus->safety() == MatchResult::kLoss) how = "Less safe than " + other;
   return fmt::format("{}: {} of its drives unsafe against {} ({})", how, percent(own.unsafe.rate),

@@ -179,7 +179,7 @@ TEST_F(Standings, that_differ_by_chance_are_told_as_ties) {
   all.overall[1].believed = {.drives = 80, .mean = 0.001};
   EXPECT_THAT(
       words_about(all, 1),
-      HasSubstr("As safe as careful, as far as these drives tell: 30 % of its drives unsafe "
+      HasSubstr("Not told apart from careful in safety by these drives: 30 % of its drives unsafe "
                 "against 0 % (p = 0.5); where both arrive, no different in cost (−10 % [−20, "
                 "5]); too sure of itself (believed in 0.001 unsafe periods a drive)."));
   versus.cost.pairs = 3;
