@@ -48,7 +48,7 @@ before(async () => {
   const contest = join(temporaryFolder(), "contest.yaml");
   writeFileSync(contest, "description: Three ways to drive\ncontrollers: {quantised: {}, nominal: {controller.kind: " +
     "nominal, risk: {}}, lqr: {controller.kind: lqr, risk: {}}}\nscenarios: [dubins_obstacles, dubins_alley]\n" +
-    "plants: [analytic]\nseeds: {count: 4}\ntiming: {seeds: 1}\ncommon: {limit.steps: 60}\ntuning: {seeds: [9], " +
+    "plants: [analytic]\nseeds: {count: 4}\ntiming: {seeds: 1}\ntuning: {seeds: [9], " +
     "budget: 2, search: {lqr: {controller.lqr.about: [path, target]}}}\n");
   qsmpc("contest", contest, "--quiet", "--out", folders.contest);
   browser = await startBrowser(softwareGl);
