@@ -99,7 +99,8 @@ TEST_F(Standings, of_a_cell_have_the_limits_of_its_drives) {
 }
 
 TEST_F(Standings, over_all_cells_take_the_seeds_for_independent_and_not_the_drives) {
-  const Standing& bold = results().overall[1];
+  const ContestResults all = results();
+  const Standing& bold = all.overall[1];
   EXPECT_EQ(bold.drives, 2 * kSeeds);
   EXPECT_EQ(bold.collision.events, 24);
   EXPECT_EQ(bold.collision.rate, 0.3);
@@ -120,7 +121,8 @@ TEST_F(Standings, compare_the_costs_of_drives_that_both_arrive) {
 }
 
 TEST_F(Standings, count_each_seed_once_in_the_sign_test) {
-  const Versus& versus = *results().overall[1].versus;
+  const ContestResults all = results();
+  const Versus& versus = *all.overall[1].versus;
   EXPECT_EQ(versus.unsafe.pairs, 2 * kSeeds);
   EXPECT_EQ(versus.unsafe.higher, 12);
   EXPECT_EQ(versus.unsafe.lower, 0);
@@ -128,7 +130,7 @@ TEST_F(Standings, count_each_seed_once_in_the_sign_test) {
   EXPECT_DOUBLE_EQ(versus.unsafe.mean, 0.3);
   EXPECT_EQ(versus.safety(), MatchResult::kLoss);
   EXPECT_EQ(versus.arrival(), MatchResult::kLoss);
-  const CellCounts counts = cell_counts(results(), 1, &Versus::safety);
+  const CellCounts counts = cell_counts(all, 1, &Versus::safety);
   EXPECT_EQ(counts.losses, 2);
   EXPECT_EQ(counts.wins + counts.ties, 0);
 }
