@@ -126,7 +126,8 @@ std::string controller_words(const Scenario& scenario) {
   } else if (controller.kind == "lqr") {
     words = "lqr about the " + controller.lqr_about;
   } else if (is_sampling(controller)) {
-    words = fmt::format("{}, {} samples", controller.kind, controller.mppi.samples);
+    words = fmt::format("{}{}, {} samples", controller.kind == "shield" ? "shield, of " : "",
+                        driving_kind(controller), controller.mppi.samples);
   } else {
     if (controller.kind != controller::controllers().front().name) words = controller.kind + ", ";
     if (controller.kind == "shield") words += "of " + controller.shield.of + ", ";

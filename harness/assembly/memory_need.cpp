@@ -58,7 +58,7 @@ std::string size_words(const Scenario::Controller& controller) {
 double memory_need(const Scenario& scenario) {
   const Scenario::Controller& controller = scenario.controller;
   if (is_sampling(controller)) return samples_need(scenario);
-  if (controller.kind != "quantised") return 0.0;  // the others hold no particles
+  if (driving_kind(controller) != "quantised") return 0.0;  // the others hold no particles
   const auto dim = static_cast<double>(scenario.initial_state.mean.size());
   const double stages = controller.horizon;
   const double kept = controller.quantisation.compressed;

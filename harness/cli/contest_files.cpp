@@ -1,6 +1,8 @@
 #include "harness/cli/contest_files.hpp"
 
+#include <filesystem>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -9,6 +11,7 @@
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/cli/campaign_results.hpp"
 #include "harness/contest/contest_results.hpp"
+#include "harness/errors.hpp"
 #include "harness/figures/pdf_figure.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/files/atomic_file.hpp"
@@ -22,6 +25,24 @@ constexpr const char* kContestPage = "contest.html";
 constexpr const char* kContestNumbers = "contest.json";
 constexpr const char* kContestTable = "contest.csv";
 
+/// None where no drive arrives; those of an earlier state are then removed.
+void write_figures(const std::vector<Chart>& charts, const std::string& title,
+                   const std::string& folder) {
+  const std::string drawing = folder + "/" + kContestFigure;
+  const std::string paper = folder + "/" + kContestPaperFigure;
+  if (charts.empty()) {
+    for (const std::string& file : {drawing, paper}) {
+      std::error_code error;
+      std::filesystem::remove(file, error);
+      if (error) throw IoError(file + ": cannot be removed: " + error.message());
+    }
+    return;
+  }
+  const std::string figure = svg_figure(charts);
+  write_file(drawing, figure);
+  write_file(paper, pdf_figure(figure, title));
+}
+
 }  // namespace
 
 ContestResults write_contest_files(const Contest& contest, const TuningResult& tuning,
@@ -31,9 +52,7 @@ ContestResults write_contest_files(const Contest& contest, const TuningResult& t
   std::optional<StoreReader> timed;
   if (is_timed) timed.emplace(folder + "/" + kTimingFolder).verify();
   ContestResults results = contest_results(contest, tuning, drives, timed ? &*timed : nullptr);
-  const std::string figure = svg_figure(contest_charts(results));
-  write_file(folder + "/" + kContestFigure, figure);
-  write_file(folder + "/" + kContestPaperFigure, pdf_figure(figure, contest.name));
+  write_figures(contest_charts(results), contest.name, folder);
   write_file(folder + "/" + kContestTable, contest_csv(results));
   write_file(folder + "/" + kContestPage, contest_page(results));
   write_file(folder + "/" + kContestNumbers, contest_json(results));
@@ -41,10 +60,14 @@ ContestResults write_contest_files(const Contest& contest, const TuningResult& t
 }
 
 std::string contest_files_text(const std::string& folder) {
+  std::error_code ignored;
+  const bool drawn = std::filesystem::exists(folder + "/" + kContestFigure, ignored);
   return fmt::format(
-      "\n  page     {0}/{1}\n  numbers  {0}/{2}, {3}\n  figure   {0}/{4}, {5}\n  drives   "
-      "{0}/report.html\n  stores   {0}/{6}, {7}/{6}, {8}/{6}\n",
-      folder, kContestPage, kContestNumbers, kContestTable, kContestFigure, kContestPaperFigure,
+      "\n  page     {0}/{1}\n  numbers  {0}/{2}, {3}\n{4}  drives   {0}/report.html\n"
+      "  stores   {0}/{5}, {6}/{5}, {7}/{5}\n",
+      folder, kContestPage, kContestNumbers, kContestTable,
+      drawn ? fmt::format("  figure   {}/{}, {}\n", folder, kContestFigure, kContestPaperFigure)
+            : "",
       kStoreFile, kTuningFolder, kTimingFolder);
 }
 

@@ -10,6 +10,7 @@
 #include "harness/figures/palette.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -25,6 +26,7 @@ struct CostPlace {
 };
 
 CostPlace relative_place(const Standing& standing) {
+  if (standing.reached.events == 0) return {.mean = kNotANumber};
   if (!standing.versus) return {.mean = 1.0, .interval = {.lower = 1.0, .upper = 1.0}};
   return {.mean = standing.versus->cost.ratio, .interval = standing.versus->cost.ratio_interval};
 }
@@ -93,6 +95,11 @@ Chart standings_chart(const ContestResults& results, const std::string& title,
   return chart;
 }
 
+/// A chart without a dot says nothing that its table does not.
+void leave_out_empty(std::vector<Chart>& charts) {
+  std::erase_if(charts, [](const Chart& chart) { return chart.series.empty(); });
+}
+
 }  // namespace
 
 Chart overall_chart(const ContestResults& results) {
@@ -111,12 +118,14 @@ std::vector<Chart> cell_charts(const ContestResults& results) {
     charts.push_back(standings_chart(results, printable(cell.name, kCellTitleLimit), cell.standings,
                                      absolute_place));
   }
+  leave_out_empty(charts);
   return charts;
 }
 
 std::vector<Chart> contest_charts(const ContestResults& results) {
   std::vector<Chart> charts = cell_charts(results);
-  if (charts.size() > 1) charts.insert(charts.begin(), overall_chart(results));
+  if (results.cells.size() > 1) charts.insert(charts.begin(), overall_chart(results));
+  leave_out_empty(charts);
   return charts;
 }
 

@@ -16,10 +16,12 @@ inline constexpr const char* kContestPaperFigure = "contest.pdf";
 /// reference's on the same seeds, both with 99 % intervals, over all cells.
 [[nodiscard]] Chart overall_chart(const ContestResults& results);
 
-/// The same of each cell, with the mean cost of the drives that reached the target.
+/// The same of each cell, with the mean cost of the drives that reached the target; without the
+/// cells in which no controller has such a drive.
 [[nodiscard]] std::vector<Chart> cell_charts(const ContestResults& results);
 
-/// The charts of the figure: the one over all cells where there are several, then those of cells.
+/// The charts of the figure: the one over all cells where there are several, then those of cells;
+/// none without a dot.
 [[nodiscard]] std::vector<Chart> contest_charts(const ContestResults& results);
 
 }  // namespace qsmpc::harness

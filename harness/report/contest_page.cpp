@@ -177,8 +177,12 @@ std::string words_card(const ContestResults& results) {
 
 std::string first_screen(const ContestResults& results) {
   const std::vector<Chart> charts = contest_charts(results);
-  return "<div class=\"contest\">\n" + chart_figure(charts.front()) + words_card(results) +
-         "</div>\n" + overall_table(results) + overall_note(results);
+  const std::string figure =
+      charts.empty() ? "<p class=\"note\">No drive of any controller arrives: there is no cost to "
+                       "draw.</p>\n"
+                     : chart_figure(charts.front());
+  return "<div class=\"contest\">\n" + figure + words_card(results) + "</div>\n" +
+         overall_table(results) + overall_note(results);
 }
 
 std::string cells_section(const ContestResults& results) {

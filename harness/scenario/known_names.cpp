@@ -63,10 +63,14 @@ const std::vector<std::string>& shielded_names() {
   return names;
 }
 
+const std::string& driving_kind(const Scenario::Controller& controller) {
+  return controller.kind == "shield" ? controller.shield.of : controller.kind;
+}
+
 bool is_sampling(const Scenario::Controller& controller) {
   const std::vector<controller::ControllerEntry>& known = controller::controllers();
   return std::any_of(known.begin(), known.end(), [&](const auto& entry) {
-    return entry.name == controller.kind && entry.samples;
+    return entry.name == driving_kind(controller) && entry.samples;
   });
 }
 

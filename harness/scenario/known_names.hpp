@@ -21,7 +21,9 @@ namespace qsmpc::harness {
 /// Controllers that a shield may be about: those of the program but itself.
 [[nodiscard]] const std::vector<std::string>& shielded_names();
 [[nodiscard]] const std::vector<std::string>& estimator_names();
-/// Whether the controller draws input sequences: "mppi" or "risk_mppi".
+/// The kind of the controller that chooses the inputs: of a shield the one that it is about.
+[[nodiscard]] const std::string& driving_kind(const Scenario::Controller& controller);
+/// Whether that draws input sequences: "mppi" or "risk_mppi".
 [[nodiscard]] bool is_sampling(const Scenario::Controller& controller);
 
 /// About what "lqr" linearises.

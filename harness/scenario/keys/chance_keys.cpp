@@ -1,11 +1,13 @@
 // The keys of controllers that keep a chance constraint of the literature, and of the shield.
 #include <algorithm>
+#include <initializer_list>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "controller/chance/chance_constraint.hpp"
 #include "controller/control/controller.hpp"
+#include "harness/scenario/keys/effect_checks.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/value_checks.hpp"
@@ -22,7 +24,7 @@ constexpr WholeValue kPathsRange{0, 100'000};
 constexpr WholeValue kMemoryRange{1, kMostStages};
 
 bool keeps_chance_constraint(const Scenario& scenario) {
-  const std::string& kind = scenario.controller.kind;
+  const std::string& kind = driving_kind(scenario.controller);
   if (kind == "tube") return true;
   const auto& known = controller::chance_constraints();
   return std::any_of(known.begin(), known.end(),
@@ -33,11 +35,68 @@ bool keeps_chance_constraint(const Scenario& scenario) {
 bool samples_paths(const Scenario& scenario) {
   const auto& known = controller::chance_constraints();
   return std::any_of(known.begin(), known.end(), [&](const auto& entry) {
-    return entry.name == scenario.controller.kind && entry.samples;
+    return entry.name == driving_kind(scenario.controller) && entry.samples;
   });
 }
 
 controller::ChanceSettings& chance_of(Scenario& scenario) { return scenario.controller.chance; }
+
+/// Whether the controller is one of these.
+bool is_one_of(const ScenarioReading& reading, std::initializer_list<const char*> kinds) {
+  return std::any_of(kinds.begin(), kinds.end(), [&](const char* kind) {
+    return driving_kind(reading.scenario.controller) == kind;
+  });
+}
+
+template <auto kMember>
+void check_chance(const ScenarioReading& reading, Section& section, const char* key,
+                  bool has_effect, const char* condition) {
+  check_has_effect(section, key, reading.scenario.controller.chance.*kMember,
+                   controller::ChanceSettings{}.*kMember, has_effect, condition);
+}
+
+template <auto kMember>
+void check_shield(const ScenarioReading& reading, Section& section, const char* key) {
+  check_has_effect(section, key, reading.scenario.controller.shield.*kMember,
+                   Scenario::Controller{}.shield.*kMember,
+                   reading.scenario.controller.kind == "shield", "controller.kind: shield");
+}
+
+void check_chance_risk(const ScenarioReading& reading, Section& section) {
+  check_chance<&controller::ChanceSettings::risk>(
+      reading, section, "risk", keeps_chance_constraint(reading.scenario),
+      "a controller.kind that keeps a chance constraint");
+}
+
+void check_paths(const ScenarioReading& reading, Section& section) {
+  check_chance<&controller::ChanceSettings::paths>(reading, section, "paths",
+                                                   samples_paths(reading.scenario),
+                                                   "controller.kind: scenario, cvar or drcc");
+}
+
+void check_confidence(const ScenarioReading& reading, Section& section) {
+  check_chance<&controller::ChanceSettings::confidence>(reading, section, "confidence",
+                                                        is_one_of(reading, {"scenario"}),
+                                                        "controller.kind: scenario");
+}
+
+void check_radius(const ScenarioReading& reading, Section& section) {
+  check_chance<&controller::ChanceSettings::radius>(
+      reading, section, "radius", is_one_of(reading, {"drcc"}), "controller.kind: drcc");
+}
+
+void check_smoothing(const ScenarioReading& reading, Section& section) {
+  check_chance<&controller::ChanceSettings::smoothing>(reading, section, "smoothing",
+                                                       is_one_of(reading, {"cvar", "drcc"}),
+                                                       "controller.kind: cvar or drcc");
+}
+
+void check_memory(const ScenarioReading& reading, Section& section) {
+  const Scenario::Controller& settings = reading.scenario.controller;
+  check_has_effect(
+      section, "memory", settings.disturbance_memory, Scenario::Controller{}.disturbance_memory,
+      settings.policy == "disturbance_feedback", "controller.policy: disturbance_feedback");
+}
 
 }  // namespace
 
@@ -58,35 +117,41 @@ ScenarioKey chance_key() {
                       .values = {NumberValue{kRiskRange}},
                       .words = "probability with which a stage of a plan may be unsafe, as the "
                                "method believes; with `scenario` any stage of it"},
-            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).risk; }},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).risk; },
+            .check = check_chance_risk},
            {.about = {.name = "paths",
                       .values = {kPathsRange},
                       .words = "paths that are sampled for a plan, {range}; 0: with `scenario` as "
                                "many as the sample bound asks for, with `cvar` and `drcc` 200"},
-            .member = [](Scenario& scenario) -> int& { return chance_of(scenario).paths; }},
+            .member = [](Scenario& scenario) -> int& { return chance_of(scenario).paths; },
+            .check = check_paths},
            {.about = {.name = "confidence",
                       .values = {NumberValue{kConfidenceRange}},
                       .words = "of the sample bound of `scenario`: how sure it is to be"},
-            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).confidence; }},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).confidence; },
+            .check = check_confidence},
            {.about = {.name = "radius",
                       .values = {NumberValue{kRadiusRange}},
                       .words = "of `drcc`: of the ball of laws about the sampled one, in the "
                                "1-Wasserstein distance",
                       .unit = "m"},
-            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).radius; }},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).radius; },
+            .check = check_radius},
            {.about = {.name = "smoothing",
                       .values = {NumberValue{kRoundingRange}},
                       .words = "of `cvar` and `drcc`: over how much of the clearance the beginning "
                                "of the tail is rounded off",
                       .unit = "m"},
-            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).smoothing; }},
+            .member = [](Scenario& scenario) -> double& { return chance_of(scenario).smoothing; },
+            .check = check_smoothing},
            {.about = {.name = "memory",
                       .values = {kMemoryRange},
                       .words = "with `controller.policy: disturbance_feedback`: how many of the "
                                "last noises an input answers to"},
             .member = [](Scenario& scenario) -> int& {
               return scenario.controller.disturbance_memory;
-            }}},
+            },
+            .check = check_memory}},
       .layout = SectionLayout::kFlow};
 }
 
@@ -100,20 +165,33 @@ ScenarioKey shield_key() {
                                    "limit: {names}"},
                 .member = [](Scenario& scenario) -> std::string& {
                   return scenario.controller.shield.of;
-                }},
+                },
+                .check =
+                    [](const ScenarioReading& reading, Section& section) {
+                      check_shield<&Scenario::Controller::Shield::of>(reading, section, "of");
+                    }},
                {.about = {.name = "limit",
                           .values = {NumberValue{kLimitRange}},
                           .words = "certified probability of being unsafe, at any of the stages "
                                    "looked ahead, above which it is overruled"},
                 .member = [](Scenario& scenario) -> double& {
                   return scenario.controller.shield.limit;
-                }},
+                },
+                .check =
+                    [](const ScenarioReading& reading, Section& section) {
+                      check_shield<&Scenario::Controller::Shield::limit>(reading, section, "limit");
+                    }},
                {.about = {.name = "stages",
                           .values = {WholeValue{0, kMostStages}},
                           .words = "how many stages are looked ahead; 0: the whole horizon"},
                 .member = [](Scenario& scenario) -> int& {
                   return scenario.controller.shield.stages;
-                }}},
+                },
+                .check =
+                    [](const ScenarioReading& reading, Section& section) {
+                      check_shield<&Scenario::Controller::Shield::stages>(reading, section,
+                                                                          "stages");
+                    }}},
       .layout = SectionLayout::kFlow};
 }
 

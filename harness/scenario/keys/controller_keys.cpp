@@ -41,7 +41,7 @@ void check_kind(const ScenarioReading& reading, Section& section) {
 
 void check_lqr_about(const ScenarioReading& reading, Section& section) {
   const Scenario::Controller& controller = reading.scenario.controller;
-  if (controller.kind != "lqr" && controller.lqr_about != defaults().lqr_about) {
+  if (driving_kind(controller) != "lqr" && controller.lqr_about != defaults().lqr_about) {
     section.note("about", defaults().lqr_about + ", or controller.kind: lqr");
   }
 }
@@ -144,7 +144,8 @@ std::vector<ScenarioKey> kind_keys() {
            .member = [](Scenario& scenario) -> std::string& { return scenario.controller.kind; },
            .check = check_kind},
           {.about = {.name = "lqr"},
-           .is_written = [](const Scenario& scenario) { return scenario.controller.kind == "lqr"; },
+           .is_written =
+               [](const Scenario& scenario) { return driving_kind(scenario.controller) == "lqr"; },
            .keys = {{.about = {.name = "about",
                                .values = {NameValue{lqr_about_names()}},
                                .words = "about what `lqr` linearises: {names}"},

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/keys/effect_checks.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/yaml_text.hpp"
@@ -26,13 +27,11 @@ constexpr NumberRange kShareRange{.least = 0.0, .most = 1.0, .above_least = true
 constexpr NumberRange kUnitRange{.least = 0.0, .most = 1.0};
 constexpr NumberRange kBelowOneRange{.least = 0.0, .most = 0.999};
 
-/// A key that has no effect under the other settings may still hold its default.
 template <auto kMember>
 void check_is_used(const ScenarioReading& reading, Section& section, const char* key, bool is_used,
                    const char* condition) {
-  const auto usual = MppiSettings{}.*kMember;
-  if (is_used || reading.scenario.controller.mppi.*kMember == usual) return;
-  section.note(key, fmt::format("{}, or {}", usual, condition));
+  check_has_effect(section, key, reading.scenario.controller.mppi.*kMember, MppiSettings{}.*kMember,
+                   is_used, condition);
 }
 
 template <auto kMember>
@@ -44,7 +43,7 @@ void check_is_sampling(const ScenarioReading& reading, Section& section, const c
 template <auto kMember>
 void check_is_of(const ScenarioReading& reading, Section& section, const char* key,
                  const char* kind) {
-  check_is_used<kMember>(reading, section, key, reading.scenario.controller.kind == kind,
+  check_is_used<kMember>(reading, section, key, driving_kind(reading.scenario.controller) == kind,
                          (std::string("controller.kind: ") + kind).c_str());
 }
 
@@ -199,7 +198,8 @@ std::vector<ScenarioKey> sampled_noise_keys() {
            [](const ScenarioReading& reading, Section& section) {
              check_is_of<&MppiSettings::noise>(reading, section, "noise", kMppi);
            },
-       .is_written = [](const Scenario& scenario) { return scenario.controller.kind == kMppi; }},
+       .is_written =
+           [](const Scenario& scenario) { return driving_kind(scenario.controller) == kMppi; }},
       {.about = {.name = "noise_paths",
                  .values = {kNoisePathsRange},
                  .words = "of `risk_mppi` alone: realisations of belief and noise that every "
@@ -210,7 +210,7 @@ std::vector<ScenarioKey> sampled_noise_keys() {
              check_is_of<&MppiSettings::noise_paths>(reading, section, "noise_paths", kRiskMppi);
            },
        .is_written =
-           [](const Scenario& scenario) { return scenario.controller.kind == kRiskMppi; }},
+           [](const Scenario& scenario) { return driving_kind(scenario.controller) == kRiskMppi; }},
       {.about = {.name = "cvar",
                  .values = {NumberValue{kBelowOneRange}},
                  .words = "of `risk_mppi` alone: α of the conditional value at risk, the mean of "
@@ -221,7 +221,7 @@ std::vector<ScenarioKey> sampled_noise_keys() {
              check_is_of<&MppiSettings::cvar>(reading, section, "cvar", kRiskMppi);
            },
        .is_written =
-           [](const Scenario& scenario) { return scenario.controller.kind == kRiskMppi; }},
+           [](const Scenario& scenario) { return driving_kind(scenario.controller) == kRiskMppi; }},
   };
 }
 

@@ -198,6 +198,23 @@ TEST_F(Standings, are_on_the_page_with_names_as_text) {
   EXPECT_EQ(contest_charts(results()).size(), 3U) << "over all, and of each cell";
 }
 
+TEST_F(Standings, have_no_figure_of_a_cell_in_which_nobody_arrives) {
+  ContestResults all = results();
+  const auto strand = [](Standing& standing) {
+    standing.reached = episode_rate(0, standing.drives);
+    standing.cost.mean = std::nan("");
+  };
+  for (Standing& standing : all.cells[1].standings) strand(standing);
+  EXPECT_EQ(contest_charts(all).size(), 2U);
+  for (Standing& standing : all.cells[0].standings) strand(standing);
+  for (Standing& standing : all.overall) strand(standing);
+  EXPECT_TRUE(contest_charts(all).empty());
+  const std::string page = contest_page(all);
+  EXPECT_EQ(testing::tag_problem(page), "");
+  EXPECT_THAT(page, HasSubstr("there is no cost to draw"));
+  EXPECT_THAT(page, Not(HasSubstr("<svg class=\"chart")));
+}
+
 TEST_F(Standings, are_the_same_in_json_and_csv) {
   const ContestResults all = results();
   const auto json = nlohmann::json::parse(contest_json(all));

@@ -67,22 +67,47 @@ TEST(ControllerKeys, a_guide_needs_a_controller_that_follows_it_and_bounds_of_th
 }
 
 TEST(ControllerKeys, chance_constraints_are_read_written_and_refused) {
-  const Scenario scenario = minimal_with(
-      {"controller.kind=cvar",
-       "controller.chance={risk: 0.1, paths: 30, confidence: 0.8, radius: 0.3, smoothing: 0.2}"});
-  EXPECT_EQ(scenario.controller.chance.risk, 0.1);
-  EXPECT_EQ(scenario.controller.chance.paths, 30);
-  EXPECT_EQ(scenario.controller.chance.confidence, 0.8);
-  EXPECT_EQ(scenario.controller.chance.radius, 0.3);
-  EXPECT_EQ(scenario.controller.chance.smoothing, 0.2);
-  expect_round_trip(scenario);
-  // They stay where another controller drives, and have no effect there.
-  EXPECT_THAT(to_yaml(minimal_with({"controller.chance.risk=0.1"})), Not(HasSubstr("chance")));
+  const Scenario cvar = minimal_with(
+      {"controller.kind=cvar", "controller.chance={risk: 0.1, paths: 30, smoothing: 0.2}"});
+  EXPECT_EQ(cvar.controller.chance.risk, 0.1);
+  EXPECT_EQ(cvar.controller.chance.paths, 30);
+  EXPECT_EQ(cvar.controller.chance.smoothing, 0.2);
+  expect_round_trip(cvar);
+  const Scenario sampled =
+      minimal_with({"controller.kind=scenario", "controller.chance.confidence=0.8"});
+  EXPECT_EQ(sampled.controller.chance.confidence, 0.8);
+  expect_round_trip(sampled);
+  const Scenario robust = minimal_with({"controller.kind=drcc", "controller.chance.radius=0.3"});
+  EXPECT_EQ(robust.controller.chance.radius, 0.3);
+  expect_round_trip(robust);
   for (const char* risk : {"0", "0.6", "-0.1"}) {
     const std::string wrong = std::string("controller.chance.risk=") + risk;
     EXPECT_EQ(refusal_of(minimal_text, {"controller.kind=cone", wrong}).key,
               "controller.chance.risk");
   }
+}
+
+TEST(ControllerKeys, of_chance_constraints_and_the_shield_are_refused_where_they_have_no_effect) {
+  const std::vector<std::pair<const char*, const char*>> idle{
+      {"quantised", "chance.risk=0.1"},
+      {"cone", "chance.paths=30"},
+      {"cvar", "chance.confidence=0.8"},
+      {"cvar", "chance.radius=0.3"},
+      {"scenario", "chance.smoothing=0.2"},
+      {"scenario", "chance.memory=3"},
+      {"lqr", "shield.of=lqr"},
+      {"tube", "shield.limit=0.1"},
+      {"tube", "shield.stages=2"},
+  };
+  for (const auto& [kind, setting] : idle) {
+    const std::string written = std::string("controller.") + setting;
+    EXPECT_EQ(refusal_of(minimal_text, {std::string("controller.kind=") + kind, written}).key,
+              written.substr(0, written.find('=')));
+  }
+  // A default stands in resolved scenarios of other controllers, too.
+  EXPECT_NO_THROW(minimal_with(
+      {"controller.kind=cone",
+       "controller.chance.radius=" + std::to_string(controller::ChanceSettings{}.radius)}));
 }
 
 TEST(ControllerKeys, inputs_answer_to_noise_only_where_paths_are_sampled) {
@@ -95,6 +120,21 @@ TEST(ControllerKeys, inputs_answer_to_noise_only_where_paths_are_sampled) {
     const std::string other = std::string("controller.kind=") + kind;
     EXPECT_EQ(refusal_of(minimal_text, {other, answers}).key, "controller.policy");
   }
+}
+
+TEST(ControllerKeys, of_what_a_shield_is_about_are_kept) {
+  const Scenario sampling = minimal_with(
+      {"controller.kind=shield", "controller.shield.of=mppi", "controller.mppi.samples=77"});
+  EXPECT_EQ(sampling.controller.mppi.samples, 77);
+  expect_round_trip(sampling);
+  const Scenario robust = minimal_with(
+      {"controller.kind=shield", "controller.shield.of=drcc", "controller.chance.radius=0.3"});
+  EXPECT_EQ(robust.controller.chance.radius, 0.3);
+  expect_round_trip(robust);
+  const Scenario lqr = minimal_with(
+      {"controller.kind=shield", "controller.shield.of=lqr", "controller.lqr.about=target"});
+  EXPECT_EQ(lqr.controller.lqr_about, "target");
+  expect_round_trip(lqr);
 }
 
 TEST(ControllerKeys, a_shield_is_about_another_controller) {
