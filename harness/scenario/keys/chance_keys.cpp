@@ -168,7 +168,7 @@ ScenarioKey shield_key() {
                 },
                 .check =
                     [](const ScenarioReading& reading, Section& section) {
-                      check_shield<&Scenario::Controller::Shield::of>(reading, section, "of");
+                      check_shield<&Scenario::Shield::of>(reading, section, "of");
                     }},
                {.about = {.name = "limit",
                           .values = {NumberValue{kLimitRange}},
@@ -179,7 +179,7 @@ ScenarioKey shield_key() {
                 },
                 .check =
                     [](const ScenarioReading& reading, Section& section) {
-                      check_shield<&Scenario::Controller::Shield::limit>(reading, section, "limit");
+                      check_shield<&Scenario::Shield::limit>(reading, section, "limit");
                     }},
                {.about = {.name = "stages",
                           .values = {WholeValue{0, kMostStages}},
@@ -189,8 +189,7 @@ ScenarioKey shield_key() {
                 },
                 .check =
                     [](const ScenarioReading& reading, Section& section) {
-                      check_shield<&Scenario::Controller::Shield::stages>(reading, section,
-                                                                          "stages");
+                      check_shield<&Scenario::Shield::stages>(reading, section, "stages");
                     }}},
       .layout = SectionLayout::kFlow};
 }
