@@ -56,6 +56,25 @@ SeedSet seeds_from_text(const std::string& text) {
   return seeds;
 }
 
+SeedPlaces::SeedPlaces(const SeedSet& seeds)
+    : first_(seeds.first), count_(seeds.listed.empty() ? seeds.count : 0) {
+  for (std::size_t i = 0; i < seeds.listed.size(); ++i) {
+    listed_.emplace(seeds.listed[i], static_cast<std::int64_t>(i));
+  }
+}
+
+std::optional<std::int64_t> SeedPlaces::of(std::uint64_t seed) const {
+  if (const auto found = listed_.find(seed); found != listed_.end()) return found->second;
+  if (seed < first_ || seed - first_ >= static_cast<std::uint64_t>(count_)) return std::nullopt;
+  return static_cast<std::int64_t>(seed - first_);
+}
+
+std::string until_text(const std::optional<StopCriterion>& until) {
+  if (!until) return "none";
+  return fmt::format("{} to +-{} at {} %", until->of, until->rate_halfwidth,
+                     100.0 * until->confidence);
+}
+
 std::string traces_text(const Campaign& campaign) {
   const char* name = trace_keeping_name(campaign.traces);
   if (campaign.traces != TraceKeeping::kFailures) return name;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 #include "harness/scenario/scenario.hpp"
@@ -38,6 +40,19 @@ struct SeedSet {
 /// The inverse of `seeds_text`. Throws std::invalid_argument on something else.
 [[nodiscard]] SeedSet seeds_from_text(const std::string& text);
 
+/// Where seeds are among those of a set.
+class SeedPlaces {
+ public:
+  explicit SeedPlaces(const SeedSet& seeds);
+  /// The index of `seed`, as SeedSet::at has it; nothing for a seed of no such set.
+  [[nodiscard]] std::optional<std::int64_t> of(std::uint64_t seed) const;
+
+ private:
+  std::uint64_t first_;
+  std::int64_t count_;
+  std::unordered_map<std::uint64_t, std::int64_t> listed_{};
+};
+
 /// Which part of a campaign is driven: every `count`-th seed from the `index`-th on.
 struct Shard {
   std::int64_t index = 1;  ///< 1 … count
@@ -70,6 +85,21 @@ struct VariantFamily {
   friend bool operator==(const VariantFamily&, const VariantFamily&) = default;
 };
 
+/// StopCriterion::of that counts the episodes whose true state entered the unsafe set.
+inline constexpr const char* kUnsafeEvent = "unsafe";
+
+/// When a campaign has driven enough seeds: see StopRule.
+struct StopCriterion {
+  std::string of = kUnsafeEvent;  ///< kUnsafeEvent, or outcome_name of an outcome
+  double rate_halfwidth = 0.0;    ///< in (0, 0.5): of the interval of each variant's rate, at most
+  double confidence = 0.99;  ///< in (0, 1), of each variant's interval, at every number of seeds
+
+  friend bool operator==(const StopCriterion&, const StopCriterion&) = default;
+};
+
+/// "unsafe to +-0.001 at 99 %"; "none" without one.
+[[nodiscard]] std::string until_text(const std::optional<StopCriterion>& until);
+
 /// Every variant is driven with every seed. The same seed gives every variant the same random
 /// numbers: what differs between variants is paired by seed.
 struct Campaign {
@@ -81,7 +111,10 @@ struct Campaign {
   std::int64_t trace_sample = 0;
   /// The lines of the figure of risk against cost, by name; without any there is no such figure.
   std::vector<VariantFamily> risk_against_cost{};
+  /// Fewer seeds than `seeds` are driven where fewer suffice.
+  std::optional<StopCriterion> until{};
 
+  /// At most.
   [[nodiscard]] std::int64_t episodes() const {
     return static_cast<std::int64_t>(variants.size()) * seeds.size();
   }

@@ -3,13 +3,12 @@
 #include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <filesystem>
 #include <mutex>
 #include <optional>
-#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "harness/campaign/stopping.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/episode/driver_pool.hpp"
@@ -48,15 +47,6 @@ std::vector<std::string> digests_of(const Campaign& campaign) {
   return digests;
 }
 
-void remove_traces(const std::string& folder, const std::vector<std::string>& traces) {
-  for (const std::string& trace : traces) {
-    std::error_code error;
-    const std::filesystem::path path = std::filesystem::path(folder) / trace;
-    std::filesystem::remove_all(path, error);
-    if (error) throw IoError(path.string() + ": cannot be removed: " + error.message());
-  }
-}
-
 /// An episode to be driven.
 struct Task {
   std::size_t variant = 0;      ///< index in the campaign
@@ -73,11 +63,16 @@ class CampaignRun {
         options_(options),
         store_(store),
         drivers_(kDriversPerJob * static_cast<std::size_t>(options.jobs)),
-        seed_index_(options.shard.index - 1) {
+        seed_index_(options.shard.index - 1),
+        seed_end_(campaign.seeds.size()) {
     progress_.total = static_cast<std::int64_t>(campaign.variants.size()) *
                       options.shard.share(campaign.seeds.size());
     progress_.outcomes = store.outcomes();
     for (const auto& [outcome, count] : progress_.outcomes) progress_.done += count;
+    if (!campaign.until) return;
+    rule_ = stop_rule_of(campaign, store,
+                         options.retry_faults ? outcome_name(Outcome::kFault) : std::string());
+    stop_where_it_suffices();
   }
 
   CampaignProgress run() {
@@ -105,7 +100,7 @@ class CampaignRun {
   /// that what is done at any time can be compared in pairs.
   std::optional<Task> next() {
     const std::lock_guard lock(next_mutex_);
-    while (!stopped() && seed_index_ < campaign_.seeds.size()) {
+    while (!stopped() && seed_index_ < seed_end_) {
       const Task task{.variant = variant_, .seed_index = seed_index_};
       if (++variant_ == campaign_.variants.size()) {
         variant_ = 0;
@@ -125,18 +120,19 @@ class CampaignRun {
     const auto start = Clock::now();
     EpisodeOptions options;
     options.seed = campaign_.seeds.at(task.seed_index);
-    options.should_stop = [this] {
-      return failed_ || (options_.should_hurry && options_.should_hurry());
+    options.should_stop = [this, &task] {
+      return failed_ || task.seed_index >= seed_end_ ||
+             (options_.should_hurry && options_.should_hurry());
     };
     const Trace trace = drivers_.run(campaign_.variants[task.variant].resolved, options);
     // What was cut short says nothing, and will be driven again.
-    if (trace.outcome == Outcome::kInterrupted) return;
+    if (trace.outcome == Outcome::kInterrupted || task.seed_index >= seed_end_) return;
     EpisodeRow row = episode_row(EpisodeView(trace), store_.variant_ids()[task.variant]);
     if (keeps_trace(task, row)) keep(trace, row);
     row.timing.wall_ms = 1e3 * seconds_since(start);
     row.timing.finished_at = unix_time();
     store_.add(row, task.again);
-    count(row, task.again);
+    count(row, task);
   }
 
   [[nodiscard]] bool keeps_trace(const Task& task, const EpisodeRow& row) const {
@@ -162,16 +158,29 @@ class CampaignRun {
     write_controller_log(trace, target);
   }
 
-  void count(const EpisodeRow& row, bool again) {
+  void count(const EpisodeRow& row, const Task& task) {
     const std::lock_guard lock(mutex_);
-    if (again) {
+    if (task.again) {
       --progress_.outcomes[outcome_name(Outcome::kFault)];
     } else {
       ++progress_.done;
     }
     ++progress_.fresh;
     ++progress_.outcomes[row.outcome];
+    if (rule_) {
+      rule_->add(task.seed_index, task.variant,
+                 is_stop_event(*campaign_.until, row.outcome, row.unsafe));
+      stop_where_it_suffices();
+    }
     tell();
+  }
+
+  /// Begins no episode of seeds beyond those that suffice, and gives up those that have begun.
+  void stop_where_it_suffices() {
+    const std::optional<std::int64_t> seeds = rule_->stops_after();
+    if (!seeds) return;
+    seed_end_ = *seeds;
+    progress_.total = static_cast<std::int64_t>(campaign_.variants.size()) * *seeds;
   }
 
   void tell() {
@@ -189,9 +198,11 @@ class CampaignRun {
   std::mutex next_mutex_;  // of what is next
   std::size_t variant_ = 0;
   std::int64_t seed_index_;
+  std::atomic<std::int64_t> seed_end_;  ///< no seed from here on is driven
   std::mutex trace_mutex_;
   std::mutex mutex_;  // of what follows
   CampaignProgress progress_;
+  std::optional<StopRule> rule_{};
 };
 
 }  // namespace
@@ -199,6 +210,7 @@ class CampaignRun {
 CampaignProgress run_campaign(const Campaign& campaign, const std::string& folder,
                               const CampaignOptions& options) {
   const std::vector<std::string> digests = digests_of(campaign);
+  refuse_shard_of_rule(campaign, options.shard);
   make_output_folder(folder);
   const FolderLock lock(folder);
   Store store(folder, stored_campaign(campaign, options.shard), stored_variants(campaign, digests),
@@ -206,6 +218,11 @@ CampaignProgress run_campaign(const Campaign& campaign, const std::string& folde
   remove_traces(folder, store.update().traces);
   if (store.update().changed && options.on_update) options.on_update(store.update());
   CampaignProgress progress = CampaignRun(campaign, folder, options, store).run();
+  if (progress.stopped_after = stop_where_known(campaign, store, folder); progress.stopped_after) {
+    progress.outcomes = store.outcomes();
+    progress.done = progress.total =
+        static_cast<std::int64_t>(campaign.variants.size()) * *progress.stopped_after;
+  }
   store.fold();
   return progress;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "harness/campaign/campaign.hpp"
@@ -18,6 +19,8 @@ struct CampaignProgress {
   std::int64_t fresh = 0;  ///< of those done, the ones driven since the start of this run
   double elapsed = 0.0;    ///< s, of this run
   std::map<std::string, std::int64_t> outcomes{};  ///< of those done
+  /// The first seeds that sufficed, where the campaign's `until` has stopped it.
+  std::optional<std::int64_t> stopped_after{};
 };
 
 struct CampaignOptions {

@@ -25,6 +25,13 @@ std::string outcomes_text(const std::map<std::string, std::int64_t>& outcomes) {
   return text;
 }
 
+/// ", 5 min 0 s left"; at most where a rule may stop it before the last of its seeds.
+std::string time_left_text(const CampaignStatus& status) {
+  if (!status.left) return {};
+  const bool may_stop = status.campaign.until && !status.campaign.stopped_after;
+  return fmt::format(", {}{} left", may_stop ? "at most " : "", duration_text(*status.left));
+}
+
 }  // namespace
 
 CampaignStatus campaign_status(const std::string& folder) {
@@ -57,8 +64,7 @@ std::string status_table(const CampaignStatus& status) {
   if (status.running) {
     text += fmt::format("  running   process {} on {}, since {}\n", status.running->process,
                         printable(status.running->host), utc_text(status.running->since));
-    text += fmt::format("  rate      {:.3g} episodes/s{}\n", status.rate,
-                        status.left ? ", " + duration_text(*status.left) + " left" : "");
+    text += fmt::format("  rate      {:.3g} episodes/s{}\n", status.rate, time_left_text(status));
   } else {
     text += "  running   no\n";
   }

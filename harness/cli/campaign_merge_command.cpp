@@ -29,7 +29,9 @@ int merge(const MergeArguments& arguments) {
   if (std::filesystem::exists(campaign, ignored)) {
     write_file(arguments.out + "/" + kCampaignCopy, read_text_file(campaign));
   }
-  print_campaign_results(write_campaign_results(arguments.out), arguments.out, arguments.json);
+  const CampaignStatistics statistics =
+      write_campaign_results(arguments.out, kWorstListed, /*is_verified=*/true);
+  print_campaign_results(statistics, arguments.out, arguments.json);
   return kDone;
 }
 

@@ -16,10 +16,11 @@ inline constexpr const char* kCampaignCopy = "campaign.yaml";
 inline constexpr std::size_t kWorstListed = 10;
 
 /// Reads the store in `folder` and writes campaign.json, the CSV files, the figures and the page
-/// with the `worst` worst episodes beside it, each in one piece. Throws as StoreReader does, and
-/// IoError.
+/// with the `worst` worst episodes beside it, each in one piece. `is_verified`: the checksums of
+/// the store have just been compared. Throws as StoreReader does, and IoError.
 CampaignStatistics write_campaign_results(const std::string& folder,
-                                          std::size_t worst = kWorstListed);
+                                          std::size_t worst = kWorstListed,
+                                          bool is_verified = false);
 
 /// Prints the table with the names of the files, or campaign.json.
 void print_campaign_results(const CampaignStatistics& statistics, const std::string& folder,

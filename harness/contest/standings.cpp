@@ -23,7 +23,7 @@ class TimesTally {
   void add(const StoreReader& store, std::int64_t variant) {
     store.for_each_episode(variant,
                            [&](const EpisodeRow& row) { late_ += row.timing.deadline_misses; });
-    store.for_each_sorted_ocp_ms(variant, [&](double ms) { times_.push_back(ms); });
+    store.for_each_ocp_ms(variant, [&](double ms) { times_.push_back(ms); });
   }
   [[nodiscard]] ContestTimes result() const {
     return {.periods = static_cast<std::int64_t>(times_.size()),

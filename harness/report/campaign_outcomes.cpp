@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/figures/legend.hpp"
 #include "harness/text/html.hpp"
 #include "harness/text/number_format.hpp"
@@ -151,10 +152,9 @@ std::string campaign_outcomes(const CampaignStatistics& statistics) {
     }
     table.rows.push_back(std::move(row));
   }
-  std::string note =
-      "Shares of the drives with their 99 % intervals, in percent. Collision and left bounds: "
-      "where "
-      "the true state first was unsafe, also of a drive that went on.";
+  std::string note = "Shares of the drives with their " + interval_words(statistics) +
+                     ", in percent. Collision and left bounds: where the true state first was "
+                     "unsafe, also of a drive that went on.";
   if (outcomes.size() > listed_outcomes().size()) {
     note +=
         " Left safe set: the same of drives of an earlier version, which did not tell the two "

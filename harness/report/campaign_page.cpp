@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/figures/svg_figure.hpp"
 #include "harness/report/campaign_charts.hpp"
 #include "harness/report/campaign_drives.hpp"
@@ -69,8 +70,11 @@ std::string kicker(const CampaignStatistics& statistics) {
   std::string text = fmt::format("{} of {} drives", statistics.done, statistics.campaign.episodes);
   const Shard& shard = statistics.campaign.shard;
   if (shard.count > 1) text += fmt::format(", shard {} of {}", shard.index, shard.count);
-  return fmt::format("<p class=\"kicker\">{}, seeds {}</p>\n", text,
-                     escape_html(statistics.campaign.seeds));
+  std::string html = fmt::format("<p class=\"kicker\">{}, seeds {}</p>\n", text,
+                                 escape_html(statistics.campaign.seeds));
+  const std::string stop = stop_sentence(statistics);
+  if (!stop.empty()) html += "<p class=\"note\">" + escape_html(stop) + "</p>\n";
+  return html;
 }
 
 std::string spread_table(const CampaignStatistics& statistics) {
@@ -137,7 +141,12 @@ std::string differences_table(const CampaignStatistics& statistics) {
     }
     table.rows.push_back(std::move(row));
   }
-  return section_head("Differences, seed by seed", "Means with 99 % bootstrap intervals.") +
+  return section_head("Differences, seed by seed",
+                      std::string("Means with 99 % bootstrap intervals.") +
+                          (statistics.campaign.until
+                               ? " These are made for a number of seeds that is fixed beforehand; "
+                                 "here it depends on what happened, so that they are a guide."
+                               : "")) +
          table_html(table);
 }
 

@@ -9,16 +9,23 @@
 
 namespace qsmpc::harness {
 
+std::int64_t nearest_rank(double share, std::int64_t count) {
+  const auto rank = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count)));
+  return std::max<std::int64_t>(rank, 1);
+}
+
+const std::vector<double>& distribution_shares() {
+  static const std::vector<double> shares{0.5, 0.95, 0.99, 1.0};
+  return shares;
+}
+
 SortedQuantiles::SortedQuantiles(std::int64_t count, const std::vector<double>& shares)
     : values_(shares.size(), kNotANumber) {
   const bool in_range = std::ranges::all_of(shares, [](double q) { return q >= 0.0 && q <= 1.0; });
   if (count < 0 || !in_range || !std::ranges::is_sorted(shares)) {
     throw std::invalid_argument("quantiles: a count or shares that cannot be");
   }
-  for (const double share : shares) {
-    const auto rank = static_cast<std::int64_t>(std::ceil(share * static_cast<double>(count)));
-    ranks_.push_back(std::max<std::int64_t>(rank, 1));
-  }
+  for (const double share : shares) ranks_.push_back(nearest_rank(share, count));
 }
 
 void SortedQuantiles::add(double value, std::int64_t times) {
@@ -27,7 +34,7 @@ void SortedQuantiles::add(double value, std::int64_t times) {
 }
 
 SortedDistribution::SortedDistribution(std::int64_t count)
-    : quantiles_(count, {0.5, 0.95, 0.99, 1.0}) {}
+    : quantiles_(count, distribution_shares()) {}
 
 void SortedDistribution::add(double value) {
   quantiles_.add(value);

@@ -9,6 +9,9 @@
 
 namespace qsmpc::harness {
 
+/// The rank of the quantile of `share` by nearest rank: max(1, ⌈share count⌉).
+[[nodiscard]] std::int64_t nearest_rank(double share, std::int64_t count);
+
 /// Quantiles by nearest rank: the smallest value that at least the share q of the values do not
 /// exceed, which is the one of rank max(1, ⌈q count⌉).
 class SortedQuantiles {
@@ -38,6 +41,9 @@ struct Distribution {
   double max = 0.0;
   double mean = 0.0;
 };
+
+/// The shares of its quantiles: 0.5, 0.95, 0.99, 1.
+[[nodiscard]] const std::vector<double>& distribution_shares();
 
 /// The distribution of a sorted stream.
 class SortedDistribution {

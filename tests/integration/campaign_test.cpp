@@ -107,6 +107,32 @@ int run_and_kill(const std::string& file, const std::string& out, std::chrono::m
   return campaign(file, out, {"--quiet"}, options).exit_code;
 }
 
+TEST(Campaign, a_rule_stops_it_after_the_same_seeds_for_any_number_of_jobs_and_after_a_kill) {
+  const TemporaryFolder folder;
+  const std::string file = testing::short_campaign(
+      folder, 60, "until: {rate_halfwidth: 0.2, confidence: 0.9, of: timeout}\n");
+  ASSERT_EQ(campaign(file, folder / "one", {"--jobs", "1"}).exit_code, 0);
+  const ProcessResult three = campaign(file, folder / "three", {"--jobs", "3"});
+  ASSERT_EQ(three.exit_code, 0) << three.errors;
+  (void)run_and_kill(file, folder / "killed", std::chrono::milliseconds(300));
+  ASSERT_EQ(campaign(file, folder / "killed", {"--jobs", "2"}).exit_code, 0);
+  const std::string results = testing::results_of(folder / "one");
+  EXPECT_EQ(results, testing::results_of(folder / "three"));
+  EXPECT_EQ(results, testing::results_of(folder / "killed"));
+  EXPECT_EQ(testing::rows_of(folder / "one"), testing::rows_of(folder / "killed"));
+  const auto json = nlohmann::json::parse(testing::read_text(folder / "one/campaign.json"));
+  const int seeds = json["until"]["stopped_after"];
+  EXPECT_GT(seeds, 1);
+  EXPECT_LT(seeds, 60);
+  EXPECT_EQ(json["done"], 2 * seeds);
+  EXPECT_THAT(three.output, HasSubstr(fmt::format("Stopped by its rule after {} of", seeds)));
+  EXPECT_THAT(testing::read_text(folder / "one/report.html"),
+              HasSubstr(fmt::format("Stopped by its rule after {} of at most 60 seeds", seeds)));
+  const ProcessResult part = campaign(file, folder / "part", {"--shard", "1/2"});
+  EXPECT_EQ(part.exit_code, 2);
+  EXPECT_THAT(part.errors, HasSubstr("--shard: found 1/2, expected all seeds in one folder"));
+}
+
 /// Number of episodes that the store in `out` says are done; 0 where there is no store yet.
 int done_in(const std::string& out) {
   const ProcessResult status = testing::run_qsmpc({"campaign", "status", out, "--json"});

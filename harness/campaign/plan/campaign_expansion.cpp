@@ -75,7 +75,8 @@ class Expansion {
                       .seeds = draft_.seeds,
                       .traces = draft_.traces,
                       .trace_sample = draft_.trace_sample,
-                      .risk_against_cost = {}};
+                      .risk_against_cost = {},
+                      .until = draft_.until};
     if (draft_.scenarios.empty() || !is_small_enough()) return campaign;
     refuse_undone();
     for (const CampaignChoice& scenario : draft_.scenarios) {

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/campaign/campaign.hpp"
+#include "harness/campaign/statistics/stop_rule.hpp"
 #include "harness/scenario/keys/key_schema.hpp"
 
 namespace qsmpc::harness {
@@ -75,6 +76,28 @@ std::vector<KeyDescription> seed_keys() {
        .required = true}};
 }
 
+std::vector<KeyDescription> until_keys() {
+  const MappingValue rule{
+      {{.name = "rate_halfwidth",
+        .values = {NumberValue{kHalfwidthRange}},
+        .words = "half of the width, {range}, that the interval of each variant's rate has at the "
+                 "end",
+        .required = true},
+       {.name = "confidence",
+        .values = {NumberValue{kStopConfidenceRange}},
+        .words = "of each of these intervals, {range}, at every number of seeds",
+        .fallback = "0.99"},
+       {.name = "of",
+        .values = {NameValue{stop_event_names()}},
+        .words = "what is counted: {names}",
+        .fallback = kUnsafeEvent}}};
+  return {{.name = "until",
+           .values = {rule},
+           .words = "stops once the rates are known well enough, a mapping of the keys below, see "
+                    "[below](#stopping-early); `seeds` then says how many there are at most",
+           .fallback_words = "all seeds"}};
+}
+
 std::vector<KeyDescription> trace_keys() {
   return {{.name = "traces",
            .values = {NameValue{trace_keeping_names()}},
@@ -119,7 +142,7 @@ const std::vector<KeyDescription>& campaign_keys() {
   static const std::vector<KeyDescription> keys = [] {
     std::vector<KeyDescription> all;
     for (std::vector<KeyDescription> (*make)() :
-         {head_keys, setting_keys, seed_keys, trace_keys, figure_keys}) {
+         {head_keys, setting_keys, seed_keys, until_keys, trace_keys, figure_keys}) {
       for (KeyDescription& key : make()) all.push_back(std::move(key));
     }
     return all;

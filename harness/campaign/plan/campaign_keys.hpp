@@ -20,6 +20,9 @@ inline constexpr std::size_t kMostFamilies = 6;  ///< of a figure: as many colou
 /// Over the last seed: a store's whole numbers are signed.
 inline constexpr std::uint64_t kSeedEnd = std::uint64_t{1} << 63U;
 
+inline constexpr NumberRange kHalfwidthRange{.least = 0.0, .most = 0.25, .above_least = true};
+inline constexpr NumberRange kStopConfidenceRange{.least = 0.5, .most = 0.999999};
+
 /// What `traces` may be, in the order of TraceKeeping.
 [[nodiscard]] const std::vector<std::string>& trace_keeping_names();
 

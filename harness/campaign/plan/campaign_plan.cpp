@@ -48,6 +48,11 @@ std::string row(const std::string& name, const std::string& value) {
 
 }  // namespace
 
+nlohmann::ordered_json until_json(const StopCriterion& until) {
+  return {
+      {"of", until.of}, {"rate_halfwidth", until.rate_halfwidth}, {"confidence", until.confidence}};
+}
+
 std::string campaign_size_text(const Campaign& campaign) {
   return fmt::format("campaign {}: {} x {} = {}", printable(campaign.name),
                      counted(static_cast<std::int64_t>(campaign.variants.size()), "variant"),
@@ -76,7 +81,9 @@ std::string campaign_plan_text(const Campaign& campaign) {
                         plant_width, overrides.empty() ? "-" : printable(overrides, kLongestText));
   }
   text += "\n" + row("seeds", seeds_in_words(campaign.seeds));
-  text += row("episodes", fmt::format("{}", campaign.episodes()));
+  text +=
+      row("episodes", fmt::format("{}{}", campaign.until ? "at most " : "", campaign.episodes()));
+  if (campaign.until) text += row("until", until_text(campaign.until));
   return text + row("traces", traces_in_words(campaign));
 }
 
@@ -97,6 +104,7 @@ std::string campaign_plan_json(const Campaign& campaign) {
   json["seeds"] = seeds.listed.empty() ? Json{{"first", seeds.first}, {"count", seeds.count}}
                                        : Json(seeds.listed);
   json["episodes"] = campaign.episodes();
+  if (campaign.until) json["until"] = until_json(*campaign.until);
   json["traces"] = trace_keeping_name(campaign.traces);
   json["trace_sample"] = campaign.trace_sample;
   return json_text(json);

@@ -3,9 +3,14 @@
 
 #include <string>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "harness/campaign/campaign.hpp"
 
 namespace qsmpc::harness {
+
+/// {of, rate_halfwidth, confidence}.
+[[nodiscard]] nlohmann::ordered_json until_json(const StopCriterion& until);
 
 /// "campaign NAME: 4 variants x 200 seeds = 800 episodes".
 [[nodiscard]] std::string campaign_size_text(const Campaign& campaign);

@@ -9,6 +9,7 @@
 #include "harness/campaign/plan/campaign_keys.hpp"
 #include "harness/campaign/plan/draft_reading.hpp"
 #include "harness/campaign/plan/variant_families.hpp"
+#include "harness/campaign/statistics/stop_rule.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -33,6 +34,7 @@ class CampaignReader {
     if (const YamlNode* node = take("plants")) read_plants(*node);
     read_seeds_or_say_why_not();
     read_traces();
+    read_until();
     draft_.families = read_families(root_.section("figure"), tree_.find("figure"), problems_);
     root_.refuse_unread();
     return std::move(draft_);
@@ -46,6 +48,7 @@ class CampaignReader {
   void read_plants(const YamlNode& node);
   void read_seeds_or_say_why_not();
   void read_traces();
+  void read_until();
 
   /// The value of a key, which is then known.
   const YamlNode* take(const std::string& key) {
@@ -151,6 +154,19 @@ void CampaignReader::read_traces() {
   if (root_.has("trace_sample") && draft_.traces != TraceKeeping::kFailures) {
     root_.note("trace_sample", "no such key without traces: failures");
   }
+}
+
+void CampaignReader::read_until() {
+  const bool is_asked_for = root_.has("until");
+  Section until = root_.section("until");
+  if (!is_asked_for || !until.present()) return;
+  StopCriterion criterion;
+  until.require("rate_halfwidth", "half of the width of each rate's interval, e.g. 0.001");
+  criterion.rate_halfwidth = until.number("rate_halfwidth", kHalfwidthRange.most, kHalfwidthRange);
+  criterion.confidence = until.number("confidence", criterion.confidence, kStopConfidenceRange);
+  criterion.of = until.name("of", criterion.of, stop_event_names());
+  until.refuse_unread();
+  draft_.until = criterion;
 }
 
 }  // namespace

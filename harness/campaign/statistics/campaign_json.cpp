@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/json_values.hpp"
@@ -160,6 +161,7 @@ std::string campaign_json(const CampaignStatistics& statistics) {
             {"episodes", campaign.episodes},
             {"done", statistics.done},
             {"outcomes", outcomes_json(statistics.outcomes)}};
+  if (campaign.until) json["until"] = stop_json(statistics);
   json["variants"] = Json::object();
   for (std::size_t n = 0; n < statistics.variants.size(); ++n) {
     json["variants"][statistics.variants[n].name] = variant_json(statistics, n);

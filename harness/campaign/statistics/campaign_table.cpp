@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
@@ -74,7 +75,8 @@ std::string head(const CampaignStatistics& statistics) {
                         format_percent(share));
     before = ", ";
   }
-  return text + "\n";
+  const std::string stop = stop_sentence(statistics);
+  return text + "\n" + (stop.empty() ? "" : "  " + stop + "\n");
 }
 
 /// The names that are cut elsewhere.
@@ -90,8 +92,9 @@ std::string long_names(const CampaignStatistics& statistics) {
 /// Two lines a variant: its shares, and their intervals.
 std::string outcome_section(const CampaignStatistics& statistics) {
   const std::vector<ListedOutcome> outcomes = outcomes_of(statistics.variants);
-  std::string text = fmt::format("\nWhat became of the drives, in %, with 99 % intervals\n{}{:>{}}",
-                                 head_name("variant"), "done", kDoneWidth);
+  std::string text =
+      fmt::format("\nWhat became of the drives, in %, with {}\n{}{:>{}}",
+                  interval_words(statistics), head_name("variant"), "done", kDoneWidth);
   for (const ListedOutcome& outcome : outcomes) {
     text += fmt::format("{:>{}}", outcome.title, kRateWidth);
   }

@@ -91,12 +91,15 @@ double BootstrapMean::mean() const {
   return count_ == 0 ? kNotANumber : sum_ / static_cast<double>(count_);
 }
 
-RateInterval BootstrapMean::interval() const {
-  if (count_ < 2) return {.lower = kNotANumber, .upper = kNotANumber};
+RateInterval BootstrapMean::interval() const { return bootstrap_interval(count_, sums_, weights_); }
+
+RateInterval bootstrap_interval(std::int64_t count, const Eigen::ArrayXd& sums,
+                                const Eigen::ArrayXd& weights) {
+  if (count < 2) return {.lower = kNotANumber, .upper = kNotANumber};
   std::vector<double> means;
   for (Eigen::Index r = 0; r < kBootstrapReplicates; ++r) {
     // Of few pairs, none may be in a replicate: it says nothing.
-    if (weights_[r] > 0.0) means.push_back(sums_[r] / weights_[r]);
+    if (weights[r] > 0.0) means.push_back(sums[r] / weights[r]);
   }
   return percentile_interval(std::move(means));
 }
@@ -122,17 +125,29 @@ PairedDifference::PairedDifference() : quantities_(values().size()) {}
 
 void PairedDifference::add(const EpisodeRow& baseline, const EpisodeRow& variant) {
   poisson_weights(variant.seed, weights_);
+  add(baseline, variant, weights_);
+}
+
+void PairedDifference::add(const EpisodeRow& baseline, const EpisodeRow& variant,
+                           const Eigen::ArrayXd& weights) {
+  all_weights_ += weights;
   for (std::size_t n = 0; n < quantities_.size(); ++n) {
     Quantity& quantity = quantities_[n];
     const std::optional<double> before = values()[n].value(baseline);
     const std::optional<double> after = values()[n].value(variant);
     if (!before || !after) {
       ++quantity.left_out;
+      if (quantity.left_out == 1) quantity.left_out_weights.setZero(kBootstrapReplicates);
+      quantity.left_out_weights += weights;
       continue;
     }
+    ++quantity.count;
     quantity.higher += *after > *before ? 1 : 0;
     quantity.lower += *after < *before ? 1 : 0;
-    quantity.mean.add(*after - *before, weights_);
+    const double difference = *after - *before;
+    if (difference == 0.0) continue;  // as most of the shares are
+    quantity.sum += difference;
+    quantity.sums += difference * weights;
   }
 }
 
@@ -140,13 +155,17 @@ std::vector<MeanDifference> PairedDifference::result() const {
   std::vector<MeanDifference> differences;
   for (std::size_t n = 0; n < quantities_.size(); ++n) {
     const Quantity& quantity = quantities_[n];
+    Eigen::ArrayXd weights = all_weights_;
+    if (quantity.left_out > 0) weights -= quantity.left_out_weights;
     differences.push_back({.quantity = values()[n].name,
-                           .pairs = quantity.mean.count(),
+                           .pairs = quantity.count,
                            .left_out = quantity.left_out,
                            .higher = quantity.higher,
                            .lower = quantity.lower,
-                           .mean = quantity.mean.mean(),
-                           .interval = quantity.mean.interval()});
+                           .mean = quantity.count == 0
+                                       ? kNotANumber
+                                       : quantity.sum / static_cast<double>(quantity.count),
+                           .interval = bootstrap_interval(quantity.count, quantity.sums, weights)});
   }
   return differences;
 }

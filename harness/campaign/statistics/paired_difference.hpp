@@ -52,6 +52,11 @@ class BootstrapMean {
   Eigen::ArrayXd weights_ = Eigen::ArrayXd::Zero(kBootstrapReplicates);
 };
 
+/// The percentile interval of Σ wₙ xₙ / Σ wₙ, of `sums` and `weights` in each replicate; as
+/// BootstrapMean::interval.
+[[nodiscard]] RateInterval bootstrap_interval(std::int64_t count, const Eigen::ArrayXd& sums,
+                                              const Eigen::ArrayXd& weights);
+
 /// The percentile interval of a statistic of which `replicates` are the bootstrap replicates, in
 /// any order: each limit is outside of as many of them as kCampaignTail says. Not numbers without
 /// any.
@@ -84,19 +89,27 @@ class PairedDifference {
   /// Episodes of the same seed. One that faulted did not reach the target, which drops no pair;
   /// its other numbers say nothing, and their pair is left out.
   void add(const EpisodeRow& baseline, const EpisodeRow& variant);
+  /// The same with the poisson_weights of their seed, for those who add several pairs of it.
+  void add(const EpisodeRow& baseline, const EpisodeRow& variant, const Eigen::ArrayXd& weights);
 
   /// By quantity, in the order of paired_quantities.
   [[nodiscard]] std::vector<MeanDifference> result() const;
 
  private:
   struct Quantity {
-    BootstrapMean mean{};
+    std::int64_t count = 0;
     std::int64_t left_out = 0;
     std::int64_t higher = 0;
     std::int64_t lower = 0;
+    double sum = 0.0;
+    Eigen::ArrayXd sums = Eigen::ArrayXd::Zero(kBootstrapReplicates);
+    Eigen::ArrayXd left_out_weights{};  ///< empty where none is left out
   };
   std::vector<Quantity> quantities_;
-  Eigen::ArrayXd weights_;  ///< of the pair that is added
+  /// Of all pairs. Sums of whole numbers, exact in any order: what is left out of a quantity is
+  /// subtracted in the end.
+  Eigen::ArrayXd all_weights_ = Eigen::ArrayXd::Zero(kBootstrapReplicates);
+  Eigen::ArrayXd weights_{};  ///< of the pair that is added
 };
 
 }  // namespace qsmpc::harness

@@ -1,33 +1,68 @@
 #include "harness/campaign/statistics/statistics.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <functional>
+#include <map>
+#include <set>
 
 #include "harness/errors.hpp"
 #include "harness/scenario/certificate_scope.hpp"
 #include "harness/scenario/scenario_file.hpp"
+#include "harness/statistics/rank_selection.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
-Distribution planning_times(const StoreReader& store, std::int64_t variant, std::int64_t periods) {
-  SortedDistribution times(periods);
-  store.for_each_sorted_ocp_ms(variant, [&](double ms) { times.add(ms); });
-  return times.result();
-}
+/// A number of a variant's episodes, as they stream by: kept while they are few enough to be
+/// sorted.
+class KeptNumbers {
+ public:
+  explicit KeptNumbers(EpisodeNumber number) : number_(number) {}
 
-Spread spread_of(const StoreReader& store, std::int64_t variant, EpisodeNumber number,
-                 const SpreadTally& tally) {
-  return tally.result([&](const std::function<void(double)>& visit) {
-    store.for_each_sorted(variant, number, visit);
+  void add(double value) {
+    ++count_;
+    if (count_ <= kMostSortedValues) values_.push_back(value);
+  }
+
+  [[nodiscard]] Spread spread(const StoreReader& store, std::int64_t variant,
+                              const SpreadTally& tally) {
+    std::ranges::sort(values_);
+    return tally.result([&](const std::function<void(double)>& visit) {
+      if (count_ > kMostSortedValues) {
+        store.for_each_sorted(variant, number_, visit);
+      } else {
+        std::ranges::for_each(values_, visit);
+      }
+    });
+  }
+
+ private:
+  EpisodeNumber number_;
+  std::int64_t count_ = 0;
+  std::vector<double> values_{};
+};
+
+/// What is read of a variant.
+struct ReadVariant {
+  VariantTally tally{};
+  KeptNumbers cost{EpisodeNumber::kCost};
+  KeptNumbers min_clearance{EpisodeNumber::kMinClearance};
+  KeptNumbers time_to_target{EpisodeNumber::kTimeToTarget};
+};
+
+ReadVariant read_variant(const StoreReader& store, std::int64_t variant) {
+  ReadVariant read;
+  store.for_each_episode(variant, [&](const EpisodeRow& row) {
+    read.tally.add(row);
+    if (row.outcome == outcome_name(Outcome::kFault)) return;
+    if (!std::isnan(row.cost)) read.cost.add(row.cost);
+    if (!std::isnan(row.min_clearance)) read.min_clearance.add(row.min_clearance);
+    if (row.time_to_target) read.time_to_target.add(*row.time_to_target);
   });
-}
-
-VariantTally tally_of(const StoreReader& store, std::int64_t variant) {
-  VariantTally tally;
-  store.for_each_episode(variant, [&](const EpisodeRow& row) { tally.add(row); });
   store.for_each_period(variant, [&](std::uint64_t /*seed*/, std::int64_t period,
-                                     const PeriodRow& row) { tally.add(period, row); });
-  return tally;
+                                     const PeriodRow& row) { read.tally.add(period, row); });
+  return read;
 }
 
 /// As why_no_bound of what was driven, which needs no file any more.
@@ -42,8 +77,10 @@ std::string no_bound_of(const StoredVariant& variant) {
 }
 
 VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& variant,
-                                const VariantTally& tally) {
-  VariantStatistics statistics = tally.result();
+                                ReadVariant& read) {
+  const VariantTally& tally = read.tally;
+  VariantStatistics statistics =
+      tally.result(store.campaign().until ? Counted::kStopped : Counted::kFixed);
   statistics.id = variant.id;
   statistics.name = variant.name;
   statistics.scenario = variant.scenario;
@@ -52,12 +89,12 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   statistics.scenario_text = variant.scenario_text;
   statistics.no_bound = no_bound_of(variant);
   statistics.episodes = store.campaign().episodes / std::ssize(store.variants());
-  statistics.cost = spread_of(store, variant.id, EpisodeNumber::kCost, tally.cost());
-  statistics.min_clearance =
-      spread_of(store, variant.id, EpisodeNumber::kMinClearance, tally.min_clearance());
-  statistics.time_to_target =
-      spread_of(store, variant.id, EpisodeNumber::kTimeToTarget, tally.time_to_target());
-  statistics.ocp_ms = planning_times(store, variant.id, statistics.periods);
+  statistics.cost = read.cost.spread(store, variant.id, tally.cost());
+  statistics.min_clearance = read.min_clearance.spread(store, variant.id, tally.min_clearance());
+  statistics.time_to_target = read.time_to_target.spread(store, variant.id, tally.time_to_target());
+  statistics.ocp_ms = distribution_of(
+      [&](const std::function<void(double)>& visit) { store.for_each_ocp_ms(variant.id, visit); },
+      statistics.periods);
   store.for_each_path(variant.id, kMostDrawnPaths,
                       [&](const std::string& outcome, const std::vector<PathPoint>& path) {
                         statistics.paths.push_back({.outcome = outcome, .points = path});
@@ -65,13 +102,52 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   return statistics;
 }
 
-VariantDifference difference_of(const StoreReader& store, const VariantPair& pair) {
-  PairedDifference difference;
-  store.for_each_pair(store.variants()[pair.baseline].id, store.variants()[pair.variant].id,
-                      [&](const EpisodeRow& baseline, const EpisodeRow& variant) {
-                        difference.add(baseline, variant);
-                      });
-  return {.pair = pair, .quantities = difference.result()};
+/// At how many variants one looks at the same time; each is a statement of the store's.
+constexpr std::size_t kVariantsAtOnce = 64;
+
+/// Adds the differences of `pairs`, of at most kVariantsAtOnce variants or a single one.
+void add_differences(const StoreReader& store, const std::vector<VariantPair>& pairs,
+                     std::vector<VariantDifference>& differences) {
+  std::map<std::size_t, std::size_t> places;  // of variants, among those that are read
+  for (const VariantPair& pair : pairs) {
+    places.try_emplace(pair.baseline, 0);
+    places.try_emplace(pair.variant, 0);
+  }
+  std::vector<std::int64_t> ids;
+  for (auto& [variant, place] : places) {
+    place = ids.size();
+    ids.push_back(store.variants()[variant].id);
+  }
+  std::vector<PairedDifference> tallies(pairs.size());
+  Eigen::ArrayXd weights;
+  store.for_each_seed(ids, [&](std::uint64_t seed, const std::vector<const EpisodeRow*>& rows) {
+    poisson_weights(seed, weights);  // once for all pairs
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      const EpisodeRow* baseline = rows[places.at(pairs[n].baseline)];
+      const EpisodeRow* variant = rows[places.at(pairs[n].variant)];
+      if (baseline != nullptr && variant != nullptr) tallies[n].add(*baseline, *variant, weights);
+    }
+  });
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    differences.push_back({.pair = pairs[n], .quantities = tallies[n].result()});
+  }
+}
+
+std::vector<VariantDifference> differences_of(const StoreReader& store) {
+  std::vector<VariantDifference> differences;
+  std::vector<VariantPair> pairs;  // that are read together
+  std::set<std::size_t> variants;  // of them
+  for (const VariantPair& pair : variant_pairs(store.variants())) {
+    variants.insert({pair.baseline, pair.variant});
+    if (variants.size() > kVariantsAtOnce) {
+      add_differences(store, pairs, differences);
+      pairs.clear();
+      variants = {pair.baseline, pair.variant};
+    }
+    pairs.push_back(pair);
+  }
+  if (!pairs.empty()) add_differences(store, pairs, differences);
+  return differences;
 }
 
 }  // namespace
@@ -81,15 +157,13 @@ CampaignStatistics campaign_statistics(const StoreReader& store) {
   PooledCalibration certified;
   PooledCalibration published;
   for (const StoredVariant& variant : store.variants()) {
-    const VariantTally tally = tally_of(store, variant.id);
-    statistics.variants.push_back(statistics_of(store, variant, tally));
+    ReadVariant read = read_variant(store, variant.id);
+    statistics.variants.push_back(statistics_of(store, variant, read));
     statistics.done += statistics.variants.back().done;
-    certified.add(tally.calibration());
-    published.add(tally.published());
+    certified.add(read.tally.calibration());
+    published.add(read.tally.published());
   }
-  for (const VariantPair& pair : variant_pairs(store.variants())) {
-    statistics.differences.push_back(difference_of(store, pair));
-  }
+  statistics.differences = differences_of(store);
   statistics.calibration = certified.result();
   statistics.published = published.result();
   statistics.p_value = certified.p_value();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "harness/campaign/statistics/paired_difference.hpp"
+#include "harness/statistics/confidence_sequence.hpp"
 #include "harness/trace/ending.hpp"
 #include "models/constants.hpp"
 
@@ -16,11 +17,13 @@ double share_of(double sum, std::int64_t count) {
 
 }  // namespace
 
-EpisodeRate episode_rate(std::int64_t events, std::int64_t trials) {
+EpisodeRate episode_rate(std::int64_t events, std::int64_t trials, Counted counted) {
   if (trials == 0) return {};
   return {.events = events,
           .rate = static_cast<double>(events) / static_cast<double>(trials),
-          .interval = clopper_pearson(events, trials, kCampaignTail)};
+          .interval = counted == Counted::kStopped
+                          ? confidence_sequence(events, trials, 1.0 - 2.0 * kCampaignTail)
+                          : clopper_pearson(events, trials, kCampaignTail)};
 }
 
 const std::vector<double>& spread_shares() {
@@ -108,10 +111,10 @@ void VariantTally::add(std::int64_t period, const PeriodRow& row) {
   published_.add(period, row.published, row.unsafe);
 }
 
-VariantStatistics VariantTally::result() const {
+VariantStatistics VariantTally::result(Counted counted) const {
   const auto rate_of = [&](const char* outcome) {
     const auto found = outcomes_.find(outcome);
-    return episode_rate(found == outcomes_.end() ? 0 : found->second, done_);
+    return episode_rate(found == outcomes_.end() ? 0 : found->second, done_, counted);
   };
   return {.done = done_,
           .outcomes = outcomes_,
@@ -121,7 +124,7 @@ VariantStatistics VariantTally::result() const {
           .timeout = rate_of(outcome_name(Outcome::kTimeout)),
           .fault = rate_of(outcome_name(Outcome::kFault)),
           .left_safe_set = rate_of(kLeftSafeSet),
-          .unsafe = episode_rate(unsafe_, done_),
+          .unsafe = episode_rate(unsafe_, done_, counted),
           .risk_exceeded = risk_exceeded_,
           .deadline_misses = deadline_misses_,
           .periods = calibration_.periods(),

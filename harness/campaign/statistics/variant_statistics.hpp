@@ -15,7 +15,14 @@
 
 namespace qsmpc::harness {
 
-/// How many of the episodes, with 99 % Clopper–Pearson limits. Not a number of none.
+/// Why the number of episodes is what it is.
+enum class Counted {
+  kFixed,    ///< it was fixed beforehand
+  kStopped,  ///< it may depend on what happened, as with Campaign::until
+};
+
+/// How many of the episodes, with 99 % limits: by Clopper and Pearson, or where their number is not
+/// fixed beforehand of a confidence_sequence. Not a number of none.
 struct EpisodeRate {
   std::int64_t events = 0;
   double rate = std::numeric_limits<double>::quiet_NaN();
@@ -23,7 +30,8 @@ struct EpisodeRate {
 };
 
 /// Throws as clopper_pearson, except where trials = 0: nothing is known then.
-[[nodiscard]] EpisodeRate episode_rate(std::int64_t events, std::int64_t trials);
+[[nodiscard]] EpisodeRate episode_rate(std::int64_t events, std::int64_t trials,
+                                       Counted counted = Counted::kFixed);
 
 /// Shares of the quantiles that a distribution is drawn by: 0, 1/40, … 1.
 [[nodiscard]] const std::vector<double>& curve_shares();
@@ -144,7 +152,7 @@ class VariantTally {
   [[nodiscard]] const CalibrationTally& published() const { return published_; }
 
   /// All but the names, `episodes`, the spreads and the distribution of ocp_ms.
-  [[nodiscard]] VariantStatistics result() const;
+  [[nodiscard]] VariantStatistics result(Counted counted = Counted::kFixed) const;
 
  private:
   std::int64_t done_ = 0;

@@ -1,10 +1,10 @@
 #include "harness/campaign/store/merge.hpp"
 
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
 #include <filesystem>
-#include <memory>
+#include <map>
+#include <optional>
 #include <system_error>
 
 #include <SQLiteCpp/SQLiteCpp.h>
@@ -13,6 +13,8 @@
 
 #include "harness/campaign/campaign.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
+#include "harness/campaign/store/joined_store.hpp"
+#include "harness/campaign/store/store_checksum.hpp"
 #include "harness/campaign/store/store_reader.hpp"
 #include "harness/campaign/store/store_rows.hpp"
 #include "harness/campaign/store/store_schema.hpp"
@@ -39,28 +41,36 @@ std::string families_text(const std::vector<VariantFamily>& families) {
   return text.empty() ? "none" : text;
 }
 
-/// Refuses `other` unless it is a shard of the campaign that `first` is of.
-void require_same(const StoreReader& first, const StoreReader& other, const std::string& folder) {
+/// What is known of the stores before they are joined.
+struct Joined {
+  StoredCampaign campaign;
+  std::vector<StoredVariant> variants;
+  std::vector<Shard> shards;  ///< of each folder
+};
+
+/// Refuses `other` unless it is of the campaign that `first` is of.
+void require_same(const Joined& first, const StoreReader& other, const std::string& folder) {
   const auto require = [&](const std::string& key, const std::string& found,
                            const std::string& expected) {
     if (found != expected) {
       throw InputError({.file = folder, .key = key, .found = found, .expected = expected});
     }
   };
-  const StoredCampaign& expected = first.campaign();
+  const StoredCampaign& expected = first.campaign;
   const StoredCampaign& found = other.campaign();
   require("name", found.name, expected.name);
   require("version", found.version, expected.version);
   require("seeds", found.seeds, expected.seeds);
   require("traces", found.traces, expected.traces);
+  require("until", until_text(found.until), until_text(expected.until));
   require("figure.risk_against_cost", families_text(found.risk_against_cost),
           families_text(expected.risk_against_cost));
   require("shards", fmt::format("{}", found.shard.count), fmt::format("{}", expected.shard.count));
   require("variants", fmt::format("{}", other.variants().size()),
-          fmt::format("{}", first.variants().size()));
-  for (std::size_t i = 0; i < first.variants().size(); ++i) {
+          fmt::format("{}", first.variants.size()));
+  for (std::size_t i = 0; i < first.variants.size(); ++i) {
     const StoredVariant& variant = other.variants()[i];
-    const StoredVariant& same = first.variants()[i];
+    const StoredVariant& same = first.variants[i];
     require("variant", variant.name, same.name);
     if (variant.scenario_text != same.scenario_text || variant.plant_digest != same.plant_digest) {
       throw InputError({.file = folder,
@@ -71,82 +81,58 @@ void require_same(const StoreReader& first, const StoreReader& other, const std:
   }
 }
 
+/// Looks at every store, one after the other.
+Joined joined(const std::vector<std::string>& folders) {
+  if (folders.empty()) throw InputError({.found = "no folder", .expected = "those of the shards"});
+  Joined stores;
+  for (const std::string& folder : folders) {
+    const StoreReader store(folder);
+    if (stores.shards.empty()) {
+      stores.campaign = store.campaign();
+      stores.variants = store.variants();
+    } else {
+      require_same(stores, store, folder);
+    }
+    stores.shards.push_back(store.campaign().shard);
+  }
+  return stores;
+}
+
 /// Refuses folders that are not each shard once.
-void require_all_shards(const std::vector<std::string>& folders,
-                        const std::vector<std::unique_ptr<StoreReader>>& shards) {
-  const std::int64_t count = shards.front()->campaign().shard.count;
+void require_all_shards(const std::vector<std::string>& folders, const Joined& stores) {
+  const std::int64_t count = stores.campaign.shard.count;
+  std::map<std::int64_t, std::string> folder_of;
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    const auto [first, is_new] = folder_of.try_emplace(stores.shards[i].index, folders[i]);
+    if (is_new) continue;
+    throw InputError(
+        {.file = folders[i],
+         .found = shard_text(stores.shards[i]) + ", which " + first->second + " holds, too",
+         .expected = fmt::format("each of {} shards once", count)});
+  }
   for (std::int64_t index = 1; index <= count; ++index) {
-    std::vector<std::string> of_index;
-    for (std::size_t i = 0; i < shards.size(); ++i) {
-      if (shards[i]->campaign().shard.index == index) of_index.push_back(folders[i]);
-    }
-    const std::string shard = shard_text({.index = index, .count = count});
-    if (of_index.empty()) {
-      throw InputError({.found = fmt::format("{} folders without {}", folders.size(), shard),
-                        .expected = fmt::format("each of {} shards once", count)});
-    }
-    if (of_index.size() > 1) {
-      throw InputError({.file = of_index[1],
-                        .found = shard + ", which " + of_index[0] + " holds, too",
-                        .expected = fmt::format("each of {} shards once", count)});
-    }
+    if (folder_of.contains(index)) continue;
+    throw InputError({.found = fmt::format("{} folders without {}", folders.size(),
+                                           shard_text({.index = index, .count = count})),
+                      .expected = fmt::format("each of {} shards once", count)});
   }
 }
 
-/// A path as a URI that opens the file for reading only.
-std::string read_only_uri(const std::string& path) {
-  std::string uri = "file:";
-  for (const char c : path) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' ||
-                       c == '_' || c == '-';
-    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+/// Refuses folders that are not all of the same shard.
+void require_one_shard(const std::vector<std::string>& folders, const Joined& stores) {
+  for (std::size_t i = 0; i < folders.size(); ++i) {
+    if (stores.shards[i] == stores.campaign.shard) continue;
+    throw InputError({.file = folders[i],
+                      .found = shard_text(stores.shards[i]),
+                      .expected = shard_text(stores.campaign.shard) + ", as " + folders[0]});
   }
-  return uri + "?mode=ro";
 }
 
-/// Columns of a table but the first, which is the variant.
-std::string columns_of(SQLite::Database& database, const std::string& table) {
-  SQLite::Statement info(database, "SELECT name FROM pragma_table_info(?) WHERE name <> 'variant'");
-  info.bind(1, table);
-  std::string columns;
-  while (info.executeStep()) columns += ", " + info.getColumn(0).getString();
-  return columns;
-}
-
-/// Copies the rows of the shard in `folder`. Variants may be numbered differently there.
-void add_rows(SQLite::Database& database, const std::string& folder) {
-  SQLite::Statement attach(database, "ATTACH ? AS shard");
-  attach.bind(1, read_only_uri(folder + "/" + kStoreFile));
-  attach.exec();
-  {
-    SQLite::Statement twice(database,
-                            "SELECT s.name, e.seed FROM shard.episode e"
-                            " JOIN shard.variant s ON s.id = e.variant"
-                            " JOIN main.variant m ON m.name = s.name"
-                            " JOIN main.episode o ON o.variant = m.id AND o.seed = e.seed LIMIT 1");
-    if (twice.executeStep()) {
-      throw InputError(
-          {.file = folder,
-           .found = fmt::format("variant {}, seed {}, which another shard has, too",
-                                twice.getColumn(0).getString(), twice.getColumn(1).getInt64()),
-           .expected = "each episode once"});
-    }
-  }
-  SQLite::Transaction transaction(database);
-  for (const char* table : kEpisodeTables) {
-    const std::string columns = columns_of(database, table);
-    database.exec(
-        fmt::format("INSERT INTO main.{0} (variant{1}) SELECT m.id{1} FROM shard.{0} e JOIN "
-                    "shard.variant s ON s.id = e.variant JOIN (SELECT id, name AS common FROM "
-                    "main.variant) m ON m.common = s.name",
-                    table, columns));
-  }
-  transaction.commit();
-}
-
-/// Refuses seeds of a variant that are not exactly the campaign's.
-void require_all_seeds(SQLite::Database& database, const StoredVariant& variant,
-                       const std::vector<std::uint64_t>& listed, const SeedSet& seeds) {
+/// Refuses seeds of a variant that the campaign does not ask for, and unless `incomplete` those
+/// that are missing.
+void require_seeds(SQLite::Database& database, const StoredVariant& variant,
+                   const std::vector<std::uint64_t>& listed, const SeedSet& seeds,
+                   bool incomplete) {
   SQLite::Statement statement(database, "SELECT seed FROM episode WHERE variant = ? ORDER BY seed");
   statement.bind(1, variant.id);
   const auto refuse = [&](const std::string& found) {
@@ -155,93 +141,132 @@ void require_all_seeds(SQLite::Database& database, const StoredVariant& variant,
                       .expected = "each seed of the campaign once; qsmpc campaign drives what is "
                                   "missing of a shard"});
   };
+  std::optional<std::uint64_t> seed;
+  const auto step = [&] {
+    seed.reset();
+    if (statement.executeStep()) {
+      seed = static_cast<std::uint64_t>(statement.getColumn(0).getInt64());
+    }
+  };
+  step();
   for (std::int64_t i = 0; i < seeds.size(); ++i) {
     const std::uint64_t expected =
         listed.empty() ? seeds.at(i) : listed[static_cast<std::size_t>(i)];
-    const bool more = statement.executeStep();
-    const auto seed = more ? static_cast<std::uint64_t>(statement.getColumn(0).getInt64()) : 0;
-    if (!more || seed > expected) refuse(fmt::format("no episode with seed {}", expected));
-    if (seed < expected) refuse(fmt::format("an episode with the foreign seed {}", seed));
+    if (incomplete && !seed) return;
+    if (seed && *seed < expected) break;
+    if (seed == expected) {
+      step();
+    } else if (!incomplete) {
+      refuse(fmt::format("no episode with seed {}", expected));
+    }
   }
-  if (statement.executeStep()) {
-    refuse(fmt::format("an episode with the foreign seed {}", statement.getColumn(0).getInt64()));
-  }
+  if (seed) refuse(fmt::format("an episode with the foreign seed {}", *seed));
 }
 
-/// Copies the traces that the shard in `folder` keeps; returns how many.
-std::int64_t copy_traces(const StoreReader& shard, const std::string& folder,
-                         const std::string& out) {
+/// Puts all of a store that is to be replaced into its one file: what is left of its log would be
+/// taken for the new one's.
+void fold_store(const std::string& path) {
+  with_store_errors(path, [&] {
+    SQLite::Database database(path, SQLite::OPEN_READWRITE, kStorePatience);
+    database.exec("PRAGMA journal_mode = DELETE");
+  });
+}
+
+/// Copies the file `name` of the episode that is in `from`, where there is one.
+void copy_episode_file(const std::string& from, const std::string& to, const std::string& name) {
+  const std::string source = from + "/" + name;
+  PendingFile file(to + "/" + name);
+  std::error_code error;
+  fs::copy_file(source, file.partial_path(), fs::copy_options::overwrite_existing, error);
+  if (error) throw IoError(source + ": cannot be copied: " + error.message());
+  file.commit();
+}
+
+/// Copies the traces that the store in `folder` keeps, unless they are there; returns how many.
+std::int64_t copy_traces(const std::string& folder, const std::string& out) {
+  const StoreReader store(folder);
   std::int64_t copied = 0;
-  for (const StoredVariant& variant : shard.variants()) {
-    shard.for_each_episode(variant.id, [&](const EpisodeRow& row) {
-      if (row.trace.empty()) return;
-      make_durable_folder(out + "/" + row.trace, out);
-      PendingFile file(out + "/" + row.trace + "/" + kTraceFile);
-      const std::string source = folder + "/" + row.trace + "/" + kTraceFile;
-      std::error_code error;
-      fs::copy_file(source, file.partial_path(), fs::copy_options::overwrite_existing, error);
-      if (error) throw IoError(source + ": cannot be copied: " + error.message());
-      file.commit();
-      ++copied;
-    });
-  }
+  store.for_each_trace([&](const std::string& trace) {
+    const std::string from = folder + "/" + trace;
+    const std::string to = out + "/" + trace;
+    std::error_code ignored;
+    if (fs::exists(to + "/" + kTraceFile, ignored)) return;
+    make_durable_folder(to, out);
+    if (fs::exists(from + "/" + kControllerLog, ignored)) {
+      copy_episode_file(from, to, kControllerLog);
+    }
+    copy_episode_file(from, to, kTraceFile);
+    ++copied;
+  });
   return copied;
 }
 
-std::int64_t write_store(const std::string& path, const std::vector<std::string>& folders,
-                         const StoreReader& first) {
-  SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_URI, kStorePatience);
-  // Until it has its name, nobody needs it: no log is kept of what is done to it.
-  database.exec("PRAGMA journal_mode = MEMORY; PRAGMA synchronous = OFF");
-  migrate(database, 0, store_migrations());
-  const SeedSet seeds = seeds_from_text(first.campaign().seeds);
-  std::vector<std::uint64_t> sorted = seeds.listed;
-  std::ranges::sort(sorted);
-  StoredCampaign campaign = first.campaign();
-  campaign.shard = {};
-  campaign.episodes = std::ssize(first.variants()) * seeds.size();
-  insert_campaign(database, campaign);
-  for (std::size_t i = 0; i < first.variants().size(); ++i) {
-    insert_variant(database, first.variants()[i], static_cast<std::int64_t>(i));
-  }
-  for (const std::string& folder : folders) {
-    add_rows(database, folder);
-    database.exec("DETACH shard");
-  }
-  for (const StoredVariant& variant : first.variants()) {
-    require_all_seeds(database, variant, sorted, seeds);
-  }
-  return campaign.episodes;
+/// Refuses a store that holds an episode which is not as it was written; of the folders it came
+/// from, the one that is damaged.
+void refuse_damage(SQLite::Database& database, const std::vector<std::string>& folders,
+                   const std::string& path) {
+  const std::optional<StoredEpisode> damaged = damaged_episode(database);
+  if (!damaged) return;
+  for (const std::string& folder : folders) StoreReader(folder).verify();
+  throw IoError(fmt::format("{}: the rows of variant {}, seed {} changed while they were copied",
+                            path, damaged->variant + 1, damaged->seed));
 }
 
-}  // namespace
-
-MergeResult merge_shards(const std::vector<std::string>& folders, const std::string& out) {
-  if (folders.empty()) throw InputError({.found = "no folder", .expected = "those of the shards"});
-  std::vector<std::unique_ptr<StoreReader>> shards;
+std::int64_t write_store(const std::string& path, const std::vector<std::string>& folders,
+                         const Joined& stores, const StoredCampaign& campaign,
+                         const MergePolicy& policy) {
+  JoinedStore store(path, campaign, stores.variants);
   for (const std::string& folder : folders) {
-    shards.push_back(std::make_unique<StoreReader>(folder));
-    shards.back()->verify();
-    require_same(*shards.front(), *shards.back(), folder);
+    with_store_errors(folder + "/" + kStoreFile, [&] { store.add(folder, policy); });
   }
-  require_all_shards(folders, shards);
+  const SeedSet seeds = seeds_from_text(campaign.seeds);
+  std::vector<std::uint64_t> sorted = seeds.listed;
+  std::ranges::sort(sorted);
+  for (const StoredVariant& variant : read_variants(store.database())) {
+    require_seeds(store.database(), variant, sorted, seeds, policy.incomplete);
+  }
+  refuse_damage(store.database(), folders, path);
+  return store.database().execAndGet("SELECT count(*) FROM episode").getInt64();
+}
+
+/// Joins stores that may be joined as `campaign`.
+MergeResult merge(const std::vector<std::string>& folders, const std::string& out,
+                  const Joined& stores, const StoredCampaign& campaign, const MergePolicy& policy) {
   make_output_folder(out);
   const FolderLock lock(out);
   const std::string path = out + "/" + kStoreFile;
   std::error_code ignored;
-  if (fs::exists(path, ignored)) {
+  if (!policy.replace && fs::exists(path, ignored)) {
     throw InputError(
         {.file = path, .found = "a campaign", .expected = "a folder that holds none yet"});
   }
-  MergeResult result;
+  if (fs::exists(path, ignored)) fold_store(path);
+  MergeResult result{.asked = campaign.episodes};
   PendingFile store(path);
-  with_store_errors(
-      path, [&] { result.episodes = write_store(store.partial_path(), folders, *shards.front()); });
-  for (std::size_t i = 0; i < folders.size(); ++i) {
-    result.traces += copy_traces(*shards[i], folders[i], out);
-  }
+  with_store_errors(path, [&] {
+    result.episodes = write_store(store.partial_path(), folders, stores, campaign, policy);
+  });
+  for (const std::string& folder : folders) result.traces += copy_traces(folder, out);
   store.commit();
   return result;
+}
+
+}  // namespace
+
+MergeResult merge_stores(const std::vector<std::string>& folders, const std::string& out,
+                         const MergePolicy& policy) {
+  const Joined stores = joined(folders);
+  require_one_shard(folders, stores);
+  return merge(folders, out, stores, stores.campaign, policy);
+}
+
+MergeResult merge_shards(const std::vector<std::string>& folders, const std::string& out) {
+  const Joined stores = joined(folders);
+  require_all_shards(folders, stores);
+  StoredCampaign campaign = stores.campaign;
+  campaign.shard = {};
+  campaign.episodes = std::ssize(stores.variants) * seeds_from_text(campaign.seeds).size();
+  return merge(folders, out, stores, campaign, {});
 }
 
 }  // namespace qsmpc::harness

@@ -64,6 +64,9 @@ std::optional<Difference> difference_of(const StoredCampaign& stored, const Stor
     return Difference{"version", "qsmpc " + stored.version, "qsmpc " + asked.version};
   }
   if (stored.seeds != asked.seeds) return Difference{"seeds", stored.seeds, asked.seeds};
+  if (stored.until != asked.until) {
+    return Difference{"until", until_text(stored.until), until_text(asked.until)};
+  }
   if (stored.traces != asked.traces) return Difference{"traces", stored.traces, asked.traces};
   if (stored.shard != asked.shard) {
     return Difference{"--shard", shard(stored.shard), shard(asked.shard)};
@@ -118,7 +121,8 @@ StoredCampaign stored_campaign(const Campaign& campaign, const Shard& shard) {
           .shard = shard,
           .episodes = static_cast<std::int64_t>(campaign.variants.size()) *
                       shard.share(campaign.seeds.size()),
-          .risk_against_cost = campaign.risk_against_cost};
+          .risk_against_cost = campaign.risk_against_cost,
+          .until = campaign.until};
 }
 
 std::vector<StoredVariant> stored_variants(const Campaign& campaign,
@@ -148,6 +152,8 @@ struct Store::Implementation {
     // commit waits until it is on the disk.
     database.exec("PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL");
     migrate(database, schema, store_migrations());
+    // The room that the former rows of periods took is given back.
+    if (schema > 0 && schema < kPeriodsSchemaNumber) database.exec("VACUUM");
   }
 
   [[nodiscard]] bool holds_campaign() {
@@ -163,9 +169,9 @@ struct Store::Implementation {
     transaction.commit();
   }
 
-  /// Notes and removes the episodes of a variant for which `goes` holds.
+  /// Notes in `update` and removes the episodes of a variant for which `goes` holds.
   template <class Goes>
-  void drop(std::int64_t variant, const Goes& goes) {
+  void drop(std::int64_t variant, const Goes& goes, StoreUpdate& update) {
     std::vector<std::int64_t> seeds;
     {
       SQLite::Statement statement(database, "SELECT seed, trace FROM episode WHERE variant = ?");
@@ -175,13 +181,13 @@ struct Store::Implementation {
         if (!goes(seed)) continue;
         seeds.push_back(seed);
         const std::string trace = statement.getColumn(1).getString();
-        if (!trace.empty()) changes.traces.push_back(trace);
+        if (!trace.empty()) update.traces.push_back(trace);
       }
     }
     for (const std::int64_t seed : seeds) {
       delete_episode(database, variant, static_cast<std::uint64_t>(seed));
     }
-    changes.dropped += std::ssize(seeds);
+    update.dropped += std::ssize(seeds);
   }
 
   /// Makes the store that of another campaign, keeping what both ask for.
@@ -193,10 +199,12 @@ struct Store::Implementation {
     for (const StoredVariant& stored : read_variants(database)) {
       const auto same = std::ranges::find(asked, stored.name, &StoredVariant::name);
       if (same != asked.end() && !difference_of(stored, *same)) {
-        drop(stored.id, [&](std::int64_t seed) { return !mine.contains(seed); });
+        drop(
+            stored.id, [&](std::int64_t seed) { return !mine.contains(seed); }, changes);
         kept.push_back(stored);
       } else {
-        drop(stored.id, [](std::int64_t) { return true; });
+        drop(
+            stored.id, [](std::int64_t) { return true; }, changes);
       }
     }
     database.exec("DELETE FROM variant");
@@ -292,6 +300,50 @@ void Store::add(const EpisodeRow& row, bool replace) {
     insert_episode(database, row);
     transaction.commit();
   });
+}
+
+void Store::for_each_outcome(
+    const std::function<void(std::int64_t variant, std::uint64_t seed, const std::string& outcome,
+                             bool unsafe)>& visit) const {
+  const std::lock_guard lock(implementation_->mutex);
+  with_store_errors(implementation_->path, [&] {
+    SQLite::Statement statement(
+        implementation_->database,
+        "SELECT variant, seed, " + outcome_column() + ", unsafe FROM episode");
+    while (statement.executeStep()) {
+      visit(statement.getColumn(0).getInt64(),
+            static_cast<std::uint64_t>(statement.getColumn(1).getInt64()),
+            statement.getColumn(2).getString(), statement.getColumn(3).getInt() != 0);
+    }
+  });
+}
+
+std::vector<std::string> Store::stop_after(const SeedSet& seeds, std::int64_t count) {
+  SeedSet kept = seeds;
+  if (seeds.listed.empty()) {
+    kept.count = count;
+  } else {
+    kept.listed.resize(static_cast<std::size_t>(count));
+  }
+  std::vector<std::string> traces;
+  const std::lock_guard lock(implementation_->mutex);
+  with_store_errors(implementation_->path, [&] {
+    SQLite::Database& database = implementation_->database;
+    SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
+    StoredCampaign campaign = read_campaign(database);
+    campaign.stopped_after = count;
+    campaign.episodes = std::ssize(implementation_->ids) * count;
+    insert_campaign(database, campaign);
+    const ShardSeeds mine(kept, {});
+    StoreUpdate dropped;
+    for (const std::int64_t variant : implementation_->ids) {
+      implementation_->drop(
+          variant, [&](std::int64_t seed) { return !mine.contains(seed); }, dropped);
+    }
+    traces = std::move(dropped.traces);
+    transaction.commit();
+  });
+  return traces;
 }
 
 void Store::fold() {

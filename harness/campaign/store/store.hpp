@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -60,6 +61,16 @@ class Store {
   /// Adds an episode; one that is there is replaced if `replace`. Throws IoError when it cannot be
   /// written, e.g. on a full disk; the store is then as before.
   void add(const EpisodeRow& row, bool replace);
+
+  /// How each episode ended, in any order.
+  void for_each_outcome(
+      const std::function<void(std::int64_t variant, std::uint64_t seed, const std::string& outcome,
+                               bool unsafe)>& visit) const;
+
+  /// Notes that the campaign has stopped after its first `count` seeds of `seeds`, and removes the
+  /// episodes of those that follow. Returns the folders of their traces, relative to the
+  /// campaign's.
+  std::vector<std::string> stop_after(const SeedSet& seeds, std::int64_t count);
 
   /// Puts all into the one file, so that it may be copied, and read where nothing can be written.
   /// Left undone while others read it.

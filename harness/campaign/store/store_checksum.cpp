@@ -1,12 +1,15 @@
 #include "harness/campaign/store/store_checksum.hpp"
 
-#include <array>
 #include <bit>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
+#include <vector>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 
+#include "harness/campaign/store/store_periods.hpp"
 #include "harness/text/fnv1a.hpp"
 
 namespace qsmpc::harness {
@@ -14,19 +17,26 @@ namespace {
 
 // Columns by name. Those that later schemas add are in queries of their own, which count only where
 // they have a row: checksums that were made before stay what they are.
-constexpr std::array kQueries{
+constexpr const char* kEpisodeQuery =
     "SELECT outcome, fault, steps, time_to_target, unsafe, min_clearance, cost, next_step_max, "
     "next_step_sum, horizon_max, thesis_max, iterations_median, fallbacks, trace, version, "
-    "risk_exceeded FROM episode WHERE variant = ? AND seed = ?",
+    "risk_exceeded FROM episode WHERE variant = ? AND seed = ?";
+constexpr const char* kTimingQuery =
     "SELECT finished_at, wall_ms, deadline_misses FROM episode_timing "
-    "WHERE variant = ? AND seed = ?",
-    "SELECT period, certified, published, unsafe FROM period WHERE variant = ? AND seed = ? "
-    "ORDER BY period",
-    "SELECT period, ocp_ms FROM period_timing WHERE variant = ? AND seed = ? ORDER BY period",
-    "SELECT points FROM path WHERE variant = ? AND seed = ?",
+    "WHERE variant = ? AND seed = ?";
+constexpr const char* kPeriodsQuery =
+    "SELECT certificates, unsafe FROM episode_periods WHERE variant = ? AND seed = ?";
+constexpr const char* kOcpQuery =
+    "SELECT ocp_ms FROM episode_ocp_ms WHERE variant = ? AND seed = ?";
+constexpr const char* kPathQuery = "SELECT points FROM path WHERE variant = ? AND seed = ?";
+constexpr const char* kBelievedQuery =
     "SELECT believed_max, believed_sum FROM episode WHERE variant = ? AND seed = ? AND "
-    "(believed_max IS NOT NULL OR believed_sum IS NOT NULL)"};
-constexpr std::size_t kFirstQueries = 5;  // that checksums have had from the beginning
+    "(believed_max IS NOT NULL OR believed_sum IS NOT NULL)";
+
+// What SQLite calls the types of values.
+constexpr std::uint64_t kIntegerType = 1;
+constexpr std::uint64_t kRealType = 2;
+constexpr std::uint64_t kNullType = 5;
 
 using Hash = Fnv1a<std::uint64_t>;
 
@@ -35,43 +45,103 @@ void add_text(std::string_view text, Hash& hash) {
   hash.add(text);
 }
 
+std::string_view text_of(const SQLite::Column& column) {
+  return {column.getText(), static_cast<std::size_t>(column.getBytes())};
+}
+
 void add_column(const SQLite::Column& column, Hash& hash) {
   hash.add(static_cast<std::uint64_t>(column.getType()));
   if (column.isInteger()) hash.add(static_cast<std::uint64_t>(column.getInt64()));
   if (column.isFloat()) hash.add(std::bit_cast<std::uint64_t>(column.getDouble()));
-  if (column.isText()) add_text(column.getString(), hash);
+  if (column.isText()) add_text(text_of(column), hash);
 }
 
-/// Checksums of episodes of one store.
+void add_integer(std::uint64_t value, Hash& hash) {
+  hash.add(kIntegerType);
+  hash.add(value);
+}
+
+void add_real(double value, Hash& hash) {
+  hash.add(std::isnan(value) ? kNullType : kRealType);
+  if (!std::isnan(value)) hash.add(std::bit_cast<std::uint64_t>(value));
+}
+
+/// Checksums of episodes of one store. Periods count as the rows, one a period, that they were in
+/// earlier schemas.
 class Checksums {
  public:
   explicit Checksums(SQLite::Database& database)
-      : statements_{
-            SQLite::Statement(database, kQueries[0]), SQLite::Statement(database, kQueries[1]),
-            SQLite::Statement(database, kQueries[2]), SQLite::Statement(database, kQueries[3]),
-            SQLite::Statement(database, kQueries[4]), SQLite::Statement(database, kQueries[5])} {}
+      : episode_(database, kEpisodeQuery),
+        timing_(database, kTimingQuery),
+        periods_(database, kPeriodsQuery),
+        ocp_(database, kOcpQuery),
+        path_(database, kPathQuery),
+        believed_(database, kBelievedQuery) {}
 
   std::int64_t of(std::int64_t variant, std::int64_t seed) {
     Hash hash;
     hash.add(static_cast<std::uint64_t>(seed));
-    for (std::size_t n = 0; n < statements_.size(); ++n) {
-      SQLite::Statement& statement = statements_[n];
-      statement.bind(1, variant);
-      statement.bind(2, seed);
-      std::uint64_t rows = 0;
-      for (; statement.executeStep(); ++rows) {
-        for (int k = 0; k < statement.getColumnCount(); ++k) {
-          add_column(statement.getColumn(k), hash);
-        }
-      }
-      if (n < kFirstQueries || rows > 0) hash.add(rows);
-      statement.reset();
+    for (SQLite::Statement* statement :
+         {&episode_, &timing_, &periods_, &ocp_, &path_, &believed_}) {
+      statement->bind(1, variant);
+      statement->bind(2, seed);
     }
+    hash.add(add_rows(episode_, hash));
+    hash.add(add_rows(timing_, hash));
+    add_periods(hash);
+    add_ocp_ms(hash);
+    hash.add(add_rows(path_, hash));
+    if (const std::uint64_t rows = add_rows(believed_, hash); rows > 0) hash.add(rows);
     return static_cast<std::int64_t>(hash.value());
   }
 
  private:
-  std::array<SQLite::Statement, kQueries.size()> statements_;
+  /// How many rows there were.
+  static std::uint64_t add_rows(SQLite::Statement& statement, Hash& hash) {
+    std::uint64_t rows = 0;
+    for (; statement.executeStep(); ++rows) {
+      for (int k = 0; k < statement.getColumnCount(); ++k) {
+        add_column(statement.getColumn(k), hash);
+      }
+    }
+    statement.reset();
+    return rows;
+  }
+
+  void add_periods(Hash& hash) {
+    rows_.clear();
+    if (periods_.executeStep()) {
+      read_periods(text_of(periods_.getColumn(0)), text_of(periods_.getColumn(1)), rows_);
+    }
+    periods_.reset();
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      add_integer(k, hash);
+      add_real(rows_[k].certified, hash);
+      add_real(rows_[k].published, hash);
+      add_integer(rows_[k].unsafe ? 1 : 0, hash);
+    }
+    hash.add(static_cast<std::uint64_t>(rows_.size()));
+  }
+
+  void add_ocp_ms(Hash& hash) {
+    times_.clear();
+    if (ocp_.executeStep()) read_ocp_ms(text_of(ocp_.getColumn(0)), times_);
+    ocp_.reset();
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      add_integer(k, hash);
+      add_real(times_[k], hash);
+    }
+    hash.add(static_cast<std::uint64_t>(times_.size()));
+  }
+
+  SQLite::Statement episode_;
+  SQLite::Statement timing_;
+  SQLite::Statement periods_;
+  SQLite::Statement ocp_;
+  SQLite::Statement path_;
+  SQLite::Statement believed_;
+  std::vector<PeriodRow> rows_{};
+  std::vector<double> times_{};
 };
 
 }  // namespace

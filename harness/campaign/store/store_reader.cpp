@@ -1,14 +1,18 @@
 #include "harness/campaign/store/store_reader.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
+#include <string_view>
 #include <system_error>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
 #include "harness/campaign/store/store_checksum.hpp"
+#include "harness/campaign/store/store_periods.hpp"
 #include "harness/campaign/store/store_rows.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
@@ -37,6 +41,42 @@ const char* column_of(EpisodeNumber number) {
   }
   throw std::invalid_argument("store: a number that is no column");
 }
+
+/// Valid until the statement's next step.
+std::string_view text_in(const SQLite::Column& column) {
+  return {column.getText(), static_cast<std::size_t>(column.getBytes())};
+}
+
+std::string episodes_by_seed() {
+  return "SELECT " + episode_columns("e", "t") +
+         " FROM episode e JOIN episode_timing t USING (variant, seed)"
+         " WHERE e.variant = ? ORDER BY e.seed";
+}
+
+/// The episodes of a variant, one after the other.
+class EpisodeCursor {
+ public:
+  EpisodeCursor(SQLite::Database& database, std::int64_t variant)
+      : statement_(database, episodes_by_seed()) {
+    statement_.bind(1, variant);
+    next();
+  }
+
+  /// Nothing after the last one.
+  [[nodiscard]] const EpisodeRow* row() const { return is_there_ ? &row_ : nullptr; }
+  [[nodiscard]] const EpisodeRow* row_of(std::uint64_t seed) const {
+    return is_there_ && row_.seed == seed ? &row_ : nullptr;
+  }
+  void next() {
+    is_there_ = statement_.executeStep();
+    if (is_there_) row_ = episode_of(statement_);
+  }
+
+ private:
+  SQLite::Statement statement_;
+  EpisodeRow row_{};
+  bool is_there_ = false;
+};
 
 SQLite::Database open_database(const std::string& path) {
   SQLite::Database database(path, SQLite::OPEN_READONLY, kStorePatience);
@@ -123,10 +163,8 @@ std::int64_t StoreReader::finished_since(double time) const {
 
 void StoreReader::for_each_episode(std::int64_t variant,
                                    const std::function<void(const EpisodeRow&)>& visit) const {
-  implementation_->each("SELECT " + episode_columns("e", "t") +
-                            " FROM episode e JOIN episode_timing t USING (variant, seed)"
-                            " WHERE e.variant = ? ORDER BY e.seed",
-                        {variant}, [&](SQLite::Statement& row) { visit(episode_of(row)); });
+  implementation_->each(episodes_by_seed(), {variant},
+                        [&](SQLite::Statement& row) { visit(episode_of(row)); });
 }
 
 void StoreReader::for_each_pair(
@@ -142,19 +180,52 @@ void StoreReader::for_each_pair(
                         });
 }
 
+void StoreReader::for_each_seed(
+    const std::vector<std::int64_t>& variants,
+    const std::function<void(std::uint64_t seed, const std::vector<const EpisodeRow*>&)>& visit)
+    const {
+  with_store_errors(implementation_->path, [&] {
+    std::vector<std::unique_ptr<EpisodeCursor>> cursors;
+    cursors.reserve(variants.size());
+    for (const std::int64_t variant : variants) {
+      cursors.push_back(std::make_unique<EpisodeCursor>(implementation_->database, variant));
+    }
+    std::vector<const EpisodeRow*> rows(variants.size());
+    while (true) {
+      std::optional<std::uint64_t> seed;
+      for (const auto& cursor : cursors) {
+        if (cursor->row() != nullptr)
+          seed = std::min(seed.value_or(cursor->row()->seed), cursor->row()->seed);
+      }
+      if (!seed) return;
+      for (std::size_t v = 0; v < cursors.size(); ++v) rows[v] = cursors[v]->row_of(*seed);
+      visit(*seed, rows);
+      for (std::size_t v = 0; v < cursors.size(); ++v) {
+        if (rows[v] != nullptr) cursors[v]->next();
+      }
+    }
+  });
+}
+
 void StoreReader::for_each_period(std::int64_t variant,
                                   const std::function<void(std::uint64_t seed, std::int64_t period,
                                                            const PeriodRow&)>& visit) const {
+  std::vector<PeriodRow> periods;
+  std::vector<double> times;
   implementation_->each(
-      "SELECT p.seed, p.period, p.certified, p.published, p.unsafe, t.ocp_ms"
-      " FROM period p JOIN period_timing t USING (variant, seed, period)"
-      " WHERE p.variant = ? ORDER BY p.seed, p.period",
+      "SELECT p.seed, p.certificates, p.unsafe, t.ocp_ms FROM episode_periods p"
+      " JOIN episode_ocp_ms t USING (variant, seed) WHERE p.variant = ? ORDER BY p.seed",
       {variant}, [&](SQLite::Statement& row) {
-        visit(static_cast<std::uint64_t>(row.getColumn(0).getInt64()), row.getColumn(1).getInt64(),
-              {.certified = number_of(row.getColumn(2)),
-               .published = number_of(row.getColumn(3)),
-               .unsafe = row.getColumn(4).getInt() != 0,
-               .ocp_ms = row.getColumn(5).getDouble()});
+        read_periods(text_in(row.getColumn(1)), text_in(row.getColumn(2)), periods);
+        read_ocp_ms(text_in(row.getColumn(3)), times);
+        if (times.size() != periods.size()) {
+          throw SQLite::Exception("an episode with more periods than times, or fewer");
+        }
+        const auto seed = static_cast<std::uint64_t>(row.getColumn(0).getInt64());
+        for (std::size_t k = 0; k < periods.size(); ++k) {
+          periods[k].ocp_ms = times[k];
+          visit(seed, static_cast<std::int64_t>(k), periods[k]);
+        }
       });
 }
 
@@ -172,6 +243,12 @@ void StoreReader::for_each_path(
       });
 }
 
+void StoreReader::for_each_trace(
+    const std::function<void(const std::string& folder)>& visit) const {
+  implementation_->each("SELECT trace FROM episode WHERE trace <> ''", {},
+                        [&](SQLite::Statement& row) { visit(row.getColumn(0).getString()); });
+}
+
 void StoreReader::for_each_sorted(std::int64_t variant, EpisodeNumber number,
                                   const std::function<void(double)>& visit) const {
   const std::string column = column_of(number);
@@ -182,11 +259,14 @@ void StoreReader::for_each_sorted(std::int64_t variant, EpisodeNumber number,
       {variant}, [&](SQLite::Statement& row) { visit(row.getColumn(0).getDouble()); });
 }
 
-void StoreReader::for_each_sorted_ocp_ms(std::int64_t variant,
-                                         const std::function<void(double)>& visit) const {
-  implementation_->each("SELECT ocp_ms FROM period_timing WHERE variant = ? ORDER BY ocp_ms",
-                        {variant},
-                        [&](SQLite::Statement& row) { visit(row.getColumn(0).getDouble()); });
+void StoreReader::for_each_ocp_ms(std::int64_t variant,
+                                  const std::function<void(double)>& visit) const {
+  std::vector<double> times;
+  implementation_->each("SELECT ocp_ms FROM episode_ocp_ms WHERE variant = ? ORDER BY seed",
+                        {variant}, [&](SQLite::Statement& row) {
+                          read_ocp_ms(text_in(row.getColumn(0)), times);
+                          for (const double ms : times) visit(ms);
+                        });
 }
 
 }  // namespace qsmpc::harness

@@ -13,6 +13,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,9 +42,12 @@ struct StoredCampaign {
   std::string seeds;    ///< seeds_text of the campaign's
   std::string traces;   ///< traces_text of the campaign
   Shard shard{};
-  std::int64_t episodes = 0;  ///< of this shard, when all are done
+  std::int64_t episodes = 0;  ///< of this shard, when all are done; with `until` at most
   /// Campaign::risk_against_cost. No episode depends on it: the store takes what it is now.
   std::vector<VariantFamily> risk_against_cost{};
+  std::optional<StopCriterion> until{};
+  /// After so many first seeds the rule `until` has stopped; the store has the episodes of these.
+  std::optional<std::int64_t> stopped_after{};
 
   friend bool operator==(const StoredCampaign&, const StoredCampaign&) = default;
 };
@@ -77,6 +81,12 @@ class StoreReader {
   /// The episodes that two variants have with the same seed, by seed, without their periods.
   void for_each_pair(std::int64_t first, std::int64_t second,
                      const std::function<void(const EpisodeRow&, const EpisodeRow&)>& visit) const;
+  /// The episodes of several variants at once, by seed, without their periods: `visit` is called
+  /// for each seed that any of them has, with an episode for each of `variants`, or a null pointer
+  /// where one does not have it. A variant may be named once.
+  void for_each_seed(const std::vector<std::int64_t>& variants,
+                     const std::function<void(std::uint64_t seed,
+                                              const std::vector<const EpisodeRow*>&)>& visit) const;
   /// The periods of a variant's episodes by seed and period; `period` is their number, from 0.
   void for_each_period(std::int64_t variant,
                        const std::function<void(std::uint64_t seed, std::int64_t period,
@@ -86,11 +96,13 @@ class StoreReader {
   void for_each_path(std::int64_t variant, std::int64_t most,
                      const std::function<void(const std::string& outcome,
                                               const std::vector<PathPoint>& path)>& visit) const;
+  /// The folders of the traces that are kept, relative to the campaign's.
+  void for_each_trace(const std::function<void(const std::string& folder)>& visit) const;
   /// A number of a variant's episodes, ascending; of those that did not fault and have one.
   void for_each_sorted(std::int64_t variant, EpisodeNumber number,
                        const std::function<void(double)>& visit) const;
-  /// ocp_ms of a variant's periods, ascending.
-  void for_each_sorted_ocp_ms(std::int64_t variant, const std::function<void(double)>& visit) const;
+  /// ocp_ms of a variant's periods, by seed and period.
+  void for_each_ocp_ms(std::int64_t variant, const std::function<void(double)>& visit) const;
 
  private:
   struct Implementation;

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/campaign/store/store_checksum.hpp"
+#include "harness/campaign/store/store_periods.hpp"
 #include "harness/trace/ending.hpp"
 
 namespace qsmpc::harness {
@@ -30,22 +31,18 @@ void run(SQLite::Statement& statement) {
 }
 
 void insert_periods(SQLite::Database& database, const EpisodeRow& row) {
-  SQLite::Statement period(database, "INSERT INTO period VALUES (?, ?, ?, ?, ?, ?)");
-  SQLite::Statement timing(database, "INSERT INTO period_timing VALUES (?, ?, ?, ?)");
-  for (std::size_t k = 0; k < row.periods.size(); ++k) {
-    const PeriodRow& values = row.periods[k];
-    for (SQLite::Statement* statement : {&period, &timing}) {
-      statement->bind(1, row.variant);
-      statement->bind(2, stored_seed(row.seed));
-      statement->bind(3, static_cast<std::int64_t>(k));
-    }
-    bind_number(period, 4, values.certified);
-    bind_number(period, 5, values.published);
-    period.bind(6, values.unsafe ? 1 : 0);
-    timing.bind(4, values.ocp_ms);
-    run(period);
-    run(timing);
+  if (row.periods.empty()) return;
+  SQLite::Statement periods(database, "INSERT INTO episode_periods VALUES (?, ?, ?, ?)");
+  SQLite::Statement times(database, "INSERT INTO episode_ocp_ms VALUES (?, ?, ?)");
+  for (SQLite::Statement* statement : {&periods, &times}) {
+    statement->bind(1, row.variant);
+    statement->bind(2, stored_seed(row.seed));
   }
+  periods.bind(3, certificates_text(row.periods));
+  periods.bind(4, unsafe_text(row.periods));
+  times.bind(3, ocp_ms_text(row.periods));
+  run(periods);
+  run(times);
 }
 
 /// As JSON, which SQLite reads (json_each).
@@ -80,6 +77,32 @@ void insert_families(SQLite::Database& database, const std::vector<VariantFamily
   }
 }
 
+void insert_stop_rule(SQLite::Database& database, const StoredCampaign& campaign) {
+  database.exec("DELETE FROM stop_rule");
+  if (!campaign.until) return;
+  SQLite::Statement statement(database, "INSERT INTO stop_rule VALUES (1, ?, ?, ?, ?)");
+  statement.bind(1, campaign.until->of);
+  statement.bind(2, campaign.until->rate_halfwidth);
+  statement.bind(3, campaign.until->confidence);
+  if (campaign.stopped_after) {
+    statement.bind(4, *campaign.stopped_after);
+  } else {
+    statement.bind(4);
+  }
+  run(statement);
+}
+
+void read_stop_rule(SQLite::Database& database, StoredCampaign& campaign) {
+  SQLite::Statement statement(
+      database, "SELECT event, rate_halfwidth, confidence, stopped_after FROM stop_rule");
+  if (!statement.executeStep()) return;
+  campaign.until = {.of = statement.getColumn(0).getString(),
+                    .rate_halfwidth = statement.getColumn(1).getDouble(),
+                    .confidence = statement.getColumn(2).getDouble()};
+  const SQLite::Column seeds = statement.getColumn(3);
+  if (!seeds.isNull()) campaign.stopped_after = seeds.getInt64();
+}
+
 std::vector<VariantFamily> read_stored_families(SQLite::Database& database) {
   SQLite::Statement statement(
       database, "SELECT family, name, settings FROM risk_against_cost ORDER BY family, place");
@@ -105,6 +128,10 @@ std::string episode_columns(const std::string& e, const std::string& t) {
     columns += fmt::format("{}.{}, ", e, name);
   }
   return columns + fmt::format("{0}.finished_at, {0}.wall_ms, {0}.deadline_misses", t);
+}
+
+bool is_timing(std::string_view table) {
+  return table == "episode_timing" || table == "episode_ocp_ms" || table == "episode_checksum";
 }
 
 std::vector<PathPoint> path_of(const std::string& text) {
@@ -233,14 +260,16 @@ StoredCampaign read_campaign(SQLite::Database& database) {
                               "SELECT name, version, seeds, traces, shard_index, shard_count, "
                               "episodes FROM campaign");
   if (!statement.executeStep()) throw SQLite::Exception("it holds no campaign");
-  return {.name = statement.getColumn(0).getString(),
-          .version = statement.getColumn(1).getString(),
-          .seeds = statement.getColumn(2).getString(),
-          .traces = statement.getColumn(3).getString(),
-          .shard = {.index = statement.getColumn(4).getInt64(),
-                    .count = statement.getColumn(5).getInt64()},
-          .episodes = statement.getColumn(6).getInt64(),
-          .risk_against_cost = read_stored_families(database)};
+  StoredCampaign campaign{.name = statement.getColumn(0).getString(),
+                          .version = statement.getColumn(1).getString(),
+                          .seeds = statement.getColumn(2).getString(),
+                          .traces = statement.getColumn(3).getString(),
+                          .shard = {.index = statement.getColumn(4).getInt64(),
+                                    .count = statement.getColumn(5).getInt64()},
+                          .episodes = statement.getColumn(6).getInt64(),
+                          .risk_against_cost = read_stored_families(database)};
+  read_stop_rule(database, campaign);
+  return campaign;
 }
 
 void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign) {
@@ -255,6 +284,7 @@ void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign)
   statement.bind(7, campaign.episodes);
   run(statement);
   insert_families(database, campaign.risk_against_cost);
+  insert_stop_rule(database, campaign);
 }
 
 std::vector<StoredVariant> read_variants(SQLite::Database& database) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "harness/campaign/store/episode_row.hpp"
@@ -38,8 +39,11 @@ inline constexpr int kEpisodeColumns = 23;
 [[nodiscard]] std::int64_t stored_seed(std::uint64_t seed);
 
 /// The tables whose rows belong to an episode; `variant` is a column of each.
-inline constexpr std::array kEpisodeTables{"episode", "episode_timing", "path",
-                                           "period",  "period_timing",  "episode_checksum"};
+inline constexpr std::array kEpisodeTables{"episode",         "episode_timing", "path",
+                                           "episode_periods", "episode_ocp_ms", "episode_checksum"};
+
+/// Whether a table of episodes holds wall-clock values, or a checksum that is made of some.
+[[nodiscard]] bool is_timing(std::string_view table);
 
 /// What the table of paths holds: JSON, a list of pairs. Throws SQLite::Exception of another text.
 [[nodiscard]] std::vector<PathPoint> path_of(const std::string& text);

@@ -17,8 +17,19 @@ namespace qsmpc::harness {
 /// The file of the store within a campaign's folder.
 inline constexpr const char* kStoreFile = "campaign.sqlite";
 
-/// SQL that brings a store from one schema to the next. The first makes a store out of nothing.
-[[nodiscard]] const std::vector<std::string>& store_migrations();
+/// What brings a store from one schema to the next.
+struct Migration {
+  std::string sql{};
+  /// Run after `sql`, where rows need more than SQL to become what they are in the next schema.
+  void (*move_rows)(SQLite::Database& database) = nullptr;
+  std::string after{};  ///< SQL that is run last
+};
+
+/// The first makes a store out of nothing.
+[[nodiscard]] const std::vector<Migration>& store_migrations();
+
+/// From this schema on an episode's periods are one row.
+inline constexpr int kPeriodsSchemaNumber = 7;
 
 /// The schema that this program writes and reads: the number of migrations.
 [[nodiscard]] int store_schema();
@@ -29,7 +40,7 @@ inline constexpr const char* kStoreFile = "campaign.sqlite";
 
 /// Applies the migrations after the first `from`, each in a transaction with its number, so that a
 /// store is always of some schema as a whole.
-void migrate(SQLite::Database& database, int from, const std::vector<std::string>& migrations);
+void migrate(SQLite::Database& database, int from, const std::vector<Migration>& migrations);
 
 /// Refuses a store of a newer schema. Throws InputError.
 void refuse_newer(int schema, const std::string& path);

@@ -47,6 +47,17 @@ TEST(BrokenCampaign, keys_of_its_own) {
   expect_refused({"[a, b]\n", 1, "", "a list of 2", "a mapping"});
 }
 
+TEST(BrokenCampaign, rules_that_stop_it) {
+  expect_refused({two_lines + "until: {}\n", 3, "until.rate_halfwidth", "nothing", "0.001"});
+  expect_refused({two_lines + "until: 0.001\n", 3, "until", "0.001", "a mapping"});
+  const std::string until = two_lines + "until:\n  rate_halfwidth: ";
+  expect_refused({until + "0\n", 4, "until.rate_halfwidth", "0", "> 0"});
+  expect_refused({until + "0.3\n", 4, "until.rate_halfwidth", "0.3", "0.25"});
+  expect_refused({until + "0.1\n  confidence: 1\n", 5, "until.confidence", "1", "0.5"});
+  expect_refused({until + "0.1\n  of: crash\n", 5, "until.of", "crash", "unsafe, reached"});
+  expect_refused({until + "0.1\n  off: reached\n", 5, "until.off", "an unknown key", "of"});
+}
+
 TEST(BrokenCampaign, seeds) {
   const std::string head = "scenario: a.yaml\n";
   const std::string whole = "a whole number from 0 to 9223372036854775807";

@@ -38,11 +38,22 @@ TEST(CampaignFile, every_key_is_read) {
   const CampaignFolder folder;
   const Campaign campaign = folder.load(
       "name: all keys\ndescription: of them\nscenarios: [a.yaml]\nseeds: [7, 3]\n"
-      "traces: failures\ntrace_sample: 4\n");
+      "traces: failures\ntrace_sample: 4\n"
+      "until: {rate_halfwidth: 0.001, confidence: 0.999, of: collision}\n");
   EXPECT_EQ(campaign.name, "all keys");
+  EXPECT_EQ(campaign.until,
+            (StopCriterion{.of = "collision", .rate_halfwidth = 0.001, .confidence = 0.999}));
   EXPECT_THAT(campaign.seeds.listed, ElementsAre(7U, 3U));
   EXPECT_EQ(campaign.traces, TraceKeeping::kFailures);
   EXPECT_EQ(campaign.trace_sample, 4);
+}
+
+TEST(CampaignFile, a_rule_counts_unsafe_drives_at_99_percent_unless_it_says_otherwise) {
+  const CampaignFolder folder;
+  const std::string head = "scenario: a.yaml\nseeds: {count: 3}\n";
+  EXPECT_EQ(folder.load(head).until, std::nullopt);
+  EXPECT_EQ(folder.load(head + "until: {rate_halfwidth: 0.01}\n").until,
+            (StopCriterion{.of = "unsafe", .rate_halfwidth = 0.01, .confidence = 0.99}));
 }
 
 TEST(CampaignFile, expands_scenarios_slowest_then_variants_then_the_grid_then_plants) {

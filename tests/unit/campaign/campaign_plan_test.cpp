@@ -43,6 +43,18 @@ TEST(CampaignPlan, has_a_line_for_every_variant_and_the_sizes) {
             "  traces    failures, and of each variant the first 3 seeds\n");
 }
 
+TEST(CampaignPlan, says_when_it_may_stop_early) {
+  Campaign campaign = two_variants();
+  EXPECT_FALSE(nlohmann::json::parse(campaign_plan_json(campaign)).contains("until"));
+  campaign.until = {.of = "collision", .rate_halfwidth = 0.01, .confidence = 0.995};
+  EXPECT_THAT(campaign_plan_text(campaign),
+              HasSubstr("  episodes  at most 20\n  until     collision to +-0.01 at 99.5 %\n"));
+  const auto until = nlohmann::json::parse(campaign_plan_json(campaign))["until"];
+  EXPECT_EQ(until["of"], "collision");
+  EXPECT_EQ(until["rate_halfwidth"], 0.01);
+  EXPECT_EQ(until["confidence"], 0.995);
+}
+
 TEST(CampaignPlan, shows_the_first_of_many_listed_seeds) {
   Campaign campaign = two_variants();
   for (std::uint64_t seed = 100; seed < 112; ++seed) campaign.seeds.listed.push_back(seed);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -192,6 +193,109 @@ TEST_F(Merge, refuses_shards_of_other_campaigns) {
   other.risk_against_cost = {{.name = "horizons", .settings = {"two", "three"}}};
   EXPECT_THAT(refusal({first, shard(other, {.index = 2, .count = 2})}),
               HasSubstr("figure.risk_against_cost: found horizons: two, three, expected none"));
+}
+
+/// A store of the episodes of `seeds` in a folder of its own.
+class MergeOfParts : public Merge {
+ protected:
+  std::string part(const std::vector<std::uint64_t>& seeds, double more_cost = 0.0,
+                   double later = 0.0) {
+    const std::string folder = work / fmt::format("part{}", ++made);
+    fs::create_directories(folder);
+    Store store(folder, stored_campaign(campaign, {}), stored_variants(campaign, {"", ""}),
+                campaign.seeds, false);
+    for (const std::int64_t variant : {0, 1}) {
+      for (const std::uint64_t seed : seeds) {
+        EpisodeRow row = testing::example_row(variant, seed);
+        row.cost += more_cost;
+        row.timing.finished_at += later;
+        row.periods[0].ocp_ms += later;
+        store.add(row, false);
+      }
+    }
+    return folder;
+  }
+  std::string refusal_of_parts(const std::vector<std::string>& folders, const MergePolicy& policy) {
+    try {
+      merge_stores(folders, out(), policy);
+    } catch (const InputError& error) {
+      EXPECT_FALSE(fs::exists(out() + "/campaign.sqlite"));
+      return error.what();
+    }
+    return "not refused";
+  }
+  std::vector<double> ends(std::int64_t variant) const {
+    std::vector<double> ends;
+    StoreReader(out()).for_each_episode(
+        variant, [&](const EpisodeRow& row) { ends.push_back(row.timing.finished_at); });
+    return ends;
+  }
+
+  Campaign campaign = testing::quick_campaign();  // seeds 5 to 8
+};
+
+TEST_F(MergeOfParts, takes_an_episode_that_several_have_once_and_from_the_first) {
+  const MergeResult merged =
+      merge_stores({part({5, 6}), part({6, 7}, 0.0, 50.0), part({8})}, out(), {.duplicates = true});
+  EXPECT_EQ(merged.episodes, 8);
+  EXPECT_EQ(merged.asked, 8);
+  EXPECT_EQ(ends(1)[1], testing::example_row(1, 6).timing.finished_at);
+  EXPECT_EQ(ends(1)[2], testing::example_row(1, 7).timing.finished_at + 50.0);
+  EXPECT_NO_THROW(StoreReader(out()).verify());
+}
+
+TEST_F(MergeOfParts, refuses_episodes_that_contradict_each_other) {
+  EXPECT_THAT(
+      refusal_of_parts({part({5, 6}), part({6, 7}, 1e-9), part({8})}, {.duplicates = true}),
+      HasSubstr("variant three, seed 6: found another episode than a folder before it has"));
+}
+
+TEST_F(MergeOfParts, says_which_episode_is_double_or_missing_unless_that_is_allowed) {
+  EXPECT_THAT(refusal_of_parts({part({5, 6}), part({6, 7, 8})}, {}),
+              HasSubstr("seed 6, which another shard has, too"));
+  EXPECT_THAT(refusal_of_parts({part({5, 6}), part({6, 8})}, {.duplicates = true}),
+              HasSubstr("found no episode with seed 7"));
+  const MergeResult merged =
+      merge_stores({part({5, 6}), part({6, 8})}, out(), {.duplicates = true, .incomplete = true});
+  EXPECT_EQ(merged.episodes, 6);
+  EXPECT_EQ(merged.asked, 8);
+}
+
+TEST_F(MergeOfParts, refuses_foreign_seeds_also_where_episodes_may_be_missing) {
+  for (const std::uint64_t foreign : {4U, 9U}) {
+    EXPECT_THAT(refusal_of_parts({part({5, foreign})}, {.incomplete = true}),
+                HasSubstr(fmt::format("the foreign seed {}", foreign)));
+  }
+}
+
+TEST_F(MergeOfParts, a_store_may_be_replaced_by_what_it_is_a_part_of) {
+  const MergePolicy policy{.duplicates = true, .incomplete = true, .replace = true};
+  EXPECT_EQ(merge_stores({part({})}, out(), policy).episodes, 0);
+  EXPECT_EQ(merge_stores({out(), part({5})}, out(), policy).episodes, 2);
+  {
+    // Its log is not taken for that of the store that replaces it.
+    Store store(out(), stored_campaign(campaign, {}), stored_variants(campaign, {"", ""}),
+                campaign.seeds, false);
+    store.add(testing::example_row(0, 8), false);
+  }
+  EXPECT_EQ(merge_stores({out(), part({5, 6})}, out(), policy).episodes, 5);
+  EXPECT_NO_THROW(StoreReader(out()).verify());
+  EXPECT_EQ(ends(0).size(), 3U);
+}
+
+TEST_F(MergeOfParts, names_the_folder_in_which_an_episode_is_damaged) {
+  const std::string sound = part({5, 6});
+  const std::string damaged = part({7, 8});
+  SQLite::Database(damaged + "/campaign.sqlite", SQLite::OPEN_READWRITE)
+      .exec("UPDATE episode SET cost = cost + 1 WHERE seed = 8 AND variant = 0");
+  try {
+    merge_stores({sound, damaged}, out(), {});
+    FAIL() << "not refused";
+  } catch (const IoError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(damaged));
+    EXPECT_THAT(error.what(), HasSubstr("seed 8"));
+  }
+  EXPECT_FALSE(fs::exists(out() + "/campaign.sqlite"));
 }
 
 TEST_F(Merge, never_writes_over_a_campaign) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include <boost/math/distributions/normal.hpp>
 #include <gtest/gtest.h>
@@ -69,6 +70,33 @@ TEST(PoissonWeights, depend_on_the_seed_alone_and_differ_between_replicates_and_
   for (const int lag : {1, 4, 16}) {
     const Eigen::Index rest = kBootstrapReplicates - lag;
     EXPECT_NEAR(correlation(first.head(rest), first.tail(rest)), 0.0, tolerance) << lag;
+  }
+}
+
+TEST(PairedDifference, is_to_the_last_bit_the_bootstrap_of_each_quantity_alone) {
+  PairedDifference difference;
+  BootstrapMean cost;
+  BootstrapMean reached;
+  Eigen::ArrayXd weights;
+  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+    const EpisodeRow before = row(seed, seed % 7 == 0 ? "fault" : "reached",
+                                  10.0 + 0.1 * static_cast<double>(seed * seed % 13));
+    const EpisodeRow after =
+        row(seed, seed % 5 == 0 ? "timeout" : "reached", seed % 4 == 0 ? before.cost : 11.3);
+    poisson_weights(seed, weights);
+    difference.add(before, after, weights);
+    if (seed % 7 != 0) cost.add(after.cost - before.cost, weights);
+    reached.add(
+        (after.outcome == "reached" ? 1.0 : 0.0) - (before.outcome == "reached" ? 1.0 : 0.0),
+        weights);
+  }
+  const std::vector<MeanDifference> result = difference.result();
+  for (const auto& [name, alone] : {std::pair{"cost", &cost}, std::pair{"reached", &reached}}) {
+    const MeanDifference together = difference_of(result, name);
+    EXPECT_EQ(together.pairs, alone->count());
+    EXPECT_EQ(together.mean, alone->mean());
+    EXPECT_EQ(together.interval.lower, alone->interval().lower);
+    EXPECT_EQ(together.interval.upper, alone->interval().upper);
   }
 }
 

@@ -112,6 +112,79 @@ TEST(CampaignRunner, an_episode_that_is_given_up_is_not_stored) {
   EXPECT_EQ(run_campaign(testing::quick_campaign(), folder.path(), options).done, 0);
 }
 
+/// A rule that stops well before the last of its seeds.
+Campaign early_campaign() {
+  Campaign campaign = testing::quick_campaign(40);
+  campaign.traces = TraceKeeping::kAll;
+  campaign.until = {.of = "unsafe", .rate_halfwidth = 0.25, .confidence = 0.6};
+  return campaign;
+}
+
+TEST(CampaignRunner, stops_early_after_the_same_seeds_for_any_number_of_jobs) {
+  const TemporaryFolder one;
+  const TemporaryFolder three;
+  const CampaignProgress first = run_campaign(early_campaign(), one.path(), {.jobs = 1});
+  const CampaignProgress second = run_campaign(early_campaign(), three.path(), {.jobs = 3});
+  ASSERT_TRUE(first.stopped_after);
+  EXPECT_GT(*first.stopped_after, 1);
+  EXPECT_LT(*first.stopped_after, 40);
+  EXPECT_EQ(first.stopped_after, second.stopped_after);
+  EXPECT_EQ(first.done, 2 * *first.stopped_after);
+  EXPECT_EQ(first.total, first.done);
+  EXPECT_EQ(second.done, first.done);
+  EXPECT_EQ(rows_in(one.path()), rows_in(three.path()));
+  const StoreReader store(three.path());
+  EXPECT_EQ(store.campaign().stopped_after, first.stopped_after);
+  EXPECT_EQ(store.campaign().episodes, first.done);
+}
+
+TEST(CampaignRunner, stops_early_after_the_same_seeds_when_it_was_interrupted) {
+  const TemporaryFolder whole;
+  const TemporaryFolder stopped;
+  std::atomic<int> episodes = 0;
+  CampaignOptions options{.jobs = 3};
+  options.on_progress = [&](const CampaignProgress& progress) {
+    episodes = static_cast<int>(progress.fresh);
+  };
+  options.should_stop = [&] { return episodes >= 3; };
+  EXPECT_FALSE(run_campaign(early_campaign(), stopped.path(), options).stopped_after);
+  const CampaignProgress end = run_campaign(early_campaign(), stopped.path(), {.jobs = 2});
+  (void)run_campaign(early_campaign(), whole.path(), {});
+  EXPECT_EQ(rows_in(stopped.path()), rows_in(whole.path()));
+  // Started once more, there is nothing to do.
+  const CampaignProgress again = run_campaign(early_campaign(), stopped.path(), {});
+  EXPECT_EQ(again.fresh, 0);
+  EXPECT_EQ(again.stopped_after, end.stopped_after);
+}
+
+TEST(CampaignRunner, removes_what_was_driven_beyond_the_seeds_that_suffice) {
+  const TemporaryFolder folder;
+  Campaign campaign = early_campaign();
+  campaign.until.reset();
+  (void)run_campaign(campaign, folder.path(), {});
+  ASSERT_EQ(rows_in(folder.path()).size(), 80U);
+  const CampaignProgress end = run_campaign(early_campaign(), folder.path(), {.update = true});
+  ASSERT_TRUE(end.stopped_after);
+  EXPECT_EQ(end.fresh, 0);
+  const auto suffice = static_cast<std::uint64_t>(*end.stopped_after);
+  for (const std::uint64_t seed : seeds_in(folder.path())) EXPECT_LT(seed, 5U + suffice);
+  EXPECT_EQ(rows_in(folder.path()).size(), 2U * suffice);
+  for (const std::uint64_t seed : {5 + suffice - 1, 5 + suffice}) {
+    EXPECT_EQ(std::filesystem::exists(folder.path() + "/" + episode_folder(0, seed)),
+              seed < 5 + suffice);
+  }
+}
+
+TEST(CampaignRunner, refuses_a_part_of_the_seeds_where_a_rule_looks_at_all) {
+  const TemporaryFolder folder;
+  try {
+    (void)run_campaign(early_campaign(), folder.path(), {.shard = {.index = 1, .count = 2}});
+    FAIL() << "not refused";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("--shard: found 1/2"));
+  }
+}
+
 TEST(CampaignRunner, two_shards_have_each_seed_once) {
   const TemporaryFolder first;
   const TemporaryFolder second;

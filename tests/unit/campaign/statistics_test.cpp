@@ -14,6 +14,7 @@
 #include "harness/campaign/statistics/campaign_table.hpp"
 #include "harness/campaign/store/store.hpp"
 #include "harness/files/text_file.hpp"
+#include "harness/statistics/confidence_sequence.hpp"
 #include "harness/text/number_format.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/campaign/campaign_fixture.hpp"
@@ -65,6 +66,51 @@ TEST(CampaignStatistics, say_of_which_variants_no_certificate_is_a_bound) {
   const std::size_t said = table.find("NO BOUND: with measurement noise");
   ASSERT_NE(said, std::string::npos);
   EXPECT_EQ(table.find("NO BOUND", said + 1), std::string::npos);
+}
+
+/// Of ten seeds of which the rule has left six, unless it has not stopped.
+CampaignStatistics statistics_with_a_rule(bool has_stopped) {
+  const testing::TemporaryFolder folder;
+  Campaign campaign = testing::quick_campaign(10);
+  campaign.until = {.of = "timeout", .rate_halfwidth = 0.2, .confidence = 0.8};
+  {
+    Store store(folder.path(), stored_campaign(campaign, {}), stored_variants(campaign, {"", ""}),
+                campaign.seeds, false);
+    for (const int variant : {0, 1}) {
+      for (std::int64_t n = 0; n < 8; ++n) {
+        store.add(
+            testing::example_row(variant, campaign.seeds.at(n), n == 2 ? "timeout" : "reached"),
+            false);
+      }
+    }
+    if (has_stopped) (void)store.stop_after(campaign.seeds, 6);
+  }
+  return campaign_statistics(StoreReader(folder.path()));
+}
+
+TEST(CampaignStatistics,
+     of_a_campaign_with_a_rule_have_intervals_that_hold_at_any_number_of_seeds) {
+  const CampaignStatistics statistics = statistics_with_a_rule(true);
+  EXPECT_EQ(statistics.done, 12);
+  EXPECT_EQ(statistics.campaign.episodes, 12);
+  const RateInterval interval = confidence_sequence(1, 6, 0.99);
+  EXPECT_EQ(statistics.variants[0].timeout.interval.lower, interval.lower);
+  EXPECT_EQ(statistics.variants[0].timeout.interval.upper, interval.upper);
+  EXPECT_EQ(statistics.variants[1].unsafe.interval.upper, confidence_sequence(0, 6, 0.99).upper);
+}
+
+TEST(CampaignStatistics, say_whether_and_when_a_rule_has_stopped_the_campaign) {
+  const CampaignStatistics stopped = statistics_with_a_rule(true);
+  const auto until = Json::parse(campaign_json(stopped))["until"];
+  EXPECT_EQ(until["of"], "timeout");
+  EXPECT_EQ(until["stopped_after"], 6);
+  EXPECT_EQ(until["variants"]["two"]["rate"], 1.0 / 6.0);
+  EXPECT_EQ(until["variants"]["two"]["interval"][1], confidence_sequence(1, 6, 0.8).upper);
+  EXPECT_NE(campaign_table(stopped).find("Stopped by its rule after 6 of at most 10 seeds"),
+            std::string::npos);
+  const CampaignStatistics going_on = statistics_with_a_rule(false);
+  EXPECT_TRUE(Json::parse(campaign_json(going_on))["until"]["stopped_after"].is_null());
+  EXPECT_NE(campaign_table(going_on).find("has not stopped it"), std::string::npos);
 }
 
 CampaignStatistics filled_statistics(double time = 1.0) {

@@ -1,7 +1,10 @@
 // The file of a store: what is none, what is damaged, and what an earlier version made.
 
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -56,7 +59,8 @@ TEST_F(StoreFileTest, a_change_of_any_column_of_an_episode_is_seen) {
   open(testing::quick_campaign()).add(testing::example_row(0, 7), false);
   EXPECT_NO_THROW(StoreReader(folder.path()).verify());
   const std::string before = content();
-  for (const std::string table : {"episode", "episode_timing", "period", "period_timing"}) {
+  for (const std::string table :
+       {"episode", "episode_timing", "episode_periods", "episode_ocp_ms"}) {
     std::vector<std::string> columns;
     {
       SQLite::Database store = database();
@@ -81,16 +85,22 @@ TEST_F(StoreFileTest, a_checksum_whose_episode_is_gone_is_seen) {
   EXPECT_THROW(StoreReader(folder.path()).verify(), IoError);
 }
 
-/// A store as the first schema had it, with one episode.
-void make_first_store(const std::string& path) {
+/// A store as schema `schema` had it, without an episode.
+void make_old_store(const std::string& path, std::size_t schema) {
   SQLite::Database database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  migrate(database, 0, {store_migrations().front()});
-  const Campaign campaign = testing::quick_campaign();
+  const std::vector<Migration>& all = store_migrations();
+  migrate(database, 0, {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(schema)});
   database.exec(fmt::format(
       "INSERT INTO campaign VALUES (1, 'quick', '{}', '5 to 8', 'none', 1, 1, 8)", kVersion));
-  for (const StoredVariant& variant : stored_variants(campaign, {"", ""})) {
+  for (const StoredVariant& variant : stored_variants(testing::quick_campaign(), {"", ""})) {
     insert_variant(database, variant, variant.id);
   }
+}
+
+/// A store as the first schema had it, with one episode.
+void make_first_store(const std::string& path) {
+  make_old_store(path, 1);
+  SQLite::Database database(path, SQLite::OPEN_READWRITE);
   database.exec(
       "INSERT INTO episode VALUES (1, 6, 'reached', '', 2, 0.2, 0, 1.5, 9.0, 0, 0, 0, 0, 1, 0, '');"
       "INSERT INTO episode_timing VALUES (1, 6, 1e9, 2.0, 0);"
@@ -111,11 +121,54 @@ TEST_F(StoreFileTest, of_an_older_schema_is_brought_up_to_date_with_its_episodes
   EXPECT_EQ(rows[0].version, StoreReader(folder.path()).campaign().version);
 }
 
+TEST_F(StoreFileTest, periods_of_an_older_schema_keep_their_numbers_and_checksums) {
+  // The checksum is that which the version with this schema has written.
+  make_old_store(path(), 6);
+  {
+    SQLite::Database store = database();
+    store.exec(
+        "INSERT INTO episode VALUES (1, 6, 'collision', '', 3, NULL, 1, -0.5, 9.0, 0.1, 0.2, 0.3, "
+        "NULL, 1, 0, '', '1.2', 0, NULL, 0.25);"
+        "INSERT INTO episode_timing VALUES (1, 6, 1e9, 2.0, 0);"
+        "INSERT INTO period VALUES (1, 6, 0, 0.1, 0.30000000000000004, 0), (1, 6, 1, 1e-300, NULL, "
+        "1), (1, 6, 2, 9e999, 0, 1);"
+        "INSERT INTO period_timing VALUES (1, 6, 0, 0.5), (1, 6, 1, 1e-9), (1, 6, 2, 3);"
+        "INSERT INTO episode_checksum VALUES (1, 6, 1155249623647164558)");
+  }
+  (void)open(testing::quick_campaign());
+  std::vector<PeriodRow> periods;
+  const StoreReader store(folder.path());
+  store.for_each_period(1, [&](std::uint64_t seed, std::int64_t period, const PeriodRow& row) {
+    EXPECT_EQ(seed, 6U);
+    EXPECT_EQ(period, std::ssize(periods));
+    periods.push_back(row);
+  });
+  ASSERT_EQ(periods.size(), 3U);
+  EXPECT_EQ(periods[0].certified, 0.1);
+  EXPECT_EQ(periods[0].published, 0.30000000000000004);
+  EXPECT_EQ(periods[1].certified, 1e-300);
+  EXPECT_TRUE(std::isnan(periods[1].published));
+  EXPECT_EQ(periods[2].certified, std::numeric_limits<double>::infinity());
+  EXPECT_EQ(periods[2].published, 0.0);
+  EXPECT_FALSE(periods[0].unsafe);
+  EXPECT_TRUE(periods[1].unsafe);
+  EXPECT_EQ(periods[1].ocp_ms, 1e-9);
+  EXPECT_EQ(periods[2].ocp_ms, 3.0);
+  EXPECT_NO_THROW(store.verify());
+  // Whoever reads the former tables by SQL finds what was in them.
+  SQLite::Database sql = database();
+  EXPECT_EQ(sql.execAndGet("SELECT certified FROM period WHERE period = 0").getDouble(), 0.1);
+  EXPECT_EQ(sql.execAndGet("SELECT sum(unsafe) FROM period WHERE seed = 6").getInt(), 2);
+  EXPECT_TRUE(sql.execAndGet("SELECT published FROM period WHERE period = 1").isNull());
+  EXPECT_EQ(sql.execAndGet("SELECT ocp_ms FROM period_timing WHERE period = 2").getDouble(), 3.0);
+}
+
 TEST(StoreMigration, applies_what_is_missing_one_whole_step_at_a_time) {
   SQLite::Database database(":memory:", SQLite::OPEN_READWRITE);
-  const std::vector<std::string> steps{
-      "CREATE TABLE t (a)", "ALTER TABLE t ADD COLUMN b",
-      "INSERT INTO t VALUES (1, 2); INSERT INTO missing VALUES (1)"};
+  const std::vector<Migration> steps{
+      {.sql = "CREATE TABLE t (a)"},
+      {.sql = "ALTER TABLE t ADD COLUMN b"},
+      {.sql = "INSERT INTO t VALUES (1, 2)", .after = "INSERT INTO missing VALUES (1)"}};
   migrate(database, 0, {steps[0]});
   database.exec("INSERT INTO t VALUES (7)");
   EXPECT_THROW(migrate(database, 1, steps), SQLite::Exception);

@@ -1,0 +1,167 @@
+#include "harness/campaign/store/joined_store.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <initializer_list>
+
+#include <SQLiteCpp/SQLiteCpp.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "harness/campaign/store/store_rows.hpp"
+#include "harness/campaign/store/store_schema.hpp"
+#include "harness/errors.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr int kJoinedCacheSize = 65'536;  // KiB
+
+/// A path as a URI that opens the file for reading only.
+std::string read_only_uri(const std::string& path) {
+  std::string uri = "file:";
+  for (const char c : path) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '/' || c == '.' ||
+                       c == '_' || c == '-';
+    uri += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri + "?mode=ro";
+}
+
+/// Columns of a table but those named in `without`.
+std::vector<std::string> columns_of(SQLite::Database& database, const std::string& table,
+                                    std::initializer_list<std::string> without) {
+  SQLite::Statement info(database, "SELECT name FROM pragma_table_info(?)");
+  info.bind(1, table);
+  std::vector<std::string> columns;
+  while (info.executeStep()) {
+    const std::string name = info.getColumn(0).getString();
+    if (std::ranges::find(without, name) == without.end()) columns.push_back(name);
+  }
+  return columns;
+}
+
+/// Detaches the store that is attached, however its work ends.
+class Attached {
+ public:
+  Attached(SQLite::Database& database, const std::string& folder) : database_(database) {
+    SQLite::Statement attach(database, "ATTACH ? AS shard");
+    attach.bind(1, read_only_uri(folder + "/" + kStoreFile));
+    attach.exec();
+  }
+  ~Attached() { (void)database_.tryExec("DETACH shard"); }
+  Attached(const Attached&) = delete;
+  Attached& operator=(const Attached&) = delete;
+
+ private:
+  SQLite::Database& database_;
+};
+
+}  // namespace
+
+JoinedStore::JoinedStore(const std::string& path, const StoredCampaign& campaign,
+                         const std::vector<StoredVariant>& variants)
+    : database_(path, SQLite::OPEN_READWRITE | SQLite::OPEN_URI, kStorePatience) {
+  // Until it has its name, nobody needs it: nothing is kept with which to undo what is done to it.
+  database_.exec("PRAGMA page_size = 16384; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF");
+  database_.exec(fmt::format("PRAGMA cache_size = -{}", kJoinedCacheSize));
+  migrate(database_, 0, store_migrations());
+  insert_campaign(database_, campaign);
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    insert_variant(database_, variants[i], static_cast<std::int64_t>(i));
+  }
+}
+
+void JoinedStore::add(const std::string& folder, const MergePolicy& policy) {
+  const Attached attached(database_, folder);
+  const Numbers variants = numbers();
+  if (policy.duplicates) {
+    refuse_contradictions(variants, folder);
+  } else {
+    refuse_duplicates(variants, folder);
+  }
+  copy(variants, policy.duplicates);
+}
+
+JoinedStore::Numbers JoinedStore::numbers() {
+  SQLite::Statement statement(database_,
+                              "SELECT s.id, m.id FROM shard.variant s JOIN main.variant m ON "
+                              "m.name = s.name ORDER BY m.id");
+  Numbers variants;
+  while (statement.executeStep()) {
+    variants.emplace_back(statement.getColumn(0).getInt64(), statement.getColumn(1).getInt64());
+  }
+  return variants;
+}
+
+/// The first of `variants` for which `sql` has a row, and the seed that is in it.
+std::optional<JoinedStore::Found> JoinedStore::first_row(const std::string& sql,
+                                                         const Numbers& variants) {
+  SQLite::Statement statement(database_, sql);
+  for (const auto& [from, to] : variants) {
+    statement.bind(1, from);
+    statement.bind(2, to);
+    if (statement.executeStep()) {
+      const std::int64_t seed = statement.getColumn(0).getInt64();
+      SQLite::Statement name(database_, "SELECT name FROM main.variant WHERE id = ?");
+      name.bind(1, to);
+      name.executeStep();
+      return Found{.variant = name.getColumn(0).getString(), .seed = seed};
+    }
+    statement.reset();
+  }
+  return std::nullopt;
+}
+
+void JoinedStore::refuse_duplicates(const Numbers& variants, const std::string& folder) {
+  const std::optional<Found> twice = first_row(
+      "SELECT e.seed FROM shard.episode e JOIN main.episode o ON o.variant = ?2 AND o.seed = "
+      "e.seed WHERE e.variant = ?1 LIMIT 1",
+      variants);
+  if (!twice) return;
+  throw InputError({.file = folder,
+                    .found = fmt::format("variant {}, seed {}, which another shard has, too",
+                                         twice->variant, twice->seed),
+                    .expected = "each episode once"});
+}
+
+/// Refuses an episode of which a store before this one has another one.
+void JoinedStore::refuse_contradictions(const Numbers& variants, const std::string& folder) {
+  for (const char* table : kEpisodeTables) {
+    if (is_timing(table)) continue;
+    // The folder of a trace has the variant's number there.
+    const std::vector<std::string> columns =
+        columns_of(database_, table, {"variant", "seed", "trace"});
+    const std::optional<Found> found = first_row(
+        fmt::format("SELECT e.seed FROM shard.{0} e JOIN main.{0} o ON o.variant = ?2 AND o.seed "
+                    "= e.seed WHERE e.variant = ?1 AND (e.{1}) IS NOT (o.{2}) LIMIT 1",
+                    table, fmt::join(columns, ", e."), fmt::join(columns, ", o.")),
+        variants);
+    if (!found) continue;
+    throw InputError({.file = folder,
+                      .key = fmt::format("variant {}, seed {}", found->variant, found->seed),
+                      .found = fmt::format("another {} than a folder before it has", table),
+                      .expected = "the same episode, but for timings"});
+  }
+}
+
+void JoinedStore::copy(const Numbers& variants, bool ignore_duplicates) {
+  SQLite::Transaction transaction(database_);
+  for (const char* table : kEpisodeTables) {
+    SQLite::Statement rows(
+        database_,
+        fmt::format("INSERT {2} INTO main.{0} (variant, {1}) SELECT ?2, {1} FROM shard.{0}"
+                    " WHERE variant = ?1",
+                    table, fmt::join(columns_of(database_, table, {"variant"}), ", "),
+                    ignore_duplicates ? "OR IGNORE" : ""));
+    for (const auto& [from, to] : variants) {
+      rows.bind(1, from);
+      rows.bind(2, to);
+      rows.exec();
+      rows.reset();
+    }
+  }
+  transaction.commit();
+}
+
+}  // namespace qsmpc::harness

@@ -1,0 +1,48 @@
+// A store that the rows of others are added to, while nobody else sees it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <SQLiteCpp/Database.h>
+
+#include "harness/campaign/store/merge.hpp"
+#include "harness/campaign/store/store_reader.hpp"
+
+namespace qsmpc::harness {
+
+/// Variants may be numbered differently in each of the stores. Throws SQLite::Exception where a
+/// store cannot be read or written.
+class JoinedStore {
+ public:
+  /// Makes the store of `campaign` in the empty file at `path`.
+  JoinedStore(const std::string& path, const StoredCampaign& campaign,
+              const std::vector<StoredVariant>& variants);
+
+  [[nodiscard]] SQLite::Database& database() { return database_; }
+
+  /// Adds the rows of the store in `folder`, of the same campaign. Throws InputError where it holds
+  /// an episode that is there already, unless `policy` allows that and both agree.
+  void add(const std::string& folder, const MergePolicy& policy);
+
+ private:
+  /// A variant's number there and here.
+  using Numbers = std::vector<std::pair<std::int64_t, std::int64_t>>;
+  struct Found {
+    std::string variant;
+    std::int64_t seed = 0;
+  };
+
+  Numbers numbers();
+  std::optional<Found> first_row(const std::string& sql, const Numbers& variants);
+  void refuse_duplicates(const Numbers& variants, const std::string& folder);
+  void refuse_contradictions(const Numbers& variants, const std::string& folder);
+  void copy(const Numbers& variants, bool ignore_duplicates);
+
+  SQLite::Database database_;
+};
+
+}  // namespace qsmpc::harness

@@ -1,0 +1,48 @@
+#include "harness/statistics/confidence_sequence.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <boost/math/special_functions/gamma.hpp>
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr double kPrior = 0.5;  // both parameters of the beta distribution that is mixed by
+constexpr int kHalvings = 60;   // of the range of a limit: to the last digits of a double
+
+double log_beta(double a, double b) {
+  return boost::math::lgamma(a) + boost::math::lgamma(b) - boost::math::lgamma(a + b);
+}
+
+/// log pˢ (1 − p)ⁿ⁻ˢ, 0 < p < 1.
+double log_likelihood(double events, double others, double p) {
+  return events * std::log(p) + others * std::log1p(-p);
+}
+
+}  // namespace
+
+RateInterval confidence_sequence(std::int64_t events, std::int64_t trials, double confidence) {
+  if (events < 0 || events > trials || !(confidence > 0.0 && confidence < 1.0)) {
+    throw std::invalid_argument("confidence sequence: a count or confidence that cannot be");
+  }
+  if (trials == 0) return {};
+  const auto seen = static_cast<double>(events);
+  const auto others = static_cast<double>(trials - events);
+  // p is outside where its likelihood is not above this.
+  const double least =
+      log_beta(kPrior + seen, kPrior + others) - log_beta(kPrior, kPrior) + std::log1p(-confidence);
+  const double rate = seen / (seen + others);
+  /// The last place between `outside` and the rate, which is inside, that is outside.
+  const auto limit = [&](double outside) {
+    double inside = rate;
+    for (int n = 0; n < kHalvings; ++n) {
+      const double middle = 0.5 * (outside + inside);
+      (log_likelihood(seen, others, middle) > least ? inside : outside) = middle;
+    }
+    return outside;
+  };
+  return {.lower = events == 0 ? 0.0 : limit(0.0), .upper = events == trials ? 1.0 : limit(1.0)};
+}
+
+}  // namespace qsmpc::harness

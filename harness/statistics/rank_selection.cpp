@@ -1,0 +1,137 @@
+#include "harness/statistics/rank_selection.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <stdexcept>
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr unsigned kKeyBits = 64;
+constexpr unsigned kBitsPerPass = 16;
+constexpr std::uint64_t kSign = std::uint64_t{1} << 63U;
+
+/// Whole numbers in the order of the values.
+std::uint64_t key_of(double value) {
+  const auto bits = std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value);  // −0 is 0
+  return (bits & kSign) != 0 ? ~bits : bits | kSign;
+}
+
+double value_of(std::uint64_t key) {
+  return std::bit_cast<double>((key & kSign) != 0 ? key & ~kSign : ~key);
+}
+
+/// Where a wanted value is known to be: among those whose keys begin with some bits.
+struct Candidate {
+  std::uint64_t prefix = 0;
+  std::int64_t rank = 0;   ///< among these
+  std::int64_t count = 0;  ///< how many these are
+};
+
+class RankSelection {
+ public:
+  RankSelection(const ValueStream& each, std::int64_t count, const std::vector<std::int64_t>& ranks)
+      : each_(each) {
+    for (const std::int64_t rank : ranks) {
+      if (rank < 1 || rank > count) throw std::invalid_argument("ranks: one that is not there");
+      wanted_.push_back({.prefix = 0, .rank = rank, .count = count});
+    }
+  }
+
+  std::vector<double> values(std::int64_t most_kept) {
+    while (known_bits_ < kKeyBits && candidates() > most_kept) narrow();
+    if (known_bits_ < kKeyBits) return sorted();
+    std::vector<double> values;
+    for (const Candidate& one : wanted_) values.push_back(value_of(one.prefix));
+    return values;
+  }
+
+ private:
+  [[nodiscard]] std::uint64_t prefix_of(std::uint64_t key) const {
+    return known_bits_ == 0 ? 0 : key >> (kKeyBits - known_bits_);
+  }
+
+  [[nodiscard]] std::int64_t candidates() const {
+    std::map<std::uint64_t, std::int64_t> counts;
+    for (const Candidate& one : wanted_) counts[one.prefix] = one.count;
+    std::int64_t sum = 0;
+    for (const auto& [prefix, count] : counts) sum += count;
+    return sum;
+  }
+
+  /// Reads the stream, and knows kBitsPerPass more bits of each.
+  void narrow() {
+    constexpr std::uint64_t kBuckets = std::uint64_t{1} << kBitsPerPass;
+    std::map<std::uint64_t, std::vector<std::int64_t>> counts;
+    for (const Candidate& one : wanted_) counts[one.prefix].resize(kBuckets);
+    const unsigned shift = kKeyBits - known_bits_ - kBitsPerPass;
+    each_([&](double value) {
+      const std::uint64_t key = key_of(value);
+      const auto found = counts.find(prefix_of(key));
+      if (found != counts.end()) ++found->second[(key >> shift) & (kBuckets - 1)];
+    });
+    for (Candidate& one : wanted_) {
+      const std::vector<std::int64_t>& buckets = counts.at(one.prefix);
+      std::uint64_t bucket = 0;
+      while (bucket + 1 < kBuckets && one.rank > buckets[bucket]) one.rank -= buckets[bucket++];
+      one.prefix = (one.prefix << kBitsPerPass) | bucket;
+      one.count = buckets[bucket];
+    }
+    known_bits_ += kBitsPerPass;
+  }
+
+  /// Reads the stream, and sorts what may be meant.
+  [[nodiscard]] std::vector<double> sorted() const {
+    std::map<std::uint64_t, std::vector<double>> kept;
+    for (const Candidate& one : wanted_) kept[one.prefix];
+    each_([&](double value) {
+      const auto found = kept.find(prefix_of(key_of(value)));
+      if (found != kept.end()) found->second.push_back(value);
+    });
+    for (auto& [prefix, values] : kept) std::ranges::sort(values);
+    std::vector<double> values;
+    for (const Candidate& one : wanted_) {
+      values.push_back(kept.at(one.prefix).at(static_cast<std::size_t>(one.rank - 1)));
+    }
+    return values;
+  }
+
+  const ValueStream& each_;
+  std::vector<Candidate> wanted_{};
+  unsigned known_bits_ = 0;
+};
+
+}  // namespace
+
+std::vector<double> values_at_ranks(const ValueStream& each, std::int64_t count,
+                                    const std::vector<std::int64_t>& ranks,
+                                    std::int64_t most_kept) {
+  return RankSelection(each, count, ranks).values(most_kept);
+}
+
+Distribution distribution_of(const ValueStream& each, std::int64_t count, std::int64_t most_kept) {
+  SortedDistribution sorted(count);
+  if (count <= most_kept) {
+    std::vector<double> values;
+    values.reserve(static_cast<std::size_t>(count));
+    each([&](double value) { values.push_back(value); });
+    std::ranges::sort(values);
+    for (const double value : values) sorted.add(value);
+    return sorted.result();
+  }
+  double sum = 0.0;
+  each([&](double value) { sum += value; });
+  std::vector<std::int64_t> ranks;
+  for (const double share : distribution_shares()) ranks.push_back(nearest_rank(share, count));
+  const std::vector<double> values = values_at_ranks(each, count, ranks, most_kept);
+  return {.median = values[0],
+          .p95 = values[1],
+          .p99 = values[2],
+          .max = values[3],
+          .mean = sum / static_cast<double>(count)};
+}
+
+}  // namespace qsmpc::harness
