@@ -1,13 +1,57 @@
 #include "controller/chance/sampled_clearances.hpp"
 
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "models/constants.hpp"
+
 namespace qsmpc::controller {
 
 const Eigen::ArrayXd& SampledClearances::look(Eigen::Index stage, const SampledPaths& paths) {
-  NearestFaces& nearest = stages_[stage - 1];
+  Eigen::ArrayXd& least = stages_[stage - 1];
   states_ = paths.states(stage).leftCols(paths.paths());
-  clearances_with_slopes(states_, unsafe_, stage, scratch_, nearest);
-  nearest.distance = nearest.distance.min(1e9);
-  return nearest.distance;
+  least.setConstant(states_.cols(), kInfinity);
+  std::optional<double> bearing;  // of the sines at hand
+  for (const DiscView& disc : unsafe_.discs()) {
+    const DiscPlacement& placement = disc.placement;
+    if (placement.at_position()) {
+      for (const RegionPointer& region : disc.regions) {
+        region->lower_to_distances(stage, states_, least);
+      }
+      continue;
+    }
+    // Discs that lie in the same direction have their sines in common, which take longest.
+    if (bearing != placement.bearing()) turn(placement);
+    bearing = placement.bearing();
+    centres_ = states_;
+    centres_.row(placement.x()).array() += placement.reach() * cosines_.transpose();
+    centres_.row(placement.y()).array() += placement.reach() * sines_.transpose();
+    for (const RegionPointer& region : disc.regions) {
+      region->lower_to_distances(stage, centres_, least);
+    }
+  }
+  least = least.min(1e9);
+  return least;
+}
+
+/// Cosines and sines of the angle at which the discs with this bearing are seen.
+void SampledClearances::turn(const DiscPlacement& placement) {
+  cosines_.resize(states_.cols());
+  sines_.resize(states_.cols());
+  for (Eigen::Index i = 0; i < states_.cols(); ++i) {
+    const double angle = states_(placement.heading(), i) + placement.bearing();
+    cosines_[i] = std::cos(angle);
+    sines_[i] = std::sin(angle);
+  }
+}
+
+/// The derivative of a path's clearance by its state.
+Points::ConstColXpr SampledClearances::slope(Eigen::Index stage, const SampledPaths& paths,
+                                             Eigen::Index path) {
+  one_ = paths.states(stage).col(path);
+  clearances_with_slopes(one_, unsafe_, stage, scratch_, nearest_);
+  return std::as_const(nearest_.slope).col(0);
 }
 
 }  // namespace qsmpc::controller

@@ -17,16 +17,15 @@ class SampledClearances {
   /// Clearances (m) of the paths at a stage, 1 … horizon, where they are now; no more than 1e9.
   const Eigen::ArrayXd& look(Eigen::Index stage, const SampledPaths& paths);
   /// The same, as they were.
-  [[nodiscard]] const Eigen::ArrayXd& at(Eigen::Index stage) const {
-    return stages_[stage - 1].distance;
-  }
-  /// Adds −Σ_i multipliers_i ∂clearance_i/∂states to the adjoint of the stage.
+  [[nodiscard]] const Eigen::ArrayXd& at(Eigen::Index stage) const { return stages_[stage - 1]; }
+  /// Adds −Σ_i multipliers_i ∂clearance_i/∂states to the adjoint of the stage. The paths are where
+  /// they were looked at.
   template <class Multipliers>
-  void subtract(Eigen::Index stage, const Multipliers& multipliers, SampledPaths& paths) const {
-    const Points& slope = stages_[stage - 1].slope;
+  void subtract(Eigen::Index stage, const Multipliers& multipliers, SampledPaths& paths) {
     Points& adjoint = paths.adjoint(stage);
-    for (Eigen::Index i = 0; i < slope.cols(); ++i) {
-      if (multipliers[i] != 0.0) adjoint.col(i) -= multipliers[i] * slope.col(i);
+    for (Eigen::Index i = 0; i < paths.paths(); ++i) {
+      // Few of them are near enough to anything to count.
+      if (multipliers[i] != 0.0) adjoint.col(i) -= multipliers[i] * slope(stage, paths, i);
     }
   }
   /// The share of paths that are unsafe at a stage.
@@ -35,9 +34,20 @@ class SampledClearances {
   }
 
  private:
+  void turn(const DiscPlacement& placement);
+  [[nodiscard]] Points::ConstColXpr slope(Eigen::Index stage, const SampledPaths& paths,
+                                          Eigen::Index path);
+
   const UnsafeSet& unsafe_;
-  std::vector<NearestFaces> stages_;
+  std::vector<Eigen::ArrayXd> stages_;
+  // Scratch of `look`.
   Points states_;
+  Points centres_;
+  Eigen::ArrayXd cosines_;  // of heading and bearing, of the disc that was placed last
+  Eigen::ArrayXd sines_;
+  // Scratch of `slope`.
+  Points one_;  // of the states
+  NearestFaces nearest_;
   ClearanceScratch scratch_;
 };
 

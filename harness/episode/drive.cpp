@@ -103,10 +103,17 @@ struct Drive::Parts {
     const models::GaussianSampler initial(belief.mean, belief.covariance);
     state = initial.sample({.seed = options.seed, .stream = models::RandomStream::kInitialState});
     guarded([&] {
-      plant = make_plant(scenario, draw_variation(scenario.disturbance, plant_seed()));
+      take_plant();
       trace.motion.push_back(plant->reset(state));
       observe_state();
     });
+  }
+
+  /// The plant of this drive. Where all drives have the same it is made once, as a vehicle takes
+  /// long to load and to settle.
+  void take_plant() {
+    if (plant && !varies(scenario.disturbance)) return;
+    plant = make_plant(scenario, draw_variation(scenario.disturbance, plant_seed()));
   }
 
   /// Does `work`; what the simulator refuses is a fault, and an interrupt ends the episode, too.
@@ -128,7 +135,8 @@ struct Drive::Parts {
     trace.fault = fault;
     trace.fault_of = fault_of;
     trace.final_state = state;
-    plant.reset();
+    // One that broke, or was stopped midway, is not used again.
+    if (how == Outcome::kFault || how == Outcome::kInterrupted) plant.reset();
   }
 
   /// What follows from the state at a control instant: what is seen, and the end of the episode.
@@ -263,9 +271,9 @@ struct Drive::Parts {
   models::GaussianSampler disturbance;
   models::GaussianSampler sensor;
   std::optional<std::string> vehicle_digest;  // once it is known
+  std::unique_ptr<Plant> plant;               // of the last drive, reset for every one
   // Of the episode at hand.
   DriveOptions options;
-  std::unique_ptr<Plant> plant;  // while it goes on
   int period = 0;
   controller::Gaussian belief;
   Eigen::VectorXd state;

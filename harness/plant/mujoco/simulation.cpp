@@ -12,6 +12,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/mujoco/mujoco_errors.hpp"
+#include "harness/plant/mujoco/drawn_geoms.hpp"
 #include "harness/threads/interruption.hpp"
 #include "models/constants.hpp"
 #include "models/linear_algebra.hpp"
@@ -94,7 +95,12 @@ Simulation::Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded)
     const int joint = scalar_joint(named, name);
     rolling_.push_back({.dof = model_->jnt_dofadr[joint], .radius = wheel_radius(named, joint)});
   }
-  if (setup.solid) solid_.emplace(named, states_.carrier());
+  find_tipping_joints();
+  if (setup.solid) {
+    solid_.emplace(named, states_.carrier());
+  } else {
+    leave_out_drawn_geoms(*model_);
+  }
   settle(loaded.mapping.settling);
 }
 

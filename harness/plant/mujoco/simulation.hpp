@@ -104,6 +104,7 @@ class Simulation {
 
  private:
   Simulation(const MujocoPlantSetup& setup, LoadedVehicle loaded);
+  void find_tipping_joints();
   void settle(double duration);
   void run_idle(double duration);
   void settle_with_feedback(double duration);
@@ -134,6 +135,7 @@ class Simulation {
     double radius;
   };
   std::vector<RollingWheel> rolling_;
+  std::vector<int> tipping_;  // free joints of bodies that can tip over
   std::optional<SolidMap> solid_;
   int period_steps_;
   long delay_steps_;

@@ -107,12 +107,17 @@ double Simulation::measured_response(const FeedbackBinding& feedback) {
                         .expected = "actuators of a feedback loop that move what it holds"});
 }
 
+void Simulation::find_tipping_joints() {
+  for (int joint = 0; joint < model_->njnt; ++joint) {
+    if (model_->jnt_type[joint] == mjJNT_FREE && !is_ball(*model_, model_->jnt_bodyid[joint])) {
+      tipping_.push_back(joint);
+    }
+  }
+}
+
 double Simulation::tilt() const {
   double largest = 0.0;
-  for (int joint = 0; joint < model_->njnt; ++joint) {
-    if (model_->jnt_type[joint] != mjJNT_FREE || is_ball(*model_, model_->jnt_bodyid[joint])) {
-      continue;
-    }
+  for (const int joint : tipping_) {
     constexpr int kRotation = 3;  // after the position, in qpos
     const int place = model_->jnt_qposadr[joint] + kRotation;
     const auto rotation = [place](const mjtNum* qpos) {
