@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "harness/scenario/scenario.hpp"
+#include "harness/splitting/splitting.hpp"
 
 namespace qsmpc::harness {
 
@@ -70,6 +72,12 @@ struct VariantFamily {
   friend bool operator==(const VariantFamily&, const VariantFamily&) = default;
 };
 
+/// How rare outcomes are looked for.
+struct RareSettings {
+  SplitSettings splitting{};
+  bool certify = true;  ///< whether every drive is certified, so that certificates can be compared
+};
+
 /// Every variant is driven with every seed. The same seed gives every variant the same random
 /// numbers: what differs between variants is paired by seed.
 struct Campaign {
@@ -81,6 +89,9 @@ struct Campaign {
   std::int64_t trace_sample = 0;
   /// The lines of the figure of risk against cost, by name; without any there is no such figure.
   std::vector<VariantFamily> risk_against_cost{};
+  /// Where rare outcomes are looked for: how every seed of a variant also estimates how probable it
+  /// is that a drive is unsafe.
+  std::optional<RareSettings> rare{};
 
   [[nodiscard]] std::int64_t episodes() const {
     return static_cast<std::int64_t>(variants.size()) * seeds.size();
@@ -89,5 +100,8 @@ struct Campaign {
 
 /// "none", "all", or "failures, sample N".
 [[nodiscard]] std::string traces_text(const Campaign& campaign);
+
+/// "200 particles, 1 killed, floor 1e-12, certified"; empty where rare outcomes are not looked for.
+[[nodiscard]] std::string rare_text(const Campaign& campaign);
 
 }  // namespace qsmpc::harness

@@ -77,7 +77,9 @@ std::string campaign_plan_text(const Campaign& campaign) {
   }
   text += "\n" + row("seeds", seeds_in_words(campaign.seeds));
   text += row("episodes", fmt::format("{}", campaign.episodes()));
-  return text + row("traces", traces_in_words(campaign));
+  text += row("traces", traces_in_words(campaign));
+  if (campaign.rare) text += row("rare", "of each seed: " + rare_text(campaign));
+  return text;
 }
 
 std::string campaign_plan_json(const Campaign& campaign) {
@@ -99,6 +101,13 @@ std::string campaign_plan_json(const Campaign& campaign) {
   json["episodes"] = campaign.episodes();
   json["traces"] = trace_keeping_name(campaign.traces);
   json["trace_sample"] = campaign.trace_sample;
+  if (campaign.rare) {
+    const SplitSettings& splitting = campaign.rare->splitting;
+    json["rare"] = {{"particles", splitting.particles},
+                    {"killed", splitting.killed},
+                    {"floor", splitting.floor},
+                    {"certify", campaign.rare->certify}};
+  }
   return json_text(json);
 }
 

@@ -33,6 +33,7 @@ class CampaignReader {
     if (const YamlNode* node = take("plants")) read_plants(*node);
     read_seeds_or_say_why_not();
     read_traces();
+    read_rare();
     draft_.families = read_families(root_.section("figure"), tree_.find("figure"), problems_);
     root_.refuse_unread();
     return std::move(draft_);
@@ -46,6 +47,7 @@ class CampaignReader {
   void read_plants(const YamlNode& node);
   void read_seeds_or_say_why_not();
   void read_traces();
+  void read_rare();
 
   /// The value of a key, which is then known.
   const YamlNode* take(const std::string& key) {
@@ -151,6 +153,22 @@ void CampaignReader::read_traces() {
   if (root_.has("trace_sample") && draft_.traces != TraceKeeping::kFailures) {
     root_.note("trace_sample", "no such key without traces: failures");
   }
+}
+
+void CampaignReader::read_rare() {
+  if (!root_.has("rare")) return;
+  Section section = root_.section("rare");
+  RareSettings rare;
+  SplitSettings& splitting = rare.splitting;
+  splitting.particles = section.whole("particles", splitting.particles, {2, kMostRareParticles});
+  splitting.killed = section.whole("killed", splitting.killed, {1, kMostRareParticles - 1});
+  splitting.floor = section.number("floor", splitting.floor, kRareFloor);
+  if (splitting.killed >= splitting.particles) {
+    section.note("killed", fmt::format("fewer than the {} particles", splitting.particles));
+  }
+  rare.certify = section.flag("certify", rare.certify);
+  section.refuse_unread();
+  draft_.rare = rare;
 }
 
 }  // namespace

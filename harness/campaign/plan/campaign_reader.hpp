@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,7 @@ struct CampaignDraft {
   TraceKeeping traces = TraceKeeping::kNone;
   std::int64_t trace_sample = 0;
   std::vector<FamilyDraft> families{};
+  std::optional<RareSettings> rare{};
 };
 
 /// Reads `tree`. Everything wrong with it is noted in `problems`, and left out of what is returned.

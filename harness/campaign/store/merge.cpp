@@ -53,6 +53,7 @@ void require_same(const StoreReader& first, const StoreReader& other, const std:
   require("version", found.version, expected.version);
   require("seeds", found.seeds, expected.seeds);
   require("traces", found.traces, expected.traces);
+  require("rare", found.rare, expected.rare);
   require("figure.risk_against_cost", families_text(found.risk_against_cost),
           families_text(expected.risk_against_cost));
   require("shards", fmt::format("{}", found.shard.count), fmt::format("{}", expected.shard.count));

@@ -65,6 +65,7 @@ std::optional<Difference> difference_of(const StoredCampaign& stored, const Stor
   }
   if (stored.seeds != asked.seeds) return Difference{"seeds", stored.seeds, asked.seeds};
   if (stored.traces != asked.traces) return Difference{"traces", stored.traces, asked.traces};
+  if (stored.rare != asked.rare) return Difference{"rare", stored.rare, asked.rare};
   if (stored.shard != asked.shard) {
     return Difference{"--shard", shard(stored.shard), shard(asked.shard)};
   }
@@ -118,7 +119,8 @@ StoredCampaign stored_campaign(const Campaign& campaign, const Shard& shard) {
           .shard = shard,
           .episodes = static_cast<std::int64_t>(campaign.variants.size()) *
                       shard.share(campaign.seeds.size()),
-          .risk_against_cost = campaign.risk_against_cost};
+          .risk_against_cost = campaign.risk_against_cost,
+          .rare = rare_text(campaign)};
 }
 
 std::vector<StoredVariant> stored_variants(const Campaign& campaign,

@@ -25,7 +25,11 @@ constexpr std::array kQueries{
     "SELECT period, ocp_ms FROM period_timing WHERE variant = ? AND seed = ? ORDER BY period",
     "SELECT points FROM path WHERE variant = ? AND seed = ?",
     "SELECT believed_max, believed_sum FROM episode WHERE variant = ? AND seed = ? AND "
-    "(believed_max IS NOT NULL OR believed_sum IS NOT NULL)"};
+    "(believed_max IS NOT NULL OR believed_sum IS NOT NULL)",
+    "SELECT particles, floor, probability, collision, left_bounds, levels, drives, periods, "
+    "extinct, "
+    "below_floor, plain_unsafe, plain_periods, plain_faults, certified, found FROM rare_run WHERE "
+    "variant = ? AND seed = ?"};
 constexpr std::size_t kFirstQueries = 5;  // that checksums have had from the beginning
 
 using Hash = Fnv1a<std::uint64_t>;
@@ -49,7 +53,8 @@ class Checksums {
       : statements_{
             SQLite::Statement(database, kQueries[0]), SQLite::Statement(database, kQueries[1]),
             SQLite::Statement(database, kQueries[2]), SQLite::Statement(database, kQueries[3]),
-            SQLite::Statement(database, kQueries[4]), SQLite::Statement(database, kQueries[5])} {}
+            SQLite::Statement(database, kQueries[4]), SQLite::Statement(database, kQueries[5]),
+            SQLite::Statement(database, kQueries[6])} {}
 
   std::int64_t of(std::int64_t variant, std::int64_t seed) {
     Hash hash;

@@ -44,6 +44,7 @@ struct StoredCampaign {
   std::int64_t episodes = 0;  ///< of this shard, when all are done
   /// Campaign::risk_against_cost. No episode depends on it: the store takes what it is now.
   std::vector<VariantFamily> risk_against_cost{};
+  std::string rare{};  ///< rare_text of the campaign
 
   friend bool operator==(const StoredCampaign&, const StoredCampaign&) = default;
 };
@@ -86,6 +87,10 @@ class StoreReader {
   void for_each_path(std::int64_t variant, std::int64_t most,
                      const std::function<void(const std::string& outcome,
                                               const std::vector<PathPoint>& path)>& visit) const;
+  /// What the episodes of a variant say of rare outcomes, by seed; those that say nothing are left
+  /// out.
+  void for_each_rare(std::int64_t variant,
+                     const std::function<void(std::uint64_t seed, const RareRow&)>& visit) const;
   /// A number of a variant's episodes, ascending; of those that did not fault and have one.
   void for_each_sorted(std::int64_t variant, EpisodeNumber number,
                        const std::function<void(double)>& visit) const;

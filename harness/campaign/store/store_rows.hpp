@@ -38,8 +38,8 @@ inline constexpr int kEpisodeColumns = 23;
 [[nodiscard]] std::int64_t stored_seed(std::uint64_t seed);
 
 /// The tables whose rows belong to an episode; `variant` is a column of each.
-inline constexpr std::array kEpisodeTables{"episode", "episode_timing", "path",
-                                           "period",  "period_timing",  "episode_checksum"};
+inline constexpr std::array kEpisodeTables{
+    "episode", "episode_timing", "path", "period", "period_timing", "rare_run", "episode_checksum"};
 
 /// What the table of paths holds: JSON, a list of pairs. Throws SQLite::Exception of another text.
 [[nodiscard]] std::vector<PathPoint> path_of(const std::string& text);
