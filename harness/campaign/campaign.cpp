@@ -81,4 +81,11 @@ std::string traces_text(const Campaign& campaign) {
   return fmt::format("{}, sample {}", name, campaign.trace_sample);
 }
 
+std::string rare_text(const Campaign& campaign) {
+  if (!campaign.rare) return {};
+  const SplitSettings& splitting = campaign.rare->splitting;
+  return fmt::format("{} particles, {} killed, floor {}, {}", splitting.particles, splitting.killed,
+                     splitting.floor, campaign.rare->certify ? "certified" : "not certified");
+}
+
 }  // namespace qsmpc::harness

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "harness/scenario/scenario.hpp"
+#include "harness/splitting/splitting.hpp"
 
 namespace qsmpc::harness {
 
@@ -100,6 +101,12 @@ struct StopCriterion {
 /// "unsafe to +-0.001 at 99 %"; "none" without one.
 [[nodiscard]] std::string until_text(const std::optional<StopCriterion>& until);
 
+/// How rare outcomes are looked for.
+struct RareSettings {
+  SplitSettings splitting{};
+  bool certify = true;  ///< whether every drive is certified, so that certificates can be compared
+};
+
 /// Every variant is driven with every seed. The same seed gives every variant the same random
 /// numbers: what differs between variants is paired by seed.
 struct Campaign {
@@ -113,6 +120,9 @@ struct Campaign {
   std::vector<VariantFamily> risk_against_cost{};
   /// Fewer seeds than `seeds` are driven where fewer suffice.
   std::optional<StopCriterion> until{};
+  /// Where rare outcomes are looked for: how every seed of a variant also estimates how probable it
+  /// is that a drive is unsafe.
+  std::optional<RareSettings> rare{};
 
   /// At most.
   [[nodiscard]] std::int64_t episodes() const {
@@ -122,5 +132,8 @@ struct Campaign {
 
 /// "none", "all", or "failures, sample N".
 [[nodiscard]] std::string traces_text(const Campaign& campaign);
+
+/// "200 particles, 1 killed, floor 1e-12, certified"; empty where rare outcomes are not looked for.
+[[nodiscard]] std::string rare_text(const Campaign& campaign);
 
 }  // namespace qsmpc::harness

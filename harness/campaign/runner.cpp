@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "harness/campaign/stopping.hpp"
+#include "harness/campaign/rare/rare_run.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/episode/driver_pool.hpp"
@@ -128,11 +129,21 @@ class CampaignRun {
     // What was cut short says nothing, and will be driven again.
     if (trace.outcome == Outcome::kInterrupted || task.seed_index >= seed_end_) return;
     EpisodeRow row = episode_row(EpisodeView(trace), store_.variant_ids()[task.variant]);
+    if (!add_rare(task, row)) return;
     if (keeps_trace(task, row)) keep(trace, row);
     row.timing.wall_ms = 1e3 * seconds_since(start);
     row.timing.finished_at = unix_time();
     store_.add(row, task.again);
     count(row, task);
+  }
+
+  /// What the seed says of rare outcomes, where they are looked for; false if interrupted. It takes
+  /// as long as many episodes, so that the first wish to stop ends it.
+  bool add_rare(const Task& task, EpisodeRow& row) {
+    if (!campaign_.rare) return true;
+    row.rare = rare_run(campaign_.variants[task.variant].resolved, *campaign_.rare, row.seed,
+                        [this, &task] { return stopped() || task.seed_index >= seed_end_; });
+    return row.rare.has_value();
   }
 
   [[nodiscard]] bool keeps_trace(const Task& task, const EpisodeRow& row) const {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/campaign/rare/rare_scenarios.hpp"
 #include "harness/campaign/statistics/campaign_csv.hpp"
 #include "harness/campaign/statistics/campaign_json.hpp"
 #include "harness/campaign/statistics/campaign_table.hpp"
@@ -48,6 +49,7 @@ CampaignStatistics write_campaign_results(const std::string& folder, std::size_t
   }
   write_file(folder + "/" + kPageFile,
              campaign_page(statistics, worst_with_files(store, folder, worst)));
+  write_rare_scenarios(store, folder);
   write_file(folder + "/" + kNumbersFile, campaign_json(statistics));
   return statistics;
 }

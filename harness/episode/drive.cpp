@@ -44,10 +44,11 @@ std::string digest_of(const Scenario& scenario) {
 }
 
 Trace header_of(const Scenario& scenario, const models::SystemDescription& system,
-                std::uint64_t seed) {
+                std::uint64_t seed, const std::vector<models::NoiseSeed>& noise) {
   Trace trace;
   trace.scenario = scenario;
   trace.scenario.seed = seed;
+  trace.scenario.disturbance.seeds = noise;
   trace.scenario_text = to_yaml(trace.scenario);
   trace.system = system;
   trace.seed = seed;
@@ -90,6 +91,17 @@ struct Drive::Parts {
     return options.plant_seed.value_or(options.seed);
   }
 
+  [[nodiscard]] const std::vector<models::NoiseSeed>& noise() const {
+    return options.noise ? *options.noise : scenario.disturbance.seeds;
+  }
+
+  /// The key of this period's numbers of `stream`, which are those of `seed` until other seeds take
+  /// over.
+  [[nodiscard]] models::RandomKey noise_key(models::RandomStream stream, std::uint64_t seed) const {
+    const auto step = static_cast<std::uint64_t>(period);
+    return {.seed = models::noise_seed_at(noise(), seed, step), .stream = stream, .step = step};
+  }
+
   void begin(const DriveOptions& how) {
     options = how;
     period = 0;
@@ -97,7 +109,7 @@ struct Drive::Parts {
     outcome.reset();
     unsafe_outcome.reset();
     belief = first_belief();
-    trace = header_of(scenario, model->description(), options.seed);
+    trace = header_of(scenario, model->description(), options.seed, noise());
     if (!vehicle_digest) vehicle_digest = digest_of(scenario);
     trace.vehicle_digest = *vehicle_digest;
     const models::GaussianSampler initial(belief.mean, belief.covariance);
@@ -161,9 +173,7 @@ struct Drive::Parts {
   /// What is seen of the state in this period.
   [[nodiscard]] Eigen::VectorXd seen() const {
     if (scenario.disturbance.sensor.isZero(0.0)) return state;
-    return state + sensor.sample({.seed = options.seed,
-                                  .stream = models::RandomStream::kSensor,
-                                  .step = static_cast<std::uint64_t>(period)});
+    return state + sensor.sample(noise_key(models::RandomStream::kSensor, options.seed));
   }
 
   [[nodiscard]] controller::Situation situation_of(int at, const controller::Gaussian& believed,
@@ -230,9 +240,8 @@ struct Drive::Parts {
         record_of(situation_of(period, belief, observation), decision, options.certify));
     StepRecord& record = trace.steps.back();
     record.state = state;
-    record.disturbance = disturbance.sample({.seed = plant_seed(),
-                                             .stream = models::RandomStream::kDisturbance,
-                                             .step = static_cast<std::uint64_t>(period)});
+    record.disturbance =
+        disturbance.sample(noise_key(models::RandomStream::kDisturbance, plant_seed()));
     record.residual = unknown_residual(state.size());
     const auto start = Clock::now();
     PlantStep result = drive_plant();
@@ -345,7 +354,8 @@ StepRecord Drive::record_of(const controller::Situation& situation,
 }
 
 Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
-  Trace header = header_of(scenario, model_of(scenario)->description(), seed);
+  Trace header =
+      header_of(scenario, model_of(scenario)->description(), seed, scenario.disturbance.seeds);
   header.vehicle_digest = digest_of(scenario);
   return header;
 }

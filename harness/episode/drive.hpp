@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -20,6 +21,7 @@
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
 #include "models/dynamics/dynamics.hpp"
+#include "models/random/noise_seeds.hpp"
 
 #pragma GCC visibility push(default)
 
@@ -30,6 +32,9 @@ struct DriveOptions {
   /// Seed of the plant's disturbances where it is not `seed`; the initial state and the
   /// measurement noise stay those of `seed`.
   std::optional<std::uint64_t> plant_seed{};
+  /// From these periods on, disturbances and measurement noise are those of other seeds; ascending.
+  /// Where it is nothing, those of the scenario (`disturbance.seeds`).
+  std::optional<std::vector<models::NoiseSeed>> noise{};
   /// Whether decisions are certified. A trace without certificates cannot be written.
   bool certify = true;
 };

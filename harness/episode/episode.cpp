@@ -43,7 +43,10 @@ class EpisodeDriver::Loop {
             std::make_unique<ObjectController>(std::move(object), *scenario_, drive_.model())) {}
 
   Trace run(const EpisodeOptions& options) {
-    const DriveOptions how{.seed = options.seed, .plant_seed = options.plant_seed};
+    const DriveOptions how{.seed = options.seed,
+                           .plant_seed = options.plant_seed,
+                           .noise = options.noise,
+                           .certify = options.certify};
     try {
       drive_.begin(how);
       guarded([&] { controller_->reset(options.seed); });

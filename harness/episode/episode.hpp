@@ -14,11 +14,13 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "harness/control/controller_object.hpp"
 #include "harness/episode/drive.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
+#include "models/random/noise_seeds.hpp"
 
 #pragma GCC visibility push(default)
 
@@ -31,6 +33,11 @@ struct EpisodeOptions {
   /// Seed of the plant's disturbances where it is not `seed`; the initial state and the
   /// measurement noise stay those of `seed`.
   std::optional<std::uint64_t> plant_seed{};
+  /// From these periods on, disturbances and measurement noise are those of other seeds; ascending.
+  /// Where it is nothing, those of the scenario (`disturbance.seeds`).
+  std::optional<std::vector<models::NoiseSeed>> noise{};
+  /// Whether decisions are certified. A trace without certificates cannot be written.
+  bool certify = true;
   /// Called after each step with the trace so far; not with none.
   std::function<void(const Trace&)> on_step{};
   /// Asked before each step; true ends the episode as interrupted.

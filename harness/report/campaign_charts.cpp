@@ -11,6 +11,7 @@
 
 #include "harness/figures/palette.hpp"
 #include "harness/report/campaign_drives.hpp"
+#include "harness/report/rare_section.hpp"
 #include "harness/report/tradeoff_charts.hpp"
 #include "harness/text/printable.hpp"
 
@@ -347,6 +348,8 @@ std::vector<CampaignFigure> campaign_figures(const CampaignStatistics& statistic
   }
   std::vector<Chart> tradeoff = tradeoff_charts(statistics);
   if (!tradeoff.empty()) figures.push_back({.file = kTradeoffFile, .charts = std::move(tradeoff)});
+  std::vector<Chart> rare = rare_charts(statistics);
+  if (!rare.empty()) figures.push_back({.file = kRareFile, .charts = std::move(rare)});
   return figures;
 }
 

@@ -13,6 +13,7 @@
 #include "harness/report/campaign_drives.hpp"
 #include "harness/report/campaign_outcomes.hpp"
 #include "harness/report/page_frame.hpp"
+#include "harness/report/rare_section.hpp"
 #include "harness/report/table_page.hpp"
 #include "harness/report/tradeoff_charts.hpp"
 #include "harness/text/html.hpp"
@@ -262,7 +263,7 @@ std::string campaign_page(const CampaignStatistics& statistics,
        .kind = PageKind::kTables},
       "<h1>" + name + "</h1>\n" + kicker(statistics) + campaign_outcomes(statistics) +
           drives_section(statistics, figures) + worst_table(statistics, worst) +
-          tradeoff_section(statistics) + certificates_table(statistics) +
+          rare_section(statistics) + tradeoff_section(statistics) + certificates_table(statistics) +
           grid(charts_of(figures, kReliabilityFile)) + differences_table(statistics) +
           grid(charts_of(figures, kDifferencesFile)) + rates_section(figures));
 }

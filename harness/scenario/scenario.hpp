@@ -19,6 +19,7 @@
 #include "harness/scenario/plant_mapping.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "models/dynamics/equations/equation_system.hpp"
+#include "models/random/noise_seeds.hpp"
 
 #pragma GCC visibility push(default)
 
@@ -52,6 +53,8 @@ struct Scenario {
     double friction = 0.0;
     double mass = 0.0;
     double wheelbase = 0.0;
+    /// From these periods on, noise and measurement noise are drawn by other seeds; ascending.
+    std::vector<models::NoiseSeed> seeds{};
   };
   /// What a model error was measured of, as far as that is known. It holds for nothing else.
   struct ErrorOrigin {

@@ -25,6 +25,7 @@ enum class RandomStream : std::uint64_t {
   kBootstrap = 6,   ///< weights of an episode in the replicates of a sample of episodes
   kPlanning = 7,    ///< paths that a controller samples, a period an episode
   kSearch = 8,      ///< the order in which the points of a grid of settings are tried
+  kSplitting = 9,   ///< parents and seeds of paths that are split, a generation an episode
   // Controllers that sample; their "episode" is a chunk of samples.
   kSampledInputs = 16,  ///< perturbations of inputs
   kSampledNoise = 17,   ///< process noise of their rollouts

@@ -1,6 +1,7 @@
 #include "harness/campaign/plan/campaign_expansion.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -76,7 +77,8 @@ class Expansion {
                       .traces = draft_.traces,
                       .trace_sample = draft_.trace_sample,
                       .risk_against_cost = {},
-                      .until = draft_.until};
+                      .until = draft_.until,
+                      .rare = draft_.rare};
     if (draft_.scenarios.empty() || !is_small_enough()) return campaign;
     refuse_undone();
     for (const CampaignChoice& scenario : draft_.scenarios) {
@@ -99,6 +101,7 @@ class Expansion {
   void add_scenario(const CampaignChoice& scenario, const std::string& path);
   void add_settings(const CampaignChoice& scenario, const std::string& path,
                     const SettingGroup& settings);
+  void refuse_fixed_noise(const CampaignChoice& scenario, const Scenario& resolved);
   [[nodiscard]] SettingGroup with_grid_point(const SettingGroup& variant, std::int64_t point) const;
   [[nodiscard]] std::vector<std::string> all_settings() const;
 
@@ -209,6 +212,7 @@ void Expansion::add_settings(const CampaignChoice& scenario, const std::string& 
   }
   std::vector<std::string> overrides;
   for (const CampaignSetting& setting : settings.settings) overrides.push_back(setting.text);
+  refuse_fixed_noise(scenario, *resolved);
   for (const CampaignChoice& plant : draft_.plants) {
     std::optional<Scenario> driven = plants_.choose(*resolved, plant, scenario, settings);
     if (!driven) {
@@ -221,6 +225,18 @@ void Expansion::add_settings(const CampaignChoice& scenario, const std::string& 
                          .overrides = overrides,
                          .plant = plant.text,
                          .resolved = std::move(*driven)});
+  }
+}
+
+/// What would make a campaign's drives something else than drives of their seeds.
+void Expansion::refuse_fixed_noise(const CampaignChoice& scenario, const Scenario& resolved) {
+  if (!resolved.disturbance.seeds.empty()) {
+    refusals_.add(scenario.place, "a scenario with disturbance.seeds",
+                  "one whose noise is drawn by the campaign's seeds");
+  }
+  if (draft_.rare && std::isfinite(resolved.controller.deadline)) {
+    refusals_.add(scenario.place, "controller.deadline, and rare outcomes",
+                  "no deadline: a drive is driven again and again, and has to be the same");
   }
 }
 

@@ -129,6 +129,34 @@ std::vector<KeyDescription> figure_keys() {
            .fallback_words = "none"}};
 }
 
+std::vector<KeyDescription> rare_keys() {
+  const SplitSettings fallback;
+  const MappingValue rare{
+      {{.name = "particles",
+        .values = {WholeValue{2, kMostRareParticles}},
+        .words = "drives that are kept at a time: more make an estimate sharper and cost as much "
+                 "more",
+        .fallback = fmt::format("{}", fallback.particles)},
+       {.name = "killed",
+        .values = {WholeValue{1, kMostRareParticles - 1}},
+        .words = "how many of them, fewer than `particles`, are given up at a level",
+        .fallback = fmt::format("{}", fallback.killed)},
+       {.name = "floor",
+        .values = {NumberValue{kRareFloor}},
+        .words = "a run ends where its estimate can only be smaller",
+        .fallback = fmt::format("{}", fallback.floor)},
+       {.name = "certify",
+        .values = {FlagValue{}},
+        .words = "whether all of these drives are certified, so that what is certified can be held "
+                 "against the probability",
+        .fallback = "true"}}};
+  return {{.name = "rare",
+           .values = {rare},
+           .words = "look for [rare outcomes](rare.md): each seed of a variant also estimates, by "
+                    "splitting, how probable an unsafe drive is; a mapping of the keys below",
+           .fallback_words = "they are not looked for"}};
+}
+
 }  // namespace
 
 const std::vector<std::string>& trace_keeping_names() {
@@ -142,7 +170,7 @@ const std::vector<KeyDescription>& campaign_keys() {
   static const std::vector<KeyDescription> keys = [] {
     std::vector<KeyDescription> all;
     for (std::vector<KeyDescription> (*make)() :
-         {head_keys, setting_keys, seed_keys, until_keys, trace_keys, figure_keys}) {
+         {head_keys, setting_keys, seed_keys, until_keys, trace_keys, rare_keys, figure_keys}) {
       for (KeyDescription& key : make()) all.push_back(std::move(key));
     }
     return all;

@@ -17,6 +17,8 @@ inline constexpr std::size_t kLongestCampaignDescription = 500;  ///< bytes; one
 inline constexpr int kMostCampaignSeeds = 1'000'000'000;
 inline constexpr std::size_t kMostListedSeeds = 100'000;
 inline constexpr std::size_t kMostFamilies = 6;  ///< of a figure: as many colours as there are
+inline constexpr int kMostRareParticles = 100'000;
+inline constexpr NumberRange kRareFloor{.least = 0.0, .most = 0.1};
 /// Over the last seed: a store's whole numbers are signed.
 inline constexpr std::uint64_t kSeedEnd = std::uint64_t{1} << 63U;
 

@@ -84,7 +84,9 @@ std::string campaign_plan_text(const Campaign& campaign) {
   text +=
       row("episodes", fmt::format("{}{}", campaign.until ? "at most " : "", campaign.episodes()));
   if (campaign.until) text += row("until", until_text(campaign.until));
-  return text + row("traces", traces_in_words(campaign));
+  text += row("traces", traces_in_words(campaign));
+  if (campaign.rare) text += row("rare", "of each seed: " + rare_text(campaign));
+  return text;
 }
 
 std::string campaign_plan_json(const Campaign& campaign) {
@@ -107,6 +109,13 @@ std::string campaign_plan_json(const Campaign& campaign) {
   if (campaign.until) json["until"] = until_json(*campaign.until);
   json["traces"] = trace_keeping_name(campaign.traces);
   json["trace_sample"] = campaign.trace_sample;
+  if (campaign.rare) {
+    const SplitSettings& splitting = campaign.rare->splitting;
+    json["rare"] = {{"particles", splitting.particles},
+                    {"killed", splitting.killed},
+                    {"floor", splitting.floor},
+                    {"certify", campaign.rare->certify}};
+  }
   return json_text(json);
 }
 

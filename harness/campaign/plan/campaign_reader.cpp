@@ -35,6 +35,7 @@ class CampaignReader {
     read_seeds_or_say_why_not();
     read_traces();
     read_until();
+    read_rare();
     draft_.families = read_families(root_.section("figure"), tree_.find("figure"), problems_);
     root_.refuse_unread();
     return std::move(draft_);
@@ -49,6 +50,7 @@ class CampaignReader {
   void read_seeds_or_say_why_not();
   void read_traces();
   void read_until();
+  void read_rare();
 
   /// The value of a key, which is then known.
   const YamlNode* take(const std::string& key) {
@@ -167,6 +169,22 @@ void CampaignReader::read_until() {
   criterion.of = until.name("of", criterion.of, stop_event_names());
   until.refuse_unread();
   draft_.until = criterion;
+}
+
+void CampaignReader::read_rare() {
+  if (!root_.has("rare")) return;
+  Section section = root_.section("rare");
+  RareSettings rare;
+  SplitSettings& splitting = rare.splitting;
+  splitting.particles = section.whole("particles", splitting.particles, {2, kMostRareParticles});
+  splitting.killed = section.whole("killed", splitting.killed, {1, kMostRareParticles - 1});
+  splitting.floor = section.number("floor", splitting.floor, kRareFloor);
+  if (splitting.killed >= splitting.particles) {
+    section.note("killed", fmt::format("fewer than the {} particles", splitting.particles));
+  }
+  rare.certify = section.flag("certify", rare.certify);
+  section.refuse_unread();
+  draft_.rare = rare;
 }
 
 }  // namespace

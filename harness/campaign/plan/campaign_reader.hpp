@@ -74,6 +74,7 @@ struct CampaignDraft {
   std::int64_t trace_sample = 0;
   std::vector<FamilyDraft> families{};
   std::optional<StopCriterion> until{};
+  std::optional<RareSettings> rare{};
 };
 
 /// Reads `tree`. Everything wrong with it is noted in `problems`, and left out of what is returned.

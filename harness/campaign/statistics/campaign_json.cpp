@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "harness/campaign/statistics/stop_report.hpp"
+#include "harness/campaign/rare/rare_json.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/json_values.hpp"
@@ -113,6 +114,7 @@ Json variant_json(const CampaignStatistics& statistics, std::size_t number) {
                {"calibration", calibration_json(variant.calibration, variant.published)},
                {"differences", differences_json(statistics, number)},
                {"ocp_ms", times_json(variant)}});
+  if (variant.rare) json["rare"] = rare_json(*variant.rare);
   return json;
 }
 

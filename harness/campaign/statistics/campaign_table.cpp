@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "harness/campaign/statistics/stop_report.hpp"
+#include "harness/campaign/rare/rare_table.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
@@ -217,7 +218,7 @@ std::string time_section(const CampaignStatistics& statistics) {
 
 std::string campaign_table(const CampaignStatistics& statistics) {
   return head(statistics) + long_names(statistics) + outcome_section(statistics) +
-         spread_section(statistics) + certificate_section(statistics) +
+         spread_section(statistics) + certificate_section(statistics) + rare_table(statistics) +
          calibration_section(statistics) + difference_section(statistics) +
          time_section(statistics) +
          "collision, left bounds: where the true state first was unsafe, also of a drive that went "

@@ -99,6 +99,7 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
                       [&](const std::string& outcome, const std::vector<PathPoint>& path) {
                         statistics.paths.push_back({.outcome = outcome, .points = path});
                       });
+  statistics.rare = rare_statistics(store, variant.id);
   return statistics;
 }
 

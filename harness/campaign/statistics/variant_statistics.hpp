@@ -4,9 +4,11 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "harness/campaign/rare/rare_statistics.hpp"
 #include "harness/campaign/statistics/calibration.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/statistics/binomial_interval.hpp"
@@ -115,6 +117,7 @@ struct VariantStatistics {
   std::vector<CalibrationBin> calibration{};
   std::vector<CalibrationBin> published{};  ///< the same of the thesis's value, which is no bound
   std::vector<DrivenPath> paths{};          ///< at most kMostDrawnPaths, failures first
+  std::optional<RareStatistics> rare{};     ///< where the campaign looks for rare outcomes
 
   /// Shares of the periods; not numbers without one.
   [[nodiscard]] double unsafe_step_rate() const;

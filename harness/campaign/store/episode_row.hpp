@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "harness/campaign/rare/rare_row.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "harness/trace/trace.hpp"
 
@@ -73,6 +74,8 @@ struct EpisodeRow {
   /// Where the true state was every so many periods and at its end, at most kMostPathPoints,
   /// without what is not finite; empty of a system without map_axes.
   std::vector<PathPoint> path{};
+  /// What splitting that began with this episode says; where the campaign looks for rare outcomes.
+  std::optional<RareRow> rare{};
 
   friend bool operator==(const EpisodeRow&, const EpisodeRow&) = default;
 };

@@ -63,6 +63,7 @@ void require_same(const Joined& first, const StoreReader& other, const std::stri
   require("seeds", found.seeds, expected.seeds);
   require("traces", found.traces, expected.traces);
   require("until", until_text(found.until), until_text(expected.until));
+  require("rare", found.rare, expected.rare);
   require("figure.risk_against_cost", families_text(found.risk_against_cost),
           families_text(expected.risk_against_cost));
   require("shards", fmt::format("{}", found.shard.count), fmt::format("{}", expected.shard.count));

@@ -68,6 +68,7 @@ std::optional<Difference> difference_of(const StoredCampaign& stored, const Stor
     return Difference{"until", until_text(stored.until), until_text(asked.until)};
   }
   if (stored.traces != asked.traces) return Difference{"traces", stored.traces, asked.traces};
+  if (stored.rare != asked.rare) return Difference{"rare", stored.rare, asked.rare};
   if (stored.shard != asked.shard) {
     return Difference{"--shard", shard(stored.shard), shard(asked.shard)};
   }
@@ -122,7 +123,8 @@ StoredCampaign stored_campaign(const Campaign& campaign, const Shard& shard) {
           .episodes = static_cast<std::int64_t>(campaign.variants.size()) *
                       shard.share(campaign.seeds.size()),
           .risk_against_cost = campaign.risk_against_cost,
-          .until = campaign.until};
+          .until = campaign.until,
+          .rare = rare_text(campaign)};
 }
 
 std::vector<StoredVariant> stored_variants(const Campaign& campaign,

@@ -32,6 +32,10 @@ constexpr const char* kPathQuery = "SELECT points FROM path WHERE variant = ? AN
 constexpr const char* kBelievedQuery =
     "SELECT believed_max, believed_sum FROM episode WHERE variant = ? AND seed = ? AND "
     "(believed_max IS NOT NULL OR believed_sum IS NOT NULL)";
+constexpr const char* kRareQuery =
+    "SELECT particles, floor, probability, collision, left_bounds, levels, drives, periods, "
+    "extinct, below_floor, plain_unsafe, plain_periods, plain_faults, certified, found "
+    "FROM rare_run WHERE variant = ? AND seed = ?";
 
 // What SQLite calls the types of values.
 constexpr std::uint64_t kIntegerType = 1;
@@ -76,13 +80,14 @@ class Checksums {
         periods_(database, kPeriodsQuery),
         ocp_(database, kOcpQuery),
         path_(database, kPathQuery),
-        believed_(database, kBelievedQuery) {}
+        believed_(database, kBelievedQuery),
+        rare_(database, kRareQuery) {}
 
   std::int64_t of(std::int64_t variant, std::int64_t seed) {
     Hash hash;
     hash.add(static_cast<std::uint64_t>(seed));
     for (SQLite::Statement* statement :
-         {&episode_, &timing_, &periods_, &ocp_, &path_, &believed_}) {
+         {&episode_, &timing_, &periods_, &ocp_, &path_, &believed_, &rare_}) {
       statement->bind(1, variant);
       statement->bind(2, seed);
     }
@@ -91,7 +96,9 @@ class Checksums {
     add_periods(hash);
     add_ocp_ms(hash);
     hash.add(add_rows(path_, hash));
-    if (const std::uint64_t rows = add_rows(believed_, hash); rows > 0) hash.add(rows);
+    for (SQLite::Statement* added : {&believed_, &rare_}) {
+      if (const std::uint64_t rows = add_rows(*added, hash); rows > 0) hash.add(rows);
+    }
     return static_cast<std::int64_t>(hash.value());
   }
 
@@ -140,6 +147,7 @@ class Checksums {
   SQLite::Statement ocp_;
   SQLite::Statement path_;
   SQLite::Statement believed_;
+  SQLite::Statement rare_;
   std::vector<PeriodRow> rows_{};
   std::vector<double> times_{};
 };

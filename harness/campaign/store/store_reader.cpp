@@ -11,6 +11,7 @@
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
 
+#include "harness/campaign/rare/rare_rows.hpp"
 #include "harness/campaign/store/store_checksum.hpp"
 #include "harness/campaign/store/store_periods.hpp"
 #include "harness/campaign/store/store_rows.hpp"
@@ -247,6 +248,16 @@ void StoreReader::for_each_trace(
     const std::function<void(const std::string& folder)>& visit) const {
   implementation_->each("SELECT trace FROM episode WHERE trace <> ''", {},
                         [&](SQLite::Statement& row) { visit(row.getColumn(0).getString()); });
+}
+
+void StoreReader::for_each_rare(
+    std::int64_t variant,
+    const std::function<void(std::uint64_t seed, const RareRow&)>& visit) const {
+  implementation_->each(
+      "SELECT seed, " + rare_columns() + " FROM rare_run WHERE variant = ? ORDER BY seed",
+      {variant}, [&](SQLite::Statement& row) {
+        visit(static_cast<std::uint64_t>(row.getColumn(0).getInt64()), rare_row_of(row, 1));
+      });
 }
 
 void StoreReader::for_each_sorted(std::int64_t variant, EpisodeNumber number,

@@ -48,6 +48,7 @@ struct StoredCampaign {
   std::optional<StopCriterion> until{};
   /// After so many first seeds the rule `until` has stopped; the store has the episodes of these.
   std::optional<std::int64_t> stopped_after{};
+  std::string rare{};  ///< rare_text of the campaign
 
   friend bool operator==(const StoredCampaign&, const StoredCampaign&) = default;
 };
@@ -98,6 +99,10 @@ class StoreReader {
                                               const std::vector<PathPoint>& path)>& visit) const;
   /// The folders of the traces that are kept, relative to the campaign's.
   void for_each_trace(const std::function<void(const std::string& folder)>& visit) const;
+  /// What the episodes of a variant say of rare outcomes, by seed; those that say nothing are left
+  /// out.
+  void for_each_rare(std::int64_t variant,
+                     const std::function<void(std::uint64_t seed, const RareRow&)>& visit) const;
   /// A number of a variant's episodes, ascending; of those that did not fault and have one.
   void for_each_sorted(std::int64_t variant, EpisodeNumber number,
                        const std::function<void(double)>& visit) const;

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/campaign/rare/rare_rows.hpp"
 #include "harness/campaign/store/store_checksum.hpp"
 #include "harness/campaign/store/store_periods.hpp"
 #include "harness/trace/ending.hpp"
@@ -242,6 +243,7 @@ void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
   run(timing);
   insert_periods(database, row);
   insert_path(database, row);
+  if (row.rare) insert_rare(database, row.variant, stored_seed(row.seed), *row.rare);
   insert_checksum(database, row.variant, stored_seed(row.seed));
 }
 
@@ -267,7 +269,8 @@ StoredCampaign read_campaign(SQLite::Database& database) {
                           .shard = {.index = statement.getColumn(4).getInt64(),
                                     .count = statement.getColumn(5).getInt64()},
                           .episodes = statement.getColumn(6).getInt64(),
-                          .risk_against_cost = read_stored_families(database)};
+                          .risk_against_cost = read_stored_families(database),
+                          .rare = read_rare_settings(database)};
   read_stop_rule(database, campaign);
   return campaign;
 }
@@ -285,6 +288,7 @@ void insert_campaign(SQLite::Database& database, const StoredCampaign& campaign)
   run(statement);
   insert_families(database, campaign.risk_against_cost);
   insert_stop_rule(database, campaign);
+  insert_rare_settings(database, campaign.rare);
 }
 
 std::vector<StoredVariant> read_variants(SQLite::Database& database) {

@@ -40,7 +40,8 @@ inline constexpr int kEpisodeColumns = 23;
 
 /// The tables whose rows belong to an episode; `variant` is a column of each.
 inline constexpr std::array kEpisodeTables{"episode",         "episode_timing", "path",
-                                           "episode_periods", "episode_ocp_ms", "episode_checksum"};
+                                           "episode_periods", "episode_ocp_ms", "rare_run",
+                                           "episode_checksum"};
 
 /// Whether a table of episodes holds wall-clock values, or a checksum that is made of some.
 [[nodiscard]] bool is_timing(std::string_view table);

@@ -173,6 +173,34 @@ CREATE TABLE stop_rule (
 ) STRICT;
 )sql";
 
+// Campaigns of earlier versions did not look for rare outcomes.
+constexpr const char* kRareSchema = R"sql(
+CREATE TABLE rare (
+  id INTEGER PRIMARY KEY CHECK (id = 1),
+  settings TEXT NOT NULL
+) STRICT;
+CREATE TABLE rare_run (
+  variant INTEGER NOT NULL,
+  seed INTEGER NOT NULL,
+  particles INTEGER NOT NULL,
+  floor REAL NOT NULL,
+  probability REAL NOT NULL,
+  collision REAL NOT NULL,
+  left_bounds REAL NOT NULL,
+  levels INTEGER NOT NULL,
+  drives INTEGER NOT NULL,
+  periods INTEGER NOT NULL,
+  extinct INTEGER NOT NULL,
+  below_floor INTEGER NOT NULL,
+  plain_unsafe INTEGER NOT NULL,
+  plain_periods INTEGER NOT NULL,
+  plain_faults INTEGER NOT NULL,
+  certified REAL,
+  found TEXT NOT NULL,
+  PRIMARY KEY (variant, seed)
+) STRICT, WITHOUT ROWID;
+)sql";
+
 }  // namespace
 
 const std::vector<Migration>& store_migrations() {
@@ -184,7 +212,8 @@ const std::vector<Migration>& store_migrations() {
       {.sql = kChecksumSchema},
       {.sql = kBelievedSchema},
       {.sql = kPeriodsSchema, .move_rows = gather_periods, .after = kPeriodViews},
-      {.sql = kStopSchema}};
+      {.sql = kStopSchema},
+      {.sql = kRareSchema}};
   return migrations;
 }
 

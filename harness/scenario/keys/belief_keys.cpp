@@ -1,4 +1,8 @@
 // The keys of what is uncertain: the initial state, the noise, and what the planner makes of it.
+#include <algorithm>
+
+#include <fmt/format.h>
+
 #include "controller/estimation/estimator.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
@@ -7,6 +11,9 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr NumberRange kDeviationRange{.least = 0.0, .most = 0.5};  // of a logarithm
+
+constexpr std::size_t kMostNoiseSeeds = 10'000;
+constexpr std::uint64_t kLastPeriod = 1'000'000;
 
 bool has_sensor_noise(const Scenario& scenario) { return !scenario.disturbance.sensor.isZero(0.0); }
 
@@ -55,6 +62,63 @@ ScenarioKey disturbance_kind_key() {
               section.note("kind", "state, or plant.kind: mujoco");
             }
           }};
+}
+
+ListValue noise_seed_list() {
+  const KeyDescription from{.name = "from",
+                            .values = {WholeValue{0, kLastPeriod}},
+                            .words = "a control period",
+                            .required = true};
+  const KeyDescription seed{.name = "seed", .values = {WholeValue{}}, .required = true};
+  return list_of_values(MappingValue{{from, seed}}, {.most = kMostNoiseSeeds});
+}
+
+void read_noise_seeds(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  std::vector<models::NoiseSeed>& seeds = reading.scenario.disturbance.seeds;
+  const std::size_t count = section.list_size(about.name);
+  if (count > kMostNoiseSeeds) {
+    section.note(about.name, fmt::format("at most {} seeds", kMostNoiseSeeds));
+  }
+  for (std::size_t i = 0; i < std::min(count, kMostNoiseSeeds); ++i) {
+    Section item = section.item(about.name, i);
+    if (item.present()) {
+      item.require("from", "a control period");
+      item.require("seed", "a whole number");
+    }
+    const int from = item.whole("from", 0, {0, static_cast<int>(kLastPeriod)});
+    const models::NoiseSeed entry{.from = static_cast<std::uint64_t>(from),
+                                  .seed = item.seed("seed", 0)};
+    item.refuse_unread();
+    if (!seeds.empty() && entry.from <= seeds.back().from) {
+      item.note("from", fmt::format("a period after {}", seeds.back().from));
+    }
+    seeds.push_back(entry);
+  }
+}
+
+std::optional<std::string> noise_seeds_text(const Scenario& scenario,
+                                            const models::SystemDescription& /*system*/) {
+  std::string text;
+  for (const models::NoiseSeed& entry : scenario.disturbance.seeds) {
+    text +=
+        fmt::format("{}{{from: {}, seed: {}}}", text.empty() ? "" : ", ", entry.from, entry.seed);
+  }
+  return "[" + text + "]";
+}
+
+ScenarioKey noise_seeds_key() {
+  return {
+      .about = {.name = "seeds",
+                .values = {noise_seed_list()},
+                .words = "seeds of the noise and the measurement noise in place of `seed`: a "
+                         "list of `{from: PERIOD, seed: SEED}`, each from its control period "
+                         "on, ascending; what a campaign of rare outcomes writes, so that a "
+                         "drive that it found is driven again",
+                .see = "[rare outcomes](rare.md)",
+                .fallback_words = "none"},
+      .read = read_noise_seeds,
+      .write = noise_seeds_text,
+      .is_written = [](const Scenario& scenario) { return !scenario.disturbance.seeds.empty(); }};
 }
 
 }  // namespace
@@ -115,7 +179,8 @@ ScenarioKey disturbance_key() {
                          [](Scenario& scenario) -> double& { return scenario.disturbance.mass; }),
            deviation_key(
                "wheelbase", "the distances of the plant's axles",
-               [](Scenario& scenario) -> double& { return scenario.disturbance.wheelbase; })},
+               [](Scenario& scenario) -> double& { return scenario.disturbance.wheelbase; }),
+           noise_seeds_key()},
       .after = ReadAfter::kSystem,
       .table = "plant"};
 }

@@ -1,0 +1,31 @@
+// Rows about rare outcomes in a campaign's store, to and from the values that stand for them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "harness/campaign/rare/rare_row.hpp"
+
+// NOLINTNEXTLINE(readability-identifier-naming): the name that its library gives it
+namespace SQLite {
+class Database;
+class Statement;
+}  // namespace SQLite
+
+namespace qsmpc::harness {
+
+/// The columns of a row of the table `rare_run`, as `rare_row_of` expects them.
+[[nodiscard]] std::string rare_columns();
+/// The row that `statement` is at, from column `first` on. Throws SQLite::Exception of a list of
+/// drives that is none.
+[[nodiscard]] RareRow rare_row_of(SQLite::Statement& statement, int first);
+
+/// Adds the row of an episode. To be called within a transaction.
+void insert_rare(SQLite::Database& database, std::int64_t variant, std::int64_t seed,
+                 const RareRow& row);
+
+/// rare_text of the stored campaign; empty where it does not look for rare outcomes.
+[[nodiscard]] std::string read_rare_settings(SQLite::Database& database);
+void insert_rare_settings(SQLite::Database& database, const std::string& settings);
+
+}  // namespace qsmpc::harness

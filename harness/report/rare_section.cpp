@@ -1,0 +1,176 @@
+#include "harness/report/rare_section.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
+
+#include "harness/campaign/rare/rare_scenarios.hpp"
+#include "harness/figures/palette.hpp"
+#include "harness/report/table_page.hpp"
+#include "harness/text/html.hpp"
+#include "harness/text/number_format.hpp"
+#include "harness/text/printable.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr std::size_t kRareTitleLimit = 44;   // of a variant in a title
+constexpr std::size_t kMostRareCommands = 5;  // of a variant
+constexpr double kMostRareGap = 0.3;          // of a decade below the smallest estimate
+constexpr const char* kRareNote =
+    "The probability that a drive is unsafe at some control instant, estimated by splitting: "
+    "drives "
+    "that came near to the unsafe set are driven again, with other noise from where they came "
+    "near. "
+    "Each run gives an unbiased estimate. Limits are of 99 %, from how the runs differ. Worth: the "
+    "plain periods after which the share of unsafe drives is as sharp; gain: how many times as "
+    "many "
+    "they are as those that were driven. Certified: the mean of the sum of a drive's next-step "
+    "certificates, estimated by the same drives, which bounds the probability where they are "
+    "bounds.";
+
+bool looks_for_rare(const CampaignStatistics& statistics) {
+  return std::ranges::any_of(statistics.variants,
+                             [](const auto& variant) { return variant.rare.has_value(); });
+}
+
+/// The smallest value that the axis has to show.
+double least_rare(const RareStatistics& rare) {
+  double least = rare.probability > 0.0 ? rare.probability : rare.interval.upper;
+  for (const RareEstimate& run : rare.runs) {
+    if (run.probability > 0.0) least = std::min(least, run.probability);
+  }
+  if (rare.interval.lower > 0.0) least = std::min(least, rare.interval.lower);
+  return std::pow(10.0, std::floor(std::log10(least) - kMostRareGap));
+}
+
+Chart rare_chart(const VariantStatistics& variant, const RareStatistics& rare) {
+  Chart chart{.title = printable(variant.name, kRareTitleLimit),
+              .in_words = fmt::format(
+                  "{}: a drive is unsafe with a probability of {}, {} to {}; "
+                  "certified {}.",
+                  variant.name, format_short(rare.probability), format_short(rare.interval.lower),
+                  format_short(rare.interval.upper),
+                  std::isfinite(rare.certified) ? format_short(rare.certified) : "nothing"),
+              .x_label = "run (–)",
+              .y_label = "probability of an unsafe drive (–)",
+              .y_scale = Scale::kLog,
+              .least_shown = least_rare(rare)};
+  Series estimates{.name = "a run", .colour = kBlue, .mark = Mark::kPoints};
+  for (std::size_t n = 0; n < rare.runs.size(); ++n) {
+    estimates.x.push_back(static_cast<double>(n + 1));
+    estimates.y.push_back(rare.runs[n].probability);
+    if (rare.runs[n].probability == 0.0) chart.y_has_zero = true;
+  }
+  chart.x_includes = {0.0, static_cast<double>(rare.runs.size() + 1)};
+  // The limits stand behind the runs.
+  Series mean{.name = "mean, 99 % limits", .colour = kVermilion, .mark = Mark::kPoints};
+  mean.x = {static_cast<double>(rare.runs.size() + 1)};
+  mean.y = {rare.probability};
+  mean.lower = {rare.interval.lower};
+  mean.upper = {rare.interval.upper};
+  chart.series = {std::move(estimates), std::move(mean)};
+  chart.rules.push_back({.name = variant.no_bound.empty() ? "certified" : "certified, no bound",
+                         .value = rare.certified});
+  return chart;
+}
+
+PageVerdict rare_verdict(const VariantStatistics& variant, const RareStatistics& rare) {
+  const bool holds = variant.no_bound.empty();
+  const bool exceeded = holds && rare.exceeds_certified();
+  const bool compared = holds && std::isfinite(rare.certified);
+  PageVerdict verdict{.mood = exceeded   ? PageMood::kBad
+                              : compared ? PageMood::kGood
+                                         : PageMood::kOpen,
+                      .title = fmt::format("{}: a drive is unsafe with a probability of {}",
+                                           variant.name, format_short(rare.probability)),
+                      .sentences = {}};
+  verdict.sentences.push_back(fmt::format(
+      "Between {} and {} with 99 % confidence, from {} runs of {} drives, {} periods in "
+      "all.",
+      format_short(rare.interval.lower), format_short(rare.interval.upper), rare.runs.size(),
+      rare.drives, rare.periods));
+  if (std::isfinite(rare.worth_periods)) {
+    verdict.sentences.push_back(
+        fmt::format("Plain drives would take {} periods to say as much, {} times as many.",
+                    format_short(rare.worth_periods), format_short(rare.gain())));
+  }
+  if (std::isfinite(rare.certified)) {
+    verdict.sentences.push_back(fmt::format("Certified of a drive: {}, {}.",
+                                            format_short(rare.certified),
+                                            exceeded ? "which is exceeded"
+                                            : holds  ? "which is not refuted"
+                                                     : "which is no bound here"));
+  }
+  return verdict;
+}
+
+std::string rare_rows_html(const CampaignStatistics& statistics) {
+  PageTable table{.label = "Probability of an unsafe drive, by variant",
+                  .heads = {"variant", "runs", "unsafe drive", "collision", "left bounds",
+                            "certified of a drive", "unsafe, of a period", "certified of a period",
+                            "periods driven", "worth, plain periods", "gain", "0 of"},
+                  .rows = {}};
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (!variant.rare) continue;
+    const RareStatistics& rare = *variant.rare;
+    const double periods = rare.periods_per_drive();
+    table.rows.push_back(
+        {fmt::format("{}: {}", variant.id, escape_html(variant.name)),
+         fmt::format("{}", rare.runs.size()),
+         number_html(rare.probability) + " " + interval_html(rare.interval),
+         number_html(rare.collision), number_html(rare.left_bounds),
+         number_html(rare.certified) + " " + interval_html(rare.certified_interval) +
+             (variant.no_bound.empty() ? "" : " <strong>no bound</strong>"),
+         number_html(rare.probability / periods), number_html(rare.certified / periods),
+         fmt::format("{}", rare.periods), number_html(rare.worth_periods), number_html(rare.gain()),
+         fmt::format("{} runs", rare.extinct + rare.below_floor)});
+  }
+  return table_html(table);
+}
+
+/// Commands that drive again what the runs found, one a run.
+std::string rare_commands(const CampaignStatistics& statistics) {
+  std::string items;
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (!variant.rare) continue;
+    std::size_t told = 0;
+    for (const RareEstimate& run : variant.rare->runs) {
+      if (run.found.empty() || told == kMostRareCommands) continue;
+      ++told;
+      const RareDrive& drive = run.found.front();
+      items += fmt::format("<li><code>qsmpc run {}</code>: {}, {} after {} periods</li>\n",
+                           escape_html(rare_scenario_file(variant.id, run.seed, 1)),
+                           escape_html(variant.name), escape_html(drive.outcome), drive.periods);
+    }
+  }
+  if (items.empty()) return {};
+  return "<p class=\"note\">Some of the unsafe drives that were found, to be driven again in the "
+         "folder of this page, with video; its subfolder <code>rare</code> has more.</p>\n<ul>\n" +
+         items + "</ul>\n";
+}
+
+}  // namespace
+
+std::vector<Chart> rare_charts(const CampaignStatistics& statistics) {
+  std::vector<Chart> charts;
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (variant.rare) charts.push_back(rare_chart(variant, *variant.rare));
+  }
+  return charts;
+}
+
+std::string rare_section(const CampaignStatistics& statistics) {
+  if (!looks_for_rare(statistics)) return {};
+  std::string html = section_head("Rare outcomes", kRareNote);
+  for (const VariantStatistics& variant : statistics.variants) {
+    if (variant.rare) html += verdict_html(rare_verdict(variant, *variant.rare));
+  }
+  html += rare_rows_html(statistics) + "<div class=\"grid\">\n";
+  for (const Chart& chart : rare_charts(statistics)) html += chart_figure(chart);
+  return html + "</div>\n" + rare_commands(statistics);
+}
+
+}  // namespace qsmpc::harness
