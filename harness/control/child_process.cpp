@@ -11,12 +11,12 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
-#include <spawn.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "harness/control/host_program.hpp"
+#include "harness/control/spawn.hpp"
 #include "harness/errors.hpp"
 #include "harness/threads/interruption.hpp"
 
@@ -36,19 +36,11 @@ constexpr std::chrono::milliseconds kGrace{1000};
 constexpr std::chrono::milliseconds kLastWords{200};
 // When the host, which kills what does not go, must have ended.
 constexpr std::chrono::milliseconds kHostGrace{6000};
-// Above the standard ones and the leash, so that none is overwritten while these are put in place.
-constexpr int kLeast = 10;
 constexpr int kLeash = 3;
 
 [[noreturn]] void fail(const char* what) {
   throw IoError(
       fmt::format("a controller's process cannot be started: {}: {}", what, std::strerror(errno)));
-}
-
-Descriptor moved_up(const Descriptor& low) {
-  Descriptor high(::fcntl(low.get(), F_DUPFD_CLOEXEC, kLeast));
-  if (!high.is_open()) fail("fcntl");
-  return high;
 }
 
 /// Two ends that no other process inherits: of the host, and ours, which never waits.
@@ -57,8 +49,8 @@ struct Ends {
   Descriptor ours;
 };
 
-Ends ends_of(const Descriptor& theirs, const Descriptor& ours) {
-  Ends ends{.theirs = moved_up(theirs), .ours = moved_up(ours)};
+Ends ends_of(Descriptor theirs, Descriptor ours) {
+  Ends ends{.theirs = std::move(theirs), .ours = std::move(ours)};
   if (::fcntl(ends.ours.get(), F_SETFL, O_NONBLOCK) != 0) fail("fcntl");
   return ends;
 }
@@ -102,33 +94,6 @@ class NoSigpipe {
   sigset_t before_{};
 };
 
-/// posix_spawn's own objects, freed with it.
-class SpawnSettings {
- public:
-  SpawnSettings() {
-    posix_spawn_file_actions_init(&actions);
-    posix_spawnattr_init(&attributes);
-    sigset_t signals;
-    sigemptyset(&signals);
-    posix_spawnattr_setsigmask(&attributes, &signals);
-    for (const int number : {SIGINT, SIGTERM, SIGPIPE, SIGCHLD}) sigaddset(&signals, number);
-    posix_spawnattr_setsigdefault(&attributes, &signals);
-    // Ctrl-C on the terminal is for the program, which decides what becomes of its controllers.
-    posix_spawnattr_setpgroup(&attributes, 0);
-    posix_spawnattr_setflags(
-        &attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
-  }
-  SpawnSettings(const SpawnSettings&) = delete;
-  SpawnSettings& operator=(const SpawnSettings&) = delete;
-  ~SpawnSettings() {
-    posix_spawn_file_actions_destroy(&actions);
-    posix_spawnattr_destroy(&attributes);
-  }
-
-  posix_spawn_file_actions_t actions{};
-  posix_spawnattr_t attributes{};
-};
-
 /// Reads what is there into `take`; closes at the end.
 template <class Take>
 void read_some(Descriptor& from, const Take& take) {
@@ -165,26 +130,14 @@ std::string end_words(const ChildEnd& end) {
 ChildProcess::ChildProcess(const std::vector<std::string>& host_arguments) : log_(kLogHalf) {
   std::vector<std::string> words{host_program()};
   words.insert(words.end(), host_arguments.begin(), host_arguments.end());
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (std::string& word : words) arguments.push_back(word.data());
-  arguments.push_back(nullptr);
-
   Ends input = pipe_to_write();
   Ends output = pipe_to_read();
   Ends errors = pipe_to_read();
   Ends leash = harness::leash();
-  SpawnSettings settings;
-  const std::array<std::pair<const Ends*, int>, 4> places = {{{&input, STDIN_FILENO},
-                                                              {&output, STDOUT_FILENO},
-                                                              {&errors, STDERR_FILENO},
-                                                              {&leash, kLeash}}};
-  for (const auto& [ends, place] : places) {
-    posix_spawn_file_actions_adddup2(&settings.actions, ends->theirs.get(), place);
-  }
-  errno = ::posix_spawn(&host_, words.front().c_str(), &settings.actions, &settings.attributes,
-                        arguments.data(), environ);
-  if (errno != 0) fail(words.front().c_str());
+  host_ = spawn_process(words, {{.ours = input.theirs.get(), .theirs = STDIN_FILENO},
+                                {.ours = output.theirs.get(), .theirs = STDOUT_FILENO},
+                                {.ours = errors.theirs.get(), .theirs = STDERR_FILENO},
+                                {.ours = leash.theirs.get(), .theirs = kLeash}});
   input_ = std::move(input.ours);
   output_ = std::move(output.ours);
   errors_ = std::move(errors.ours);
