@@ -8,8 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "harness/campaign/stopping.hpp"
 #include "harness/campaign/rare/rare_run.hpp"
+#include "harness/campaign/shard_source.hpp"
+#include "harness/campaign/stopping.hpp"
 #include "harness/campaign/store/episode_row.hpp"
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/episode/driver_pool.hpp"
@@ -36,44 +37,18 @@ double unix_time() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-std::vector<std::string> digests_of(const Campaign& campaign) {
-  std::vector<std::string> digests;
-  std::map<std::string, std::string> known;
-  for (const CampaignVariant& variant : campaign.variants) {
-    const Scenario::Plant& plant = variant.resolved.plant;
-    const auto [entry, is_new] = known.try_emplace(plant.kind + " " + plant.mjcf);
-    if (is_new) entry->second = plant_digest(variant.resolved);
-    digests.push_back(entry->second);
-  }
-  return digests;
-}
-
-/// An episode to be driven.
-struct Task {
-  std::size_t variant = 0;      ///< index in the campaign
-  std::int64_t seed_index = 0;  ///< in its seeds
-  bool again = false;           ///< it is in the store, and is to be replaced
-};
-
 class CampaignRun {
  public:
-  CampaignRun(const Campaign& campaign, std::string folder, const CampaignOptions& options,
-              Store& store)
+  CampaignRun(const Campaign& campaign, const EpisodeFlow& flow, const CampaignOptions& options)
       : campaign_(campaign),
-        folder_(std::move(folder)),
+        folder_(flow.folder),
         options_(options),
-        store_(store),
-        drivers_(kDriversPerJob * static_cast<std::size_t>(options.jobs)),
-        seed_index_(options.shard.index - 1),
-        seed_end_(campaign.seeds.size()) {
-    progress_.total = static_cast<std::int64_t>(campaign.variants.size()) *
-                      options.shard.share(campaign.seeds.size());
-    progress_.outcomes = store.outcomes();
+        store_(flow.store),
+        source_(flow.source),
+        drivers_(kDriversPerJob * static_cast<std::size_t>(options.jobs)) {
+    progress_.total = source_.total();
+    progress_.outcomes = store_.outcomes();
     for (const auto& [outcome, count] : progress_.outcomes) progress_.done += count;
-    if (!campaign.until) return;
-    rule_ = stop_rule_of(campaign, store,
-                         options.retry_faults ? outcome_name(Outcome::kFault) : std::string());
-    stop_where_it_suffices();
   }
 
   CampaignProgress run() {
@@ -86,7 +61,7 @@ class CampaignRun {
  private:
   void work() {
     try {
-      while (const std::optional<Task> task = next()) drive(*task);
+      while (const std::optional<EpisodeTask> task = next()) drive(*task);
     } catch (...) {
       failed_ = true;  // the others give up, too
       throw;
@@ -97,56 +72,41 @@ class CampaignRun {
     return failed_ || (options_.should_stop && options_.should_stop());
   }
 
-  /// The next episode that is to be driven. All variants of a seed come before the next seed, so
-  /// that what is done at any time can be compared in pairs.
-  std::optional<Task> next() {
-    const std::lock_guard lock(next_mutex_);
-    while (!stopped() && seed_index_ < seed_end_) {
-      const Task task{.variant = variant_, .seed_index = seed_index_};
-      if (++variant_ == campaign_.variants.size()) {
-        variant_ = 0;
-        seed_index_ += options_.shard.count;
-      }
-      const std::optional<std::string> outcome =
-          store_.outcome(store_.variant_ids()[task.variant], campaign_.seeds.at(task.seed_index));
-      if (!outcome) return task;
-      if (options_.retry_faults && *outcome == outcome_name(Outcome::kFault)) {
-        return Task{.variant = task.variant, .seed_index = task.seed_index, .again = true};
-      }
-    }
-    return std::nullopt;
+  std::optional<EpisodeTask> next() {
+    return source_.next([this] { return stopped(); });
   }
 
-  void drive(const Task& task) {
+  void drive(const EpisodeTask& task) {
     const auto start = Clock::now();
     EpisodeOptions options;
     options.seed = campaign_.seeds.at(task.seed_index);
     options.should_stop = [this, &task] {
-      return failed_ || task.seed_index >= seed_end_ ||
+      return failed_ || !source_.is_wanted(task) ||
              (options_.should_hurry && options_.should_hurry());
     };
     const Trace trace = drivers_.run(campaign_.variants[task.variant].resolved, options);
     // What was cut short says nothing, and will be driven again.
-    if (trace.outcome == Outcome::kInterrupted || task.seed_index >= seed_end_) return;
+    if (trace.outcome == Outcome::kInterrupted || !source_.is_wanted(task)) return;
     EpisodeRow row = episode_row(EpisodeView(trace), store_.variant_ids()[task.variant]);
     if (!add_rare(task, row)) return;
     if (keeps_trace(task, row)) keep(trace, row);
     row.timing.wall_ms = 1e3 * seconds_since(start);
     row.timing.finished_at = unix_time();
     store_.add(row, task.again);
+    source_.stored(task, row);
     count(row, task);
   }
 
   /// What the seed says of rare outcomes, where they are looked for; false if interrupted. It takes
   /// as long as many episodes, so that the first wish to stop ends it.
-  bool add_rare(const Task& task, EpisodeRow& row) {
+  bool add_rare(const EpisodeTask& task, EpisodeRow& row) {
     if (!campaign_.rare) return true;
     row.rare = rare_run(campaign_.variants[task.variant].resolved, *campaign_.rare, row.seed,
-                        [this, &task] { return stopped() || task.seed_index >= seed_end_; });
+                        [this, &task] { return stopped() || !source_.is_wanted(task); });
     return row.rare.has_value();
   }
 
-  [[nodiscard]] bool keeps_trace(const Task& task, const EpisodeRow& row) const {
+  [[nodiscard]] bool keeps_trace(const EpisodeTask& task, const EpisodeRow& row) const {
     switch (campaign_.traces) {
       case TraceKeeping::kAll:
         return true;
@@ -169,7 +129,7 @@ class CampaignRun {
     write_controller_log(trace, target);
   }
 
-  void count(const EpisodeRow& row, const Task& task) {
+  void count(const EpisodeRow& row, const EpisodeTask& task) {
     const std::lock_guard lock(mutex_);
     if (task.again) {
       --progress_.outcomes[outcome_name(Outcome::kFault)];
@@ -178,20 +138,8 @@ class CampaignRun {
     }
     ++progress_.fresh;
     ++progress_.outcomes[row.outcome];
-    if (rule_) {
-      rule_->add(task.seed_index, task.variant,
-                 is_stop_event(*campaign_.until, row.outcome, row.unsafe));
-      stop_where_it_suffices();
-    }
+    progress_.total = source_.total();
     tell();
-  }
-
-  /// Begins no episode of seeds beyond those that suffice, and gives up those that have begun.
-  void stop_where_it_suffices() {
-    const std::optional<std::int64_t> seeds = rule_->stops_after();
-    if (!seeds) return;
-    seed_end_ = *seeds;
-    progress_.total = static_cast<std::int64_t>(campaign_.variants.size()) * *seeds;
   }
 
   void tell() {
@@ -203,24 +151,37 @@ class CampaignRun {
   const std::string folder_;
   const CampaignOptions& options_;
   Store& store_;
+  EpisodeSource& source_;
   const Clock::time_point start_ = Clock::now();
   DriverPool drivers_;
   std::atomic<bool> failed_ = false;
-  std::mutex next_mutex_;  // of what is next
-  std::size_t variant_ = 0;
-  std::int64_t seed_index_;
-  std::atomic<std::int64_t> seed_end_;  ///< no seed from here on is driven
   std::mutex trace_mutex_;
   std::mutex mutex_;  // of what follows
   CampaignProgress progress_;
-  std::optional<StopRule> rule_{};
 };
 
 }  // namespace
 
+std::vector<std::string> plant_digests(const Campaign& campaign) {
+  std::vector<std::string> digests;
+  std::map<std::string, std::string> known;
+  for (const CampaignVariant& variant : campaign.variants) {
+    const Scenario::Plant& plant = variant.resolved.plant;
+    const auto [entry, is_new] = known.try_emplace(plant.kind + " " + plant.mjcf);
+    if (is_new) entry->second = plant_digest(variant.resolved);
+    digests.push_back(entry->second);
+  }
+  return digests;
+}
+
+CampaignProgress drive_episodes(const Campaign& campaign, const EpisodeFlow& flow,
+                                const CampaignOptions& options) {
+  return CampaignRun(campaign, flow, options).run();
+}
+
 CampaignProgress run_campaign(const Campaign& campaign, const std::string& folder,
                               const CampaignOptions& options) {
-  const std::vector<std::string> digests = digests_of(campaign);
+  const std::vector<std::string> digests = plant_digests(campaign);
   refuse_shard_of_rule(campaign, options.shard);
   make_output_folder(folder);
   const FolderLock lock(folder);
@@ -228,7 +189,9 @@ CampaignProgress run_campaign(const Campaign& campaign, const std::string& folde
               campaign.seeds, options.update);
   remove_traces(folder, store.update().traces);
   if (store.update().changed && options.on_update) options.on_update(store.update());
-  CampaignProgress progress = CampaignRun(campaign, folder, options, store).run();
+  ShardSource source(campaign, store, options.shard, options.retry_faults);
+  CampaignProgress progress =
+      drive_episodes(campaign, {.folder = folder, .store = store, .source = source}, options);
   if (progress.stopped_after = stop_where_known(campaign, store, folder); progress.stopped_after) {
     progress.outcomes = store.outcomes();
     progress.done = progress.total =

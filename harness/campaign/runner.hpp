@@ -6,8 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "harness/campaign/campaign.hpp"
+#include "harness/campaign/episode_source.hpp"
 #include "harness/campaign/store/store.hpp"
 
 namespace qsmpc::harness {
@@ -15,7 +17,7 @@ namespace qsmpc::harness {
 /// How far a campaign is.
 struct CampaignProgress {
   std::int64_t done = 0;   ///< episodes in the store
-  std::int64_t total = 0;  ///< episodes of the shard
+  std::int64_t total = 0;  ///< episodes of the shard, or of what else is driven
   std::int64_t fresh = 0;  ///< of those done, the ones driven since the start of this run
   double elapsed = 0.0;    ///< s, of this run
   std::map<std::string, std::int64_t> outcomes{};  ///< of those done
@@ -47,5 +49,21 @@ struct CampaignOptions {
 /// in the folder or something cannot be written; what was stored before stays.
 [[nodiscard]] CampaignProgress run_campaign(const Campaign& campaign, const std::string& folder,
                                             const CampaignOptions& options);
+
+/// Where the episodes of a run come from and where they go.
+struct EpisodeFlow {
+  std::string folder;  ///< that of the store, for the traces that are kept
+  Store& store;
+  EpisodeSource& source;
+};
+
+/// Drives what the source of `flow` gives out until it has nothing left or `options` ask to stop;
+/// what they say of shards and stores is the source's and the store's matter. Returns and throws as
+/// run_campaign does.
+[[nodiscard]] CampaignProgress drive_episodes(const Campaign& campaign, const EpisodeFlow& flow,
+                                              const CampaignOptions& options);
+
+/// StoredVariant::plant_digest of each variant. Throws InputError where a vehicle cannot be loaded.
+[[nodiscard]] std::vector<std::string> plant_digests(const Campaign& campaign);
 
 }  // namespace qsmpc::harness
