@@ -49,7 +49,7 @@ CampaignStatus campaign_status(const std::string& folder) {
   return status;
 }
 
-std::string status_table(const CampaignStatus& status) {
+std::string done_text(const CampaignStatus& status) {
   const StoredCampaign& campaign = status.campaign;
   std::string text = printable(campaign.name);
   if (campaign.shard.count > 1) {
@@ -60,11 +60,19 @@ std::string status_table(const CampaignStatus& status) {
     text += fmt::format(" ({:.1f} %)", 100.0 * static_cast<double>(status.done) /
                                            static_cast<double>(campaign.episodes));
   }
-  text += fmt::format("\n  outcomes  {}\n", outcomes_text(status.outcomes));
+  return text + fmt::format("\n  outcomes  {}\n", outcomes_text(status.outcomes));
+}
+
+std::string rate_text(const CampaignStatus& status) {
+  return fmt::format("  rate      {:.3g} episodes/s{}\n", status.rate, time_left_text(status));
+}
+
+std::string status_table(const CampaignStatus& status) {
+  std::string text = done_text(status);
   if (status.running) {
     text += fmt::format("  running   process {} on {}, since {}\n", status.running->process,
                         printable(status.running->host), utc_text(status.running->since));
-    text += fmt::format("  rate      {:.3g} episodes/s{}\n", status.rate, time_left_text(status));
+    text += rate_text(status);
   } else {
     text += "  running   no\n";
   }

@@ -26,6 +26,10 @@ struct CampaignStatus {
 [[nodiscard]] CampaignStatus campaign_status(const std::string& folder);
 
 [[nodiscard]] std::string status_table(const CampaignStatus& status);
+/// Of these lines, those that say how many episodes are done and how they ended, and that of the
+/// rate.
+[[nodiscard]] std::string done_text(const CampaignStatus& status);
+[[nodiscard]] std::string rate_text(const CampaignStatus& status);
 /// One object, ending in a new line: name, shard, episodes, done, outcomes, running, rate, left.
 [[nodiscard]] std::string status_json(const CampaignStatus& status);
 

@@ -18,6 +18,9 @@
 namespace qsmpc::harness {
 namespace {
 
+// The name of SQLite's access to files that asks the system for no lock.
+constexpr const char* kNoLocks = "unix-none";
+
 /// The first thing that differs, as found in the store and as expected by the campaign.
 struct Difference {
   std::string key;
@@ -87,6 +90,12 @@ std::optional<Difference> difference_of(const std::vector<StoredVariant>& stored
   return std::nullopt;
 }
 
+std::optional<Difference> difference_of(const CampaignIdentity& stored,
+                                        const CampaignIdentity& asked) {
+  const auto difference = difference_of(stored.campaign, asked.campaign);
+  return difference ? difference : difference_of(stored.variants, asked.variants);
+}
+
 /// Whether a seed, as it is stored, is one of a shard's.
 class ShardSeeds {
  public:
@@ -143,10 +152,23 @@ std::vector<StoredVariant> stored_variants(const Campaign& campaign,
   return variants;
 }
 
+void refuse_other_campaign(const std::string& path, const CampaignIdentity& stored,
+                           const CampaignIdentity& asked, const std::string& remedy) {
+  const std::optional<Difference> difference = difference_of(stored, asked);
+  if (!difference) return;
+  throw InputError({.file = path,
+                    .key = difference->key,
+                    .found = difference->found,
+                    .expected = difference->expected + remedy});
+}
+
 struct Store::Implementation {
-  explicit Implementation(std::string file)
+  Implementation(std::string file, StoreUse use)
       : path(std::move(file)),
-        database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kStorePatience) {
+        database(path, SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE, kStorePatience,
+                 use == StoreUse::kAlone ? kNoLocks : "") {
+    // Before the log is used for the first time: its index then stays in memory of this process.
+    if (use == StoreUse::kAlone) database.exec("PRAGMA locking_mode = EXCLUSIVE");
     // Found out before anything is written into a file that is not ours.
     const int schema = schema_of(database, path);
     refuse_newer(schema, path);
@@ -232,28 +254,26 @@ struct Store::Implementation {
 };
 
 Store::Store(const std::string& folder, const StoredCampaign& campaign,
-             const std::vector<StoredVariant>& variants, const SeedSet& seeds, bool update) {
+             const std::vector<StoredVariant>& variants, const SeedSet& seeds, bool update,
+             StoreUse use) {
   const std::string path = folder + "/" + kStoreFile;
   with_store_errors(path, [&] {
-    implementation_ = std::make_unique<Implementation>(path);
+    implementation_ = std::make_unique<Implementation>(path, use);
     SQLite::Database& database = implementation_->database;
     if (!implementation_->holds_campaign()) {
       implementation_->fill(campaign, variants);
     } else {
-      const StoredCampaign stored = read_campaign(database);
-      std::optional<Difference> difference = difference_of(stored, campaign);
-      if (!difference) difference = difference_of(read_variants(database), variants);
-      if (difference && !update) {
-        throw InputError({.file = path,
-                          .key = difference->key,
-                          .found = difference->found,
-                          .expected = difference->expected +
-                                      "; --update goes on with the changed campaign and keeps the "
-                                      "episodes that it still asks for"});
+      const CampaignIdentity stored{read_campaign(database), read_variants(database)};
+      const CampaignIdentity asked{campaign, variants};
+      const bool differs = difference_of(stored, asked).has_value();
+      if (differs && !update) {
+        refuse_other_campaign(path, stored, asked,
+                              "; --update goes on with the changed campaign and keeps the episodes "
+                              "that it still asks for");
       }
-      if (difference) {
+      if (differs) {
         implementation_->change(campaign, variants, seeds);
-      } else if (stored.risk_against_cost != campaign.risk_against_cost) {
+      } else if (stored.campaign.risk_against_cost != campaign.risk_against_cost) {
         SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
         insert_campaign(database, campaign);
         transaction.commit();

@@ -23,12 +23,33 @@ namespace qsmpc::harness {
 [[nodiscard]] std::vector<StoredVariant> stored_variants(const Campaign& campaign,
                                                          const std::vector<std::string>& digests);
 
+/// What tells campaigns apart.
+struct CampaignIdentity {
+  StoredCampaign campaign;
+  std::vector<StoredVariant> variants;
+};
+
+/// Refuses a store or plan at `path` of another campaign. Throws InputError with the first thing
+/// that differs; `remedy` follows what is expected, e.g. "; --update goes on".
+void refuse_other_campaign(const std::string& path, const CampaignIdentity& stored,
+                           const CampaignIdentity& asked, const std::string& remedy);
+
 /// What became of what a store held when its campaign changed.
 struct StoreUpdate {
   bool changed = false;
   std::int64_t kept = 0;              ///< episodes
   std::int64_t dropped = 0;           ///< episodes that the campaign no longer asks for
   std::vector<std::string> traces{};  ///< folders of their traces, relative to the campaign's
+};
+
+/// Who uses the file of a store while it is open.
+enum class StoreUse {
+  /// This process writes, others may read: the log's index is in memory that processes of one
+  /// machine share, so the file has to be on a file system of the machine itself.
+  kShared,
+  /// No other process, which is the caller's promise. Nothing is locked and no memory is shared, so
+  /// that the file may be on a network's file system, whatever that makes of locks.
+  kAlone
 };
 
 /// May be used by several threads at once.
@@ -44,7 +65,8 @@ class Store {
   /// Throws InputError on a store that is refused, also one of a newer schema; IoError where it
   /// cannot be read or written.
   Store(const std::string& folder, const StoredCampaign& campaign,
-        const std::vector<StoredVariant>& variants, const SeedSet& seeds, bool update);
+        const std::vector<StoredVariant>& variants, const SeedSet& seeds, bool update,
+        StoreUse use = StoreUse::kShared);
   ~Store();
   Store(const Store&) = delete;
   Store& operator=(const Store&) = delete;
