@@ -25,7 +25,7 @@ struct LaunchRequest {
   std::string folder;               ///< the campaign's; absolute, the same on every machine
   std::vector<std::string> worker;  ///< e.g. {"/usr/bin/qsmpc", "campaign", "work", folder}
   /// What is run once when all workers have ended; only where the launcher does not stay.
-  std::vector<std::string> gather;
+  std::vector<std::string> gather{};
   int tasks = 1;  ///< what `launch_tasks` says of the launcher's options
   int jobs = 1;   ///< cores that each worker uses
 };
