@@ -8,6 +8,7 @@
 
 #include "models/dynamics/dynamics.hpp"
 #include "models/random/random_numbers.hpp"
+#include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 
 namespace qsmpc::harness {
@@ -224,6 +225,14 @@ TEST(MujocoPlantMotion, is_the_same_bit_for_bit_on_another_plant_and_after_reset
   const std::vector<double> first = drive(*one);
   EXPECT_EQ(first, drive(*other));
   EXPECT_EQ(first, drive(*one));
+}
+
+TEST(MujocoPlantMotion, is_the_same_with_more_that_is_only_drawn) {
+  const testing::TemporaryFolder folder;
+  const std::string wheel = "<geom class=\"wheel\"";
+  const auto decorated =
+      make_car(folder.file("decorated.xml", altered_car(wheel, "<geom class=\"rim\"/>" + wheel)));
+  EXPECT_EQ(drive(*make_car()), drive(*decorated));
 }
 
 }  // namespace mujoco_plant_motion_test
