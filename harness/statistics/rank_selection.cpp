@@ -112,26 +112,35 @@ std::vector<double> values_at_ranks(const ValueStream& each, std::int64_t count,
   return RankSelection(each, count, ranks).values(most_kept);
 }
 
-Distribution distribution_of(const ValueStream& each, std::int64_t count, std::int64_t most_kept) {
-  SortedDistribution sorted(count);
-  if (count <= most_kept) {
-    std::vector<double> values;
-    values.reserve(static_cast<std::size_t>(count));
-    each([&](double value) { values.push_back(value); });
-    std::ranges::sort(values);
-    for (const double value : values) sorted.add(value);
-    return sorted.result();
+void KeptValues::add(double value) {
+  ++count_;
+  sum_ += value;
+  if (has_all()) {
+    values_.push_back(value);
+  } else if (!values_.empty()) {
+    std::vector<double>().swap(values_);
   }
-  double sum = 0.0;
-  each([&](double value) { sum += value; });
+}
+
+const std::vector<double>& KeptValues::sorted() {
+  std::ranges::sort(values_);
+  return values_;
+}
+
+Distribution KeptValues::distribution(const ValueStream& each) {
+  if (has_all()) {
+    SortedDistribution distribution(count_);
+    for (const double value : sorted()) distribution.add(value);
+    return distribution.result();
+  }
   std::vector<std::int64_t> ranks;
-  for (const double share : distribution_shares()) ranks.push_back(nearest_rank(share, count));
-  const std::vector<double> values = values_at_ranks(each, count, ranks, most_kept);
+  for (const double share : distribution_shares()) ranks.push_back(nearest_rank(share, count_));
+  const std::vector<double> values = values_at_ranks(each, count_, ranks, most_kept_);
   return {.median = values[0],
           .p95 = values[1],
           .p99 = values[2],
           .max = values[3],
-          .mean = sum / static_cast<double>(count)};
+          .mean = sum_ / static_cast<double>(count_)};
 }
 
 }  // namespace qsmpc::harness

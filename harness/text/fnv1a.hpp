@@ -19,6 +19,10 @@ class Fnv1a {
 
   /// The eight bytes of `number`, the lowest first.
   void add(std::uint64_t number) {
+    if (number < 256) {  // seven bytes that are 0 only multiply
+      state_ = (state_ ^ static_cast<Word>(number)) * kPrimeToTheEighth;
+      return;
+    }
     for (int n = 0; n < 8; ++n) add_byte(static_cast<unsigned char>(number >> (8 * n)));
   }
 
@@ -27,6 +31,10 @@ class Fnv1a {
  private:
   static constexpr bool kIsShort = sizeof(Word) == 4;
   static constexpr Word kPrime = kIsShort ? Word{0x01000193U} : static_cast<Word>(0x100000001b3U);
+
+  static constexpr Word kPrimeSquared = kPrime * kPrime;
+  static constexpr Word kPrimeToTheEighth =
+      kPrimeSquared * kPrimeSquared * kPrimeSquared * kPrimeSquared;
 
   void add_byte(unsigned char byte) { state_ = (state_ ^ byte) * kPrime; }
 

@@ -161,9 +161,10 @@ void make_store(const Campaign& campaign, const ScaleArguments& arguments, const
   SQLite::Database database(folder + "/" + kStoreFile, SQLite::OPEN_READWRITE);
   database.exec("PRAGMA journal_mode = DELETE; PRAGMA synchronous = OFF");
   SQLite::Transaction transaction(database);
+  EpisodeWriter writer(database);
   for (std::int64_t i = shard.index - 1; i < campaign.seeds.size(); i += shard.count) {
     for (std::int64_t v = 0; v < std::ssize(campaign.variants); ++v) {
-      insert_episode(database, made_row(v, campaign.seeds.at(i), arguments.periods));
+      writer.add(made_row(v, campaign.seeds.at(i), arguments.periods));
     }
   }
   transaction.commit();

@@ -14,41 +14,26 @@
 namespace qsmpc::harness {
 namespace {
 
-/// A number of a variant's episodes, as they stream by: kept while they are few enough to be
-/// sorted.
-class KeptNumbers {
- public:
-  explicit KeptNumbers(EpisodeNumber number) : number_(number) {}
-
-  void add(double value) {
-    ++count_;
-    if (count_ <= kMostSortedValues) values_.push_back(value);
-  }
-
-  [[nodiscard]] Spread spread(const StoreReader& store, std::int64_t variant,
-                              const SpreadTally& tally) {
-    std::ranges::sort(values_);
-    return tally.result([&](const std::function<void(double)>& visit) {
-      if (count_ > kMostSortedValues) {
-        store.for_each_sorted(variant, number_, visit);
-      } else {
-        std::ranges::for_each(values_, visit);
-      }
-    });
-  }
-
- private:
-  EpisodeNumber number_;
-  std::int64_t count_ = 0;
-  std::vector<double> values_{};
-};
+/// Of a number of a variant's episodes, those that were kept, or where they are too many the
+/// store's.
+Spread spread_of(const StoreReader& store, std::int64_t variant, EpisodeNumber number,
+                 const SpreadTally& tally, KeptValues& kept) {
+  return tally.result([&](const std::function<void(double)>& visit) {
+    if (kept.has_all()) {
+      std::ranges::for_each(kept.sorted(), visit);
+    } else {
+      store.for_each_sorted(variant, number, visit);
+    }
+  });
+}
 
 /// What is read of a variant.
 struct ReadVariant {
+  KeptValues ocp_ms{};
   VariantTally tally{};
-  KeptNumbers cost{EpisodeNumber::kCost};
-  KeptNumbers min_clearance{EpisodeNumber::kMinClearance};
-  KeptNumbers time_to_target{EpisodeNumber::kTimeToTarget};
+  KeptValues cost{};
+  KeptValues min_clearance{};
+  KeptValues time_to_target{};
 };
 
 ReadVariant read_variant(const StoreReader& store, std::int64_t variant) {
@@ -60,8 +45,11 @@ ReadVariant read_variant(const StoreReader& store, std::int64_t variant) {
     if (!std::isnan(row.min_clearance)) read.min_clearance.add(row.min_clearance);
     if (row.time_to_target) read.time_to_target.add(*row.time_to_target);
   });
-  store.for_each_period(variant, [&](std::uint64_t /*seed*/, std::int64_t period,
-                                     const PeriodRow& row) { read.tally.add(period, row); });
+  store.for_each_period(variant,
+                        [&](std::uint64_t /*seed*/, std::int64_t period, const PeriodRow& row) {
+                          read.tally.add(period, row);
+                          read.ocp_ms.add(row.ocp_ms);
+                        });
   return read;
 }
 
@@ -89,12 +77,16 @@ VariantStatistics statistics_of(const StoreReader& store, const StoredVariant& v
   statistics.scenario_text = variant.scenario_text;
   statistics.no_bound = no_bound_of(variant);
   statistics.episodes = store.campaign().episodes / std::ssize(store.variants());
-  statistics.cost = read.cost.spread(store, variant.id, tally.cost());
-  statistics.min_clearance = read.min_clearance.spread(store, variant.id, tally.min_clearance());
-  statistics.time_to_target = read.time_to_target.spread(store, variant.id, tally.time_to_target());
-  statistics.ocp_ms = distribution_of(
-      [&](const std::function<void(double)>& visit) { store.for_each_ocp_ms(variant.id, visit); },
-      statistics.periods);
+  const auto spread = [&](EpisodeNumber number, const SpreadTally& counted, KeptValues& kept) {
+    return spread_of(store, variant.id, number, counted, kept);
+  };
+  statistics.cost = spread(EpisodeNumber::kCost, tally.cost(), read.cost);
+  statistics.min_clearance =
+      spread(EpisodeNumber::kMinClearance, tally.min_clearance(), read.min_clearance);
+  statistics.time_to_target =
+      spread(EpisodeNumber::kTimeToTarget, tally.time_to_target(), read.time_to_target);
+  statistics.ocp_ms = read.ocp_ms.distribution(
+      [&](const std::function<void(double)>& visit) { store.for_each_ocp_ms(variant.id, visit); });
   store.for_each_path(variant.id, kMostDrawnPaths,
                       [&](const std::string& outcome, const std::vector<PathPoint>& path) {
                         statistics.paths.push_back({.outcome = outcome, .points = path});

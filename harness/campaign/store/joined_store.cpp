@@ -61,7 +61,8 @@ class Attached {
 
 JoinedStore::JoinedStore(const std::string& path, const StoredCampaign& campaign,
                          const std::vector<StoredVariant>& variants)
-    : database_(path, SQLite::OPEN_READWRITE | SQLite::OPEN_URI, kStorePatience) {
+    : database_(path, SQLite::OPEN_READWRITE | SQLite::OPEN_URI | SQLite::OPEN_NOMUTEX,
+                kStorePatience) {
   // Until it has its name, nobody needs it: nothing is kept with which to undo what is done to it.
   database_.exec("PRAGMA page_size = 16384; PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF");
   database_.exec(fmt::format("PRAGMA cache_size = -{}", kJoinedCacheSize));

@@ -250,6 +250,7 @@ struct Store::Implementation {
   SQLite::Database database;
   std::mutex mutex{};
   StoreUpdate changes{};
+  std::optional<EpisodeWriter> writer{};  ///< once an episode is added
   std::vector<std::int64_t> ids{};
 };
 
@@ -319,7 +320,8 @@ void Store::add(const EpisodeRow& row, bool replace) {
     SQLite::Database& database = implementation_->database;
     SQLite::Transaction transaction(database, SQLite::TransactionBehavior::IMMEDIATE);
     if (replace) delete_episode(database, row.variant, row.seed);
-    insert_episode(database, row);
+    if (!implementation_->writer) implementation_->writer.emplace(database);
+    implementation_->writer->add(row);
     transaction.commit();
   });
 }

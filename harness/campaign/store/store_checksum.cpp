@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -70,11 +71,10 @@ void add_real(double value, Hash& hash) {
   if (!std::isnan(value)) hash.add(std::bit_cast<std::uint64_t>(value));
 }
 
-/// Checksums of episodes of one store. Periods count as the rows, one a period, that they were in
-/// earlier schemas.
-class Checksums {
- public:
-  explicit Checksums(SQLite::Database& database)
+}  // namespace
+
+struct EpisodeChecksums::Implementation {
+  explicit Implementation(SQLite::Database& database)
       : episode_(database, kEpisodeQuery),
         timing_(database, kTimingQuery),
         periods_(database, kPeriodsQuery),
@@ -152,18 +152,17 @@ class Checksums {
   std::vector<double> times_{};
 };
 
-}  // namespace
+EpisodeChecksums::EpisodeChecksums(SQLite::Database& database)
+    : implementation_(std::make_unique<Implementation>(database)) {}
 
-void insert_checksum(SQLite::Database& database, std::int64_t variant, std::int64_t seed) {
-  SQLite::Statement statement(database, "INSERT INTO episode_checksum VALUES (?, ?, ?)");
-  statement.bind(1, variant);
-  statement.bind(2, seed);
-  statement.bind(3, Checksums(database).of(variant, seed));
-  statement.exec();
+EpisodeChecksums::~EpisodeChecksums() = default;
+
+std::int64_t EpisodeChecksums::of(std::int64_t variant, std::int64_t seed) {
+  return implementation_->of(variant, seed);
 }
 
 std::optional<StoredEpisode> damaged_episode(SQLite::Database& database) {
-  Checksums checksums(database);
+  EpisodeChecksums checksums(database);
   SQLite::Statement statement(database, "SELECT variant, seed, checksum FROM episode_checksum");
   while (statement.executeStep()) {
     const StoredEpisode episode{.variant = statement.getColumn(0).getInt64(),

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 // NOLINTNEXTLINE(readability-identifier-naming): the name that its library gives it
@@ -12,9 +13,23 @@ class Database;
 
 namespace qsmpc::harness {
 
-/// Adds the checksum of an episode whose rows are there: of all their numbers and texts but the
-/// variant's, which differs between shards. To be called within the rows' transaction.
-void insert_checksum(SQLite::Database& database, std::int64_t variant, std::int64_t seed);
+/// Checksums of episodes of one store: of all numbers and texts of their rows but the variant's,
+/// which differs between shards. Periods count as the rows, one a period, that they were in earlier
+/// schemas.
+class EpisodeChecksums {
+ public:
+  explicit EpisodeChecksums(SQLite::Database& database);
+  ~EpisodeChecksums();
+  EpisodeChecksums(const EpisodeChecksums&) = delete;
+  EpisodeChecksums& operator=(const EpisodeChecksums&) = delete;
+
+  /// Of the rows that are there now. Throws SQLite::Exception.
+  [[nodiscard]] std::int64_t of(std::int64_t variant, std::int64_t seed);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 /// An episode, as the store numbers it.
 struct StoredEpisode {

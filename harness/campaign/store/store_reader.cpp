@@ -80,7 +80,7 @@ class EpisodeCursor {
 };
 
 SQLite::Database open_database(const std::string& path) {
-  SQLite::Database database(path, SQLite::OPEN_READONLY, kStorePatience);
+  SQLite::Database database(path, SQLite::OPEN_READONLY | SQLite::OPEN_NOMUTEX, kStorePatience);
   // The first read takes the state of the store that all later ones see.
   database.exec("BEGIN");
   return database;

@@ -56,6 +56,7 @@ struct StoredCampaign {
 /// A column of the table of episodes.
 enum class EpisodeNumber { kCost, kMinClearance, kTimeToTarget };
 
+/// To be used by one thread at a time.
 class StoreReader {
  public:
   /// Opens the store of the campaign in `folder`. Throws InputError where there is none, or one of

@@ -26,24 +26,13 @@ void bind_number(SQLite::Statement& statement, int index, double value) {
   }
 }
 
+void bind_optional(SQLite::Statement& statement, int index, const std::optional<double>& value) {
+  bind_number(statement, index, value.value_or(std::numeric_limits<double>::quiet_NaN()));
+}
+
 void run(SQLite::Statement& statement) {
   statement.exec();
   statement.reset();
-}
-
-void insert_periods(SQLite::Database& database, const EpisodeRow& row) {
-  if (row.periods.empty()) return;
-  SQLite::Statement periods(database, "INSERT INTO episode_periods VALUES (?, ?, ?, ?)");
-  SQLite::Statement times(database, "INSERT INTO episode_ocp_ms VALUES (?, ?, ?)");
-  for (SQLite::Statement* statement : {&periods, &times}) {
-    statement->bind(1, row.variant);
-    statement->bind(2, stored_seed(row.seed));
-  }
-  periods.bind(3, certificates_text(row.periods));
-  periods.bind(4, unsafe_text(row.periods));
-  times.bind(3, ocp_ms_text(row.periods));
-  run(periods);
-  run(times);
 }
 
 /// As JSON, which SQLite reads (json_each).
@@ -53,15 +42,6 @@ std::string path_text(const std::vector<PathPoint>& path) {
     text += fmt::format("{}[{:.6g},{:.6g}]", text.size() == 1 ? "" : ",", point.x, point.y);
   }
   return text + "]";
-}
-
-void insert_path(SQLite::Database& database, const EpisodeRow& row) {
-  if (row.path.empty()) return;
-  SQLite::Statement path(database, "INSERT INTO path VALUES (?, ?, ?)");
-  path.bind(1, row.variant);
-  path.bind(2, stored_seed(row.seed));
-  path.bind(3, path_text(row.path));
-  run(path);
 }
 
 void insert_families(SQLite::Database& database, const std::vector<VariantFamily>& families) {
@@ -205,47 +185,98 @@ std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database) {
   return outcomes;
 }
 
-void insert_episode(SQLite::Database& database, const EpisodeRow& row) {
-  SQLite::Statement episode(
-      database,
-      "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?)");
-  episode.bind(1, row.variant);
-  episode.bind(2, stored_seed(row.seed));
-  episode.bind(3, row.outcome);
-  episode.bind(4, row.fault);
-  episode.bind(5, row.steps);
-  bind_number(episode, 6, row.time_to_target.value_or(std::numeric_limits<double>::quiet_NaN()));
-  episode.bind(7, row.unsafe ? 1 : 0);
-  bind_number(episode, 8, row.min_clearance);
-  bind_number(episode, 9, row.cost);
-  bind_number(episode, 10, row.next_step_max);
-  bind_number(episode, 11, row.next_step_sum);
-  bind_number(episode, 12, row.horizon_max);
-  bind_number(episode, 13, row.thesis_max);
-  bind_number(episode, 14, row.iterations_median);
-  episode.bind(15, row.fallbacks);
-  episode.bind(16, row.trace);
-  episode.bind(17, row.version);
-  if (row.risk_exceeded) {
-    episode.bind(18, *row.risk_exceeded);
-  } else {
-    episode.bind(18);
+struct EpisodeWriter::Implementation {
+  explicit Implementation(SQLite::Database& written)
+      : database(written),
+        episode(database,
+                "INSERT INTO episode VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, "
+                "?, ?)"),
+        timing(database, "INSERT INTO episode_timing VALUES (?, ?, ?, ?, ?)"),
+        periods(database, "INSERT INTO episode_periods VALUES (?, ?, ?, ?)"),
+        times(database, "INSERT INTO episode_ocp_ms VALUES (?, ?, ?)"),
+        path(database, "INSERT INTO path VALUES (?, ?, ?)"),
+        checksum(database, "INSERT INTO episode_checksum VALUES (?, ?, ?)"),
+        checksums(database) {}
+
+  static void begin(SQLite::Statement& statement, const EpisodeRow& row) {
+    statement.reset();  // after one that failed
+    statement.bind(1, row.variant);
+    statement.bind(2, stored_seed(row.seed));
   }
-  bind_number(episode, 19, row.believed_max.value_or(std::numeric_limits<double>::quiet_NaN()));
-  bind_number(episode, 20, row.believed_sum.value_or(std::numeric_limits<double>::quiet_NaN()));
-  run(episode);
-  SQLite::Statement timing(database, "INSERT INTO episode_timing VALUES (?, ?, ?, ?, ?)");
-  timing.bind(1, row.variant);
-  timing.bind(2, stored_seed(row.seed));
-  timing.bind(3, row.timing.finished_at);
-  timing.bind(4, row.timing.wall_ms);
-  timing.bind(5, row.timing.deadline_misses);
-  run(timing);
-  insert_periods(database, row);
-  insert_path(database, row);
-  if (row.rare) insert_rare(database, row.variant, stored_seed(row.seed), *row.rare);
-  insert_checksum(database, row.variant, stored_seed(row.seed));
-}
+
+  void add_episode(const EpisodeRow& row) {
+    begin(episode, row);
+    episode.bind(3, row.outcome);
+    episode.bind(4, row.fault);
+    episode.bind(5, row.steps);
+    bind_optional(episode, 6, row.time_to_target);
+    episode.bind(7, row.unsafe ? 1 : 0);
+    bind_number(episode, 8, row.min_clearance);
+    bind_number(episode, 9, row.cost);
+    bind_number(episode, 10, row.next_step_max);
+    bind_number(episode, 11, row.next_step_sum);
+    bind_number(episode, 12, row.horizon_max);
+    bind_number(episode, 13, row.thesis_max);
+    bind_number(episode, 14, row.iterations_median);
+    episode.bind(15, row.fallbacks);
+    episode.bind(16, row.trace);
+    episode.bind(17, row.version);
+    if (row.risk_exceeded) {
+      episode.bind(18, *row.risk_exceeded);
+    } else {
+      episode.bind(18);
+    }
+    bind_optional(episode, 19, row.believed_max);
+    bind_optional(episode, 20, row.believed_sum);
+    run(episode);
+  }
+
+  void add_periods(const EpisodeRow& row) {
+    if (row.periods.empty()) return;
+    begin(periods, row);
+    periods.bind(3, certificates_text(row.periods));
+    periods.bind(4, unsafe_text(row.periods));
+    run(periods);
+    begin(times, row);
+    times.bind(3, ocp_ms_text(row.periods));
+    run(times);
+  }
+
+  void add(const EpisodeRow& row) {
+    add_episode(row);
+    begin(timing, row);
+    timing.bind(3, row.timing.finished_at);
+    timing.bind(4, row.timing.wall_ms);
+    timing.bind(5, row.timing.deadline_misses);
+    run(timing);
+    add_periods(row);
+    if (!row.path.empty()) {
+      begin(path, row);
+      path.bind(3, path_text(row.path));
+      run(path);
+    }
+    if (row.rare) insert_rare(database, row.variant, stored_seed(row.seed), *row.rare);
+    begin(checksum, row);
+    checksum.bind(3, checksums.of(row.variant, stored_seed(row.seed)));
+    run(checksum);
+  }
+
+  SQLite::Database& database;
+  SQLite::Statement episode;
+  SQLite::Statement timing;
+  SQLite::Statement periods;
+  SQLite::Statement times;
+  SQLite::Statement path;
+  SQLite::Statement checksum;
+  EpisodeChecksums checksums;
+};
+
+EpisodeWriter::EpisodeWriter(SQLite::Database& database)
+    : implementation_(std::make_unique<Implementation>(database)) {}
+
+EpisodeWriter::~EpisodeWriter() = default;
+
+void EpisodeWriter::add(const EpisodeRow& row) { implementation_->add(row); }
 
 void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed) {
   for (const char* table : kEpisodeTables) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -57,9 +58,21 @@ inline constexpr std::array kEpisodeTables{"episode",         "episode_timing", 
 /// Episodes by how they ended.
 [[nodiscard]] std::map<std::string, std::int64_t> count_outcomes(SQLite::Database& database);
 
-/// Adds an episode with its periods. To be called within a transaction. Throws SQLite::Exception,
-/// also where the store has it.
-void insert_episode(SQLite::Database& database, const EpisodeRow& row);
+/// Adds episodes with their periods, path and checksum. To be used within transactions.
+class EpisodeWriter {
+ public:
+  explicit EpisodeWriter(SQLite::Database& database);
+  ~EpisodeWriter();
+  EpisodeWriter(const EpisodeWriter&) = delete;
+  EpisodeWriter& operator=(const EpisodeWriter&) = delete;
+
+  /// Throws SQLite::Exception, also where the store has the episode.
+  void add(const EpisodeRow& row);
+
+ private:
+  struct Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 /// Removes an episode with its periods, if it is there. To be called within a transaction.
 void delete_episode(SQLite::Database& database, std::int64_t variant, std::uint64_t seed);
 

@@ -71,9 +71,16 @@ TEST(RankSelection, a_distribution_is_the_same_whether_its_values_are_kept_or_no
   CountedStream source{.values = mixed_values()};
   source.values.erase(source.values.begin());  // the mean is to be finite
   source.values.erase(source.values.begin() + 3);
-  const std::int64_t count = std::ssize(source.values);
-  const Distribution kept = distribution_of(source.stream(), count);
-  const Distribution selected = distribution_of(source.stream(), count, 50);
+  KeptValues all;
+  KeptValues few(50);
+  for (const double value : source.values) {
+    all.add(value);
+    few.add(value);
+  }
+  EXPECT_TRUE(all.has_all());
+  EXPECT_FALSE(few.has_all());
+  const Distribution kept = all.distribution(source.stream());
+  const Distribution selected = few.distribution(source.stream());
   EXPECT_EQ(kept.median, selected.median);
   EXPECT_EQ(kept.p95, selected.p95);
   EXPECT_EQ(kept.p99, selected.p99);

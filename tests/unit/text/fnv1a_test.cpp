@@ -1,5 +1,7 @@
 #include "harness/text/fnv1a.hpp"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 namespace qsmpc::harness {
@@ -25,6 +27,19 @@ TEST(Fnv1a, of_a_number_is_that_of_its_bytes) {
   Fnv1a<std::uint64_t> digest;
   digest.add(std::uint64_t{0x6261});
   EXPECT_EQ(digest.value(), digest_of<std::uint64_t>(std::string_view("ab\0\0\0\0\0\0", 8)));
+}
+
+TEST(Fnv1a, of_a_small_number_is_that_of_its_bytes) {
+  for (const unsigned char number : {0U, 1U, 97U, 255U}) {
+    const std::string bytes{static_cast<char>(number), 0, 0, 0, 0, 0, 0, 0};
+    Fnv1a<std::uint64_t> digest;
+    digest.add(std::string_view("x"));
+    digest.add(std::uint64_t{number});
+    EXPECT_EQ(digest.value(), digest_of<std::uint64_t>("x" + bytes));
+    Fnv1a<std::uint32_t> shorter;
+    shorter.add(std::uint64_t{number});
+    EXPECT_EQ(shorter.value(), digest_of<std::uint32_t>(bytes));
+  }
 }
 
 }  // namespace fnv1a_test
