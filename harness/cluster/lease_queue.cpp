@@ -109,7 +109,8 @@ std::vector<SeedOutcomes> finished_outcomes(const std::string& folder, std::int6
   if (!text) throw IoError(path + ": is gone");
   try {
     std::vector<SeedOutcomes> seeds;
-    for (const Json& seed : Json::parse(*text).at("seeds")) {
+    const Json json = Json::parse(*text);
+    for (const Json& seed : json.at("seeds")) {
       seeds.push_back({.seed_index = seed.at("index"),
                        .outcomes = seed.at("outcomes"),
                        .unsafe = seed.at("unsafe")});
