@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -14,11 +16,14 @@
 #include "harness/campaign/runner.hpp"
 #include "harness/cli/campaign_driving.hpp"
 #include "harness/cli/campaign_results.hpp"
+#include "harness/cli/campaign_tasks.hpp"
 #include "harness/cli/commands.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/fail_on.hpp"
+#include "harness/cli/launch_arguments.hpp"
 #include "harness/cli/output.hpp"
 #include "harness/cli/plant_warnings.hpp"
+#include "harness/cluster/start_tasks.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/files/text_file.hpp"
@@ -38,7 +43,8 @@ constexpr const char* kCampaignExample =
     "How far it is, from another terminal: qsmpc campaign status out/policies\n"
     "On two machines: qsmpc campaign dubins_policies --shard 1/2 --out out/one, --shard 2/2 on "
     "the\n"
-    "other, then: qsmpc campaign merge out/one out/two --out out/policies";
+    "other, then: qsmpc campaign merge out/one out/two --out out/policies\n"
+    "On many that share a folder: qsmpc campaign dubins_policies --on slurm --tasks 20 --out DIR";
 constexpr int kMostJobs = 1024;
 constexpr std::int64_t kMostShards = 1'000'000;
 
@@ -51,6 +57,10 @@ struct CampaignArguments {
   bool json = false;
   std::vector<std::string> fail_on = {"fault"};
   CampaignOptions options;
+  LaunchOptions launch;          ///< `on` is empty where this process drives by itself
+  bool has_jobs = false;         ///< --jobs was given
+  std::int64_t lease_seeds = 0;  ///< 0: not given
+  std::int64_t lost_after = TaskLaunch{}.lost_after.count();  ///< s
 };
 
 /// "I/N", 1 ≤ I ≤ N. Throws InputError on something else.
@@ -69,16 +79,67 @@ Shard parse_shard(const std::string& text) {
                     .expected = fmt::format("I/N with 1 <= I <= N <= {}, e.g. 1/4", kMostShards)});
 }
 
+/// Refuses options that do not go together.
+void check_launch(const CampaignArguments& arguments) {
+  if (arguments.launch.on.empty()) {
+    if (arguments.lease_seeds == 0 && arguments.launch == LaunchOptions{}) return;
+    throw InputError({.key = "--on",
+                      .found = "nothing, and options of tasks",
+                      .expected = "local, ssh:HOSTS or slurm"});
+  }
+  check_launch_options(arguments.launch);
+  const auto refuse = [](const char* option, bool given) {
+    if (!given) return;
+    throw InputError({.key = option, .found = "--on beside it", .expected = "one of the two"});
+  };
+  refuse("--shard", !arguments.shard.empty());
+  refuse("--update", arguments.options.update);
+  refuse("--retry-faults", arguments.options.retry_faults);
+}
+
+/// Episodes at the same time, of each task; 0: as many as its machine has cores.
+int jobs_of_tasks(const CampaignArguments& arguments) {
+  if (arguments.has_jobs) return arguments.options.jobs;
+  if (arguments.launch.on.starts_with("ssh:")) return 0;
+  if (arguments.launch.on != "local") return 1;
+  return std::max(1, available_threads() / launch_tasks(arguments.launch));
+}
+
+/// The campaign by tasks: a plan in the folder, then `resume` without a former launch.
+int campaign_of_tasks(const Campaign& campaign, const std::string& folder,
+                      const CampaignArguments& arguments) {
+  const int jobs = jobs_of_tasks(arguments);
+  const int tasks = launch_tasks(arguments.launch);
+  if (arguments.launch.on == "local") {
+    refuse_beyond_memory(campaign, arguments.campaign, jobs * tasks);
+  }
+  tell_plant_warnings(campaign);
+  make_output_folder(folder);
+  const std::string shared = std::filesystem::canonical(folder).string();
+  plan_tasks(campaign, shared, arguments.lease_seeds,
+             static_cast<std::int64_t>(std::max(jobs, 1)) * tasks);
+  write_file(shared + "/" + kCampaignCopy, read_text_file(find_campaign(arguments.campaign)));
+  const TaskLaunch request{.options = launch_options_text(arguments.launch),
+                           .jobs = jobs,
+                           .lost_after = std::chrono::seconds(arguments.lost_after)};
+  return drive_with_tasks(
+      shared, request,
+      {.quiet = arguments.quiet, .json = arguments.json, .fail_on = arguments.fail_on});
+}
+
 int campaign_command(CampaignArguments& arguments) {
+  check_launch(arguments);
   const Campaign campaign = load_campaign(arguments.campaign);
   if (!arguments.shard.empty()) arguments.options.shard = parse_shard(arguments.shard);
   if (arguments.dry_run) {
     print_result(arguments.json ? campaign_plan_json(campaign) : campaign_plan_text(campaign));
     return kDone;
   }
-  refuse_beyond_memory(campaign, arguments.campaign, arguments.options.jobs);
   const std::string folder =
       arguments.out.empty() ? default_folder(campaign.name, "campaign") : arguments.out;
+  if (!arguments.launch.on.empty()) return campaign_of_tasks(campaign, folder, arguments);
+  refuse_beyond_memory(campaign, arguments.campaign, arguments.options.jobs);
+  refuse_unfinished_tasks(folder);
   tell_plant_warnings(campaign);
   const CampaignProgress end =
       drive_campaign(campaign, folder, arguments.options, {.quiet = arguments.quiet});
@@ -92,6 +153,24 @@ int campaign_command(CampaignArguments& arguments) {
     return kInterruptedExit;
   }
   return asked_to_tell(arguments.fail_on, statistics) ? kToldFailure : kDone;
+}
+
+void add_tasks_options(CLI::App& command, CampaignArguments& arguments) {
+  constexpr std::int64_t kLongest = 86'400;
+  command.add_option("--on", arguments.launch.on,
+                     "drive with tasks that share the output folder: local, ssh:HOSTS or slurm");
+  command.add_option("--tasks", arguments.launch.tasks, "with --on: how many; default: 1")
+      ->check(CLI::Range(1, kMostTasks));
+  command
+      .add_option("--lease", arguments.lease_seeds,
+                  "with --on: seeds that a task takes at a time; default: by their number")
+      ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}));
+  command
+      .add_option("--lost-after", arguments.lost_after,
+                  "with --on: s without a sign of a task until others drive what it had begun; "
+                  "default: 120")
+      ->check(CLI::Range(std::int64_t{1}, kLongest));
+  add_launch_options(command, arguments.launch);
 }
 
 void add_campaign_options(CLI::App& command, CampaignArguments& arguments) {
@@ -126,12 +205,15 @@ void add_campaign_command(CLI::App& app, int& exit_code) {
   const auto arguments = std::make_shared<CampaignArguments>();
   arguments->options.jobs = std::min(kMostJobs, available_threads());
   add_campaign_options(*command, *arguments);
+  add_tasks_options(*command, *arguments);
   add_campaign_status_command(*command, exit_code);
   add_campaign_merge_command(*command, exit_code);
+  add_campaign_tasks_commands(*command, exit_code);
   // The callback is called for the subcommands, too.
   command->callback([command, arguments, &exit_code] {
     if (!command->get_subcommands().empty()) return;
     if (arguments->campaign.empty()) throw CLI::RequiredError("campaign");
+    arguments->has_jobs = command->count("--jobs") > 0;
     exit_code = campaign_command(*arguments);
   });
 }

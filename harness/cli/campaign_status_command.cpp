@@ -11,6 +11,8 @@
 #include "harness/cli/contest_files.hpp"
 #include "harness/cli/exit_codes.hpp"
 #include "harness/cli/output.hpp"
+#include "harness/cluster/cluster_status.hpp"
+#include "harness/cluster/lease_plan.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -37,6 +39,12 @@ void add_campaign_status_command(CLI::App& campaign, int& exit_code) {
   command->add_option("folder", *folder, "folder of a campaign or contest")->required();
   command->add_flag("--json", *json, "as JSON");
   command->callback([folder, json, &exit_code] {
+    if (has_lease_plan(*folder)) {
+      const ClusterStatus status = cluster_status(*folder);
+      print_result(*json ? cluster_status_json(status) : cluster_status_table(status));
+      exit_code = kDone;
+      return;
+    }
     const CampaignStatus status = campaign_status(store_folder(*folder));
     print_result(*json ? status_json(status) : status_table(status));
     exit_code = kDone;

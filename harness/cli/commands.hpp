@@ -14,6 +14,7 @@ void add_campaign_command(CLI::App& app, int& exit_code);
 /// `campaign` is the command that these belong to.
 void add_campaign_status_command(CLI::App& campaign, int& exit_code);
 void add_campaign_merge_command(CLI::App& campaign, int& exit_code);
+void add_campaign_tasks_commands(CLI::App& campaign, int& exit_code);
 /// `app` must outlive the parsing: its commands are what is completed.
 void add_completion_command(CLI::App& app, int& exit_code);
 void add_compare_command(CLI::App& app, int& exit_code);
