@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -28,6 +29,10 @@ using Clock = std::chrono::steady_clock;
 
 // Drivers at rest are kept for this many variants, as each takes some megabytes.
 constexpr std::size_t kDriversPerJob = 4;
+
+// How much later than its controllers' processes this one may hear of a signal to stop.
+constexpr std::chrono::milliseconds kSignalsApart{500};
+constexpr std::chrono::milliseconds kLook{10};
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -87,6 +92,7 @@ class CampaignRun {
     const Trace trace = drivers_.run(campaign_.variants[task.variant].resolved, options);
     // What was cut short says nothing, and will be driven again.
     if (trace.outcome == Outcome::kInterrupted || !source_.is_wanted(task)) return;
+    if (ended_with_its_controller(trace)) return;
     EpisodeRow row = episode_row(EpisodeView(trace), store_.variant_ids()[task.variant]);
     if (!add_rare(task, row)) return;
     if (keeps_trace(task, row)) keep(trace, row);
@@ -104,6 +110,15 @@ class CampaignRun {
     row.rare = rare_run(campaign_.variants[task.variant].resolved, *campaign_.rare, row.seed,
                         [this, &task] { return stopped() || !source_.is_wanted(task); });
     return row.rare.has_value();
+  }
+
+  /// Whether the controller's failure comes from a signal to stop that went to all processes of a
+  /// job, as Slurm's do, and reached a controller outside of the program first.
+  [[nodiscard]] bool ended_with_its_controller(const Trace& trace) const {
+    if (trace.outcome != Outcome::kFault || trace.fault_of != FaultOf::kController) return false;
+    const auto until = Clock::now() + kSignalsApart;
+    while (!stopped() && Clock::now() < until) std::this_thread::sleep_for(kLook);
+    return stopped();
   }
 
   [[nodiscard]] bool keeps_trace(const EpisodeTask& task, const EpisodeRow& row) const {
