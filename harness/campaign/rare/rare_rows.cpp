@@ -9,7 +9,7 @@
 namespace qsmpc::harness {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 /// As JSON, which SQLite reads (json_each).
 std::string found_text(const std::vector<RareDrive>& found) {
