@@ -30,7 +30,7 @@ TEST(Fnv1a, of_a_number_is_that_of_its_bytes) {
 }
 
 TEST(Fnv1a, of_a_small_number_is_that_of_its_bytes) {
-  for (const unsigned char number : {0U, 1U, 97U, 255U}) {
+  for (const unsigned number : {0U, 1U, 97U, 255U}) {
     const std::string bytes{static_cast<char>(number), 0, 0, 0, 0, 0, 0, 0};
     Fnv1a<std::uint64_t> digest;
     digest.add(std::string_view("x"));
