@@ -36,7 +36,8 @@ struct CampaignStatistics {
   std::vector<TradeoffPanel> tradeoff{};  ///< where the campaign asks for risk against cost
 };
 
-/// Reads every row some times, in a fixed order; memory grows with the number of variants only.
+/// Reads every row some times, in a fixed order. Memory grows with the number of variants, and of a
+/// variant at a time with its numbers that are sorted, up to kMostSortedValues of each kind.
 /// Throws what the store throws.
 [[nodiscard]] CampaignStatistics campaign_statistics(const StoreReader& store);
 

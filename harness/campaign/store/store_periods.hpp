@@ -1,5 +1,5 @@
 // The periods of an episode as the store keeps them: one row an episode, with JSON that SQLite
-// reads (json_each), for a row a period would take most of the time and room of a large campaign.
+// reads (json_each), for a row a period would take most of the time of a large campaign.
 #pragma once
 
 #include <cstdint>
