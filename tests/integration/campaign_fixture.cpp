@@ -6,7 +6,9 @@
 #include <sstream>
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/mount.h>
 
 #include "harness/campaign/store/store_reader.hpp"
 
@@ -125,6 +127,29 @@ std::vector<std::string> files_below(const std::string& folder, const std::strin
   }
   std::ranges::sort(names);
   return names;
+}
+
+SmallDisk::SmallDisk(std::string path, int kilobytes)
+    : path_(std::move(path)), kilobytes_(kilobytes) {
+  fs::create_directories(path_);
+  mounted_ =
+      mount("none", path_.c_str(), "tmpfs", 0, fmt::format("size={}k", kilobytes).c_str()) == 0;
+}
+
+SmallDisk::~SmallDisk() {
+  if (mounted_) umount2(path_.c_str(), MNT_DETACH);
+}
+
+ProcessOptions SmallDisk::when_small() const {
+  ProcessOptions options;
+  if (!mounted_) options.file_size_limit = 600L * kilobytes_;
+  return options;
+}
+
+void SmallDisk::grow() const {
+  if (mounted_) {
+    ASSERT_EQ(mount("none", path_.c_str(), "tmpfs", MS_REMOUNT, "size=64m"), 0);
+  }
 }
 
 }  // namespace qsmpc::testing

@@ -25,4 +25,21 @@ namespace qsmpc::testing {
 [[nodiscard]] std::vector<std::string> files_below(const std::string& folder,
                                                    const std::string& ending);
 
+/// A small file system in memory where it may be mounted, else an ordinary folder.
+class SmallDisk {
+ public:
+  explicit SmallDisk(std::string path, int kilobytes = 200);
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+  ~SmallDisk();
+  /// What makes a process fail on it for want of space.
+  [[nodiscard]] ProcessOptions when_small() const;
+  void grow() const;
+
+ private:
+  std::string path_;
+  int kilobytes_;
+  bool mounted_ = false;
+};
+
 }  // namespace qsmpc::testing

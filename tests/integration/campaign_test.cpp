@@ -15,7 +15,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/mount.h>
 
 #include "harness/campaign/store/folder_lock.hpp"
 #include "harness/trace/trace_file.hpp"
@@ -188,41 +187,12 @@ TEST(Campaign, killed_at_any_moment_and_started_again_it_ends_as_if_it_never_was
   expect_same_campaign(killed, whole);
 }
 
-/// A small file system in memory where it may be mounted, else an ordinary folder.
-class SmallDisk {
- public:
-  explicit SmallDisk(std::string path) : path_(std::move(path)) {
-    fs::create_directories(path_);
-    mounted_ = mount("none", path_.c_str(), "tmpfs", 0, "size=200k") == 0;
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  ~SmallDisk() {
-    if (mounted_) umount2(path_.c_str(), MNT_DETACH);
-  }
-  /// What makes a process fail on it for want of space.
-  [[nodiscard]] ProcessOptions when_small() const {
-    ProcessOptions options;
-    if (!mounted_) options.file_size_limit = 120'000;
-    return options;
-  }
-  void grow() const {
-    if (mounted_) {
-      ASSERT_EQ(mount("none", path_.c_str(), "tmpfs", MS_REMOUNT, "size=64m"), 0);
-    }
-  }
-
- private:
-  std::string path_;
-  bool mounted_ = false;
-};
-
 TEST(Campaign, a_full_disk_loses_nothing_that_was_done) {
   const TemporaryFolder folder;
   const std::string file = testing::short_campaign(folder, 60);
   ASSERT_EQ(campaign(file, folder / "whole", {"--quiet"}).exit_code, 0);
   const std::string out = folder / "small";
-  const SmallDisk disk(out);
+  const testing::SmallDisk disk(out);
   for (int attempt = 0; attempt < 2; ++attempt) {
     const ProcessResult full = campaign(file, out, {"--quiet"}, disk.when_small());
     EXPECT_EQ(full.exit_code, 3) << full.errors;
