@@ -12,7 +12,7 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr double kTail = 0.005;  // of each limit: 99 % between them
+constexpr double kRareTail = 0.005;  // of each limit: 99 % between them
 
 std::vector<double> column_of(const std::vector<RareRow>& rows, double RareRow::*column) {
   std::vector<double> values;
@@ -41,10 +41,11 @@ void set_limits(const std::vector<RareRow>& rows, const std::vector<double>& est
   const auto found = std::ranges::count_if(estimates, [](double value) { return value > 0.0; });
   if (none_split || found < 2) {
     statistics.limits = RareLimits::kPlain;
-    statistics.interval = clopper_pearson(statistics.plain_unsafe, statistics.plain_drives, kTail);
+    statistics.interval =
+        clopper_pearson(statistics.plain_unsafe, statistics.plain_drives, kRareTail);
     return;
   }
-  statistics.interval = skewed_mean_interval(estimates, kTail);
+  statistics.interval = skewed_mean_interval(estimates, kRareTail);
   // Below the floor nothing is seen.
   if (statistics.below_floor > 0) statistics.interval.upper += rows.front().floor;
   statistics.interval.upper = std::min(1.0, statistics.interval.upper);
@@ -62,7 +63,7 @@ void set_certified(const std::vector<RareRow>& rows, RareStatistics& statistics)
   const std::vector<double> sums = column_of(rows, &RareRow::certified);
   if (!std::ranges::all_of(sums, [](double sum) { return std::isfinite(sum); })) return;
   statistics.certified = mean_of(sums);
-  statistics.certified_interval = skewed_mean_interval(sums, kTail);
+  statistics.certified_interval = skewed_mean_interval(sums, kRareTail);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ std::string rare_number(double value) {
   return value == 0.0 ? "0" : fmt::format("{:.2e}", value);
 }
 
-std::string limits(const RateInterval& interval) {
+std::string rare_limits(const RateInterval& interval) {
   return fmt::format("[{}, {}]", rare_number(interval.lower), rare_number(interval.upper));
 }
 
@@ -27,7 +27,7 @@ std::string rare_line(const VariantStatistics& variant, const RareStatistics& ra
   std::string text = fmt::format(
       "{:>4} {}{:>5}{:>10}{:>22}{:>10}{:>10}{:>10}{:>8}{}\n", variant.id,
       padded(printable(variant.name, kRareNameWidth - 2), kRareNameWidth), rare.runs.size(),
-      rare_number(rare.probability), limits(rare.interval), rare_number(rare.certified),
+      rare_number(rare.probability), rare_limits(rare.interval), rare_number(rare.certified),
       rare_number(static_cast<double>(rare.periods)), rare_number(rare.worth_periods),
       std::isfinite(rare.gain()) ? fmt::format("{:.3g}", rare.gain()) : "-",
       rare.exceeds_certified() && variant.no_bound.empty() ? " !" : "");
@@ -36,9 +36,8 @@ std::string rare_line(const VariantStatistics& variant, const RareStatistics& ra
                         rare.plain_unsafe);
   }
   if (rare.extinct + rare.below_floor > 0) {
-    text +=
-        fmt::format("     estimates that are 0: {} runs died out, {} ended at the floor\n",
-                    rare.extinct, rare.below_floor);
+    text += fmt::format("     estimates that are 0: {} runs died out, {} ended at the floor\n",
+                        rare.extinct, rare.below_floor);
   }
   return text;
 }

@@ -91,7 +91,7 @@ TEST(RareStatistics, holds_what_is_certified_against_what_was_found) {
 }
 
 TEST(RareStatistics, needs_a_run) {
-  EXPECT_THROW((void)rare_statistics({}, {}), std::invalid_argument);
+  EXPECT_THROW((void)rare_statistics(std::vector<std::uint64_t>(), {}), std::invalid_argument);
 }
 
 }  // namespace rare_statistics_test
