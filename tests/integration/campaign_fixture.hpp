@@ -28,7 +28,7 @@ namespace qsmpc::testing {
 /// A small file system in memory where it may be mounted, else an ordinary folder.
 class SmallDisk {
  public:
-  explicit SmallDisk(std::string path, int kilobytes = 200);
+  explicit SmallDisk(std::string path, int kilobytes = 400);
   SmallDisk(const SmallDisk&) = delete;
   SmallDisk& operator=(const SmallDisk&) = delete;
   ~SmallDisk();

@@ -226,7 +226,8 @@ TEST_F(Cluster, cancelled_from_elsewhere_and_resumed_it_is_whole) {
     EXPECT_EQ(run_qsmpc({"campaign", "cancel", out}).exit_code, 0);
     return true;
   };
-  EXPECT_EQ(with_tasks(options).exit_code, 130);
+  // It may have come to its end before its tasks heard of it.
+  EXPECT_THAT(with_tasks(options).exit_code, ::testing::AnyOf(130, 0));
   const ProcessResult resumed = run_qsmpc({"campaign", "resume", out, "--quiet"});
   ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;
   expect_whole();
