@@ -20,6 +20,9 @@ using ::testing::HasSubstr;
 
 bool never() { return false; }
 
+/// Without certificates, which take longer than everything else.
+const RareSettings kBare{.splitting = {.particles = 20}, .certify = false};
+
 /// A point that is held at 0 and leaves [-limit, limit] seldom.
 Scenario held_point(const std::string& limit, const std::vector<std::string>& more = {}) {
   return parse_scenario(
@@ -36,10 +39,11 @@ Scenario held_point(const std::string& limit, const std::vector<std::string>& mo
 }
 
 TEST(RareRun, says_the_same_for_the_same_seed) {
-  const Scenario scenario = held_point("0.6");
-  const auto one = rare_run(scenario, {.splitting = {.particles = 20}}, 3, never);
-  EXPECT_EQ(one, rare_run(scenario, {.splitting = {.particles = 20}}, 3, never));
-  EXPECT_NE(one, rare_run(scenario, {.splitting = {.particles = 20}}, 4, never));
+  const Scenario scenario = held_point("0.42");
+  const RareSettings settings{.splitting = {.particles = 10}};
+  const auto one = rare_run(scenario, settings, 3, never);
+  EXPECT_EQ(one, rare_run(scenario, settings, 3, never));
+  EXPECT_NE(one, rare_run(scenario, settings, 4, never));
 }
 
 TEST(RareRun, counts_as_plain_drives_do_where_the_event_is_common) {
@@ -47,7 +51,7 @@ TEST(RareRun, counts_as_plain_drives_do_where_the_event_is_common) {
   double sum = 0.0;
   std::int64_t unsafe = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
-    const RareRow row = rare_run(scenario, {.splitting = {.particles = 20}}, seed, never).value();
+    const RareRow row = rare_run(scenario, kBare, seed, never).value();
     sum += row.probability;
     unsafe += row.plain_unsafe;
     EXPECT_DOUBLE_EQ(row.collision + row.left_bounds, row.probability);
@@ -60,8 +64,8 @@ TEST(RareRun, counts_as_plain_drives_do_where_the_event_is_common) {
 TEST(RareRun, finds_drives_that_are_unsafe_when_they_are_driven_again_alone) {
   for (const std::vector<std::string>& more :
        {std::vector<std::string>{}, {"limit.stop_when_unsafe=false"}}) {
-    const Scenario scenario = held_point("0.6", more);
-    const RareRow row = rare_run(scenario, {.splitting = {.particles = 20}}, 3, never).value();
+    const Scenario scenario = held_point("0.42", more);
+    const RareRow row = rare_run(scenario, kBare, 3, never).value();
     ASSERT_FALSE(row.found.empty());
     for (const RareDrive& found : row.found) {
       const Scenario alone = parse_scenario(to_yaml(with_seeds(scenario, found.seeds)));
@@ -79,7 +83,7 @@ TEST(RareRun, estimates_what_is_certified_of_a_drive) {
   const Scenario scenario = held_point("0.35");
   double plain = 0.0;
   double split = 0.0;
-  constexpr std::uint64_t kRuns = 20;
+  constexpr std::uint64_t kRuns = 10;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
     split += rare_run(scenario, {.splitting = {.particles = 10}}, seed, never).value().certified;
     for (const StepRecord& step : run_episode(scenario, {.seed = seed}).steps) {
@@ -87,16 +91,16 @@ TEST(RareRun, estimates_what_is_certified_of_a_drive) {
     }
   }
   EXPECT_GT(split, 0.0);
-  // Neither sum of twenty is sharp.
+  // Neither sum of ten is sharp.
   EXPECT_LT(split, 5.0 * plain);
   EXPECT_GT(split, 0.2 * plain);
 }
 
 TEST(RareRun, says_the_same_without_certificates) {
-  const Scenario scenario = held_point("0.6");
-  const RareRow with = rare_run(scenario, {.splitting = {.particles = 20}}, 3, never).value();
+  const Scenario scenario = held_point("0.4");
+  const RareRow with = rare_run(scenario, {.splitting = {.particles = 10}}, 3, never).value();
   RareRow without =
-      rare_run(scenario, {.splitting = {.particles = 20}, .certify = false}, 3, never).value();
+      rare_run(scenario, {.splitting = {.particles = 10}, .certify = false}, 3, never).value();
   EXPECT_TRUE(std::isnan(without.certified));
   without.certified = with.certified;
   EXPECT_EQ(with, without);

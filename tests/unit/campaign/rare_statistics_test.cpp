@@ -73,7 +73,10 @@ TEST(RareStatistics, counts_an_estimate_of_zero) {
 }
 
 TEST(RareStatistics, adds_what_was_given_up_at_the_floor) {
-  std::vector<RareRow> rows{row_of(1e-6), row_of(3e-6), row_of(2e-6), row_of(0.0)};
+  std::vector<RareRow> rows;
+  for (const double probability : {2e-6, 2.1e-6, 2.2e-6, 2.1e-6, 2e-6, 0.0}) {
+    rows.push_back(row_of(probability));
+  }
   const double upper = statistics_of(rows).interval.upper;
   for (RareRow& row : rows) row.floor = 1e-7;
   rows.back().below_floor = true;
