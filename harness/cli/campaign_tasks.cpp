@@ -26,7 +26,7 @@ using Clock = std::chrono::steady_clock;
 
 std::string tasks_lock_folder(const std::string& folder) { return folder + "/" + kClusterFolder; }
 
-/// Looks at what is finished, at most once a second, and shows it.
+/// Looks at what is finished, and shows it.
 class TasksProgress {
  public:
   TasksProgress(std::string folder, bool quiet)
@@ -36,10 +36,15 @@ class TasksProgress {
     before_ = finished_.count();
   }
 
-  void show() {
+  /// At most once a second.
+  void show_at_times() {
     constexpr auto kPeriod = std::chrono::seconds(1);
     if (Clock::now() < next_) return;
     next_ = Clock::now() + kPeriod;
+    show();
+  }
+
+  void show() {
     finished_.look(folder_);
     now_.done = finished_.count();
     now_.fresh = now_.done - before_;
@@ -64,7 +69,7 @@ void wait_for_tasks(const StartedTasks& started, const std::string& folder, bool
   TasksProgress progress(folder, quiet);
   int handed_on = 0;
   started.launcher->wait(started.launch.record, [&] {
-    progress.show();
+    progress.show_at_times();
     if (interrupts() == handed_on) return true;
     ++handed_on;
     return false;

@@ -110,13 +110,11 @@ PageVerdict rare_verdict(const VariantStatistics& variant, const RareStatistics&
 std::string rare_rows_html(const CampaignStatistics& statistics) {
   PageTable table{.label = "Probability of an unsafe drive, by variant",
                   .heads = {"variant", "runs", "unsafe drive", "collision", "left bounds",
-                            "certified of a drive", "unsafe, of a period", "certified of a period",
-                            "periods driven", "worth, plain periods", "gain", "0 of"},
+                            "certified of a drive", "periods driven", "worth", "gain", "runs at 0"},
                   .rows = {}};
   for (const VariantStatistics& variant : statistics.variants) {
     if (!variant.rare) continue;
     const RareStatistics& rare = *variant.rare;
-    const double periods = rare.periods_per_drive();
     table.rows.push_back(
         {fmt::format("{}: {}", variant.id, escape_html(variant.name)),
          fmt::format("{}", rare.runs.size()),
@@ -124,9 +122,8 @@ std::string rare_rows_html(const CampaignStatistics& statistics) {
          number_html(rare.collision), number_html(rare.left_bounds),
          number_html(rare.certified) + " " + interval_html(rare.certified_interval) +
              (variant.no_bound.empty() ? "" : " <strong>no bound</strong>"),
-         number_html(rare.probability / periods), number_html(rare.certified / periods),
          fmt::format("{}", rare.periods), number_html(rare.worth_periods), number_html(rare.gain()),
-         fmt::format("{} runs", rare.extinct + rare.below_floor)});
+         fmt::format("{}", rare.extinct + rare.below_floor)});
   }
   return table_html(table);
 }
@@ -168,9 +165,16 @@ std::string rare_section(const CampaignStatistics& statistics) {
   for (const VariantStatistics& variant : statistics.variants) {
     if (variant.rare) html += verdict_html(rare_verdict(variant, *variant.rare));
   }
-  html += rare_rows_html(statistics) + "<div class=\"grid\">\n";
-  for (const Chart& chart : rare_charts(statistics)) html += chart_figure(chart);
-  return html + "</div>\n" + rare_commands(statistics);
+  html += rare_rows_html(statistics);
+  const std::vector<Chart> charts = rare_charts(statistics);
+  const std::string commands = rare_commands(statistics);
+  if (charts.size() == 1 && !commands.empty()) {
+    return html + "<div class=\"grid beside\">\n" + chart_figure(charts.front()) +
+           "<div class=\"card\">\n" + commands + "</div>\n</div>\n";
+  }
+  html += "<div class=\"grid\">\n";
+  for (const Chart& chart : charts) html += chart_figure(chart);
+  return html + "</div>\n" + commands;
 }
 
 }  // namespace qsmpc::harness

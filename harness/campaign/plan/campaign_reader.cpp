@@ -172,8 +172,9 @@ void CampaignReader::read_until() {
 }
 
 void CampaignReader::read_rare() {
-  if (!root_.has("rare")) return;
+  const bool is_asked_for = root_.has("rare");
   Section section = root_.section("rare");
+  if (!is_asked_for) return;
   RareSettings rare;
   SplitSettings& splitting = rare.splitting;
   splitting.particles = section.whole("particles", splitting.particles, {2, kMostRareParticles});

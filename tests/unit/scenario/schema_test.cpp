@@ -102,11 +102,22 @@ TEST(ScenarioSchema, has_the_defaults_that_the_reader_fills_in) {
   EXPECT_GT(compared, 25);
 }
 
+// Settings under which the key has an effect: others would refuse it for what it is.
+std::vector<std::string> settings_of(const std::string& path) {
+  if (path.starts_with("controller.mppi.")) return {"controller.kind=risk_mppi"};
+  if (path.starts_with("controller.shield.")) return {"controller.kind=shield"};
+  if (path == "controller.chance.confidence") return {"controller.kind=scenario"};
+  if (path == "controller.chance.memory") {
+    return {"controller.kind=scenario", "controller.policy=disturbance_feedback"};
+  }
+  if (path.starts_with("controller.chance.")) return {"controller.kind=drcc"};
+  return {};
+}
+
 // What is wrong with the least scenario that has `value` at `path`; empty if nothing is.
 std::string refusal_with(const std::string& path, const std::string& value) {
-  std::vector<std::string> overrides{path + "=" + value};
-  // Another controller would refuse these for what they are.
-  if (path.starts_with("controller.mppi.")) overrides.emplace_back("controller.kind=risk_mppi");
+  std::vector<std::string> overrides = settings_of(path);
+  overrides.push_back(path + "=" + value);
   try {
     (void)parse_scenario(least_text(), {.overrides = overrides});
   } catch (const InputError& error) {
