@@ -18,18 +18,20 @@ namespace contest_test {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::ProcessOptions;
 using testing::ProcessResult;
 using testing::TemporaryFolder;
 
 /// Short drives of two controllers, one of which has a choice.
-std::string short_contest(const TemporaryFolder& folder, int seeds, const std::string& more = "") {
+std::string short_contest(const TemporaryFolder& folder, int seeds, const std::string& more = "",
+                          const std::string& common = "limit.steps: 6") {
   return folder.file("short.yaml",
                      fmt::format("name: short\n"
                                  "controllers:\n"
                                  "  quantised: {{controller.kind: quantised}}\n"
                                  "  lqr: {{controller.kind: lqr}}\n"
-                                 "common: {{limit.steps: 6}}\n"
+                                 "common: {{{}}}\n"
                                  "scenarios: [dubins_corridor]\n"
                                  "plants: [analytic]\n"
                                  "seeds: {{first: 3, count: {}}}\n"
@@ -39,7 +41,7 @@ std::string short_contest(const TemporaryFolder& folder, int seeds, const std::s
                                  "  search:\n"
                                  "    quantised: {{controller.policy: [open_loop, closed_loop]}}\n"
                                  "timing: {{seeds: 1}}\n{}",
-                                 seeds, more));
+                                 common, seeds, more));
 }
 
 ProcessResult contest(const std::string& file, const std::string& out,
@@ -54,8 +56,8 @@ TEST(Contest, leaves_a_page_numbers_and_the_stores_of_its_drives) {
   const std::string out = folder / "out";
   const ProcessResult result = contest(short_contest(folder, 3), out);
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  for (const char* name : {"contest.html", "contest.json", "contest.csv", "contest.svg",
-                           "contest.pdf", "contest.yaml", "report.html", "campaign.sqlite"}) {
+  for (const char* name : {"contest.html", "contest.json", "contest.csv", "contest.yaml",
+                           "report.html", "campaign.sqlite"}) {
     EXPECT_TRUE(testing::files_in(out).contains(name)) << name;
   }
   EXPECT_TRUE(testing::files_below(out, ".partial").empty());
@@ -64,6 +66,23 @@ TEST(Contest, leaves_a_page_numbers_and_the_stores_of_its_drives) {
   EXPECT_THAT(result.output, AllOf(HasSubstr("Fewest unsafe drives: quantised, lqr (0 %)"),
                                    HasSubstr("lqr: Not told apart from quantised")));
   EXPECT_EQ(testing::rows_of(out + "/tuning").size(), 2U + 4U + 4U * 6U + 4U);
+}
+
+TEST(Contest, draws_a_figure_where_drives_arrive) {
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  const std::string stranded = short_contest(folder, 2);
+  const ProcessResult without = contest(stranded, out, {"--quiet"});
+  ASSERT_EQ(without.exit_code, 0) << without.errors;
+  EXPECT_FALSE(testing::files_in(out).contains("contest.svg")) << "no drive arrives";
+  EXPECT_THAT(without.output, Not(HasSubstr("contest.svg")));
+  const std::string arriving = short_contest(folder, 2, "", "limit.steps: 20, target.radius: 10.8");
+  const ProcessResult with = contest(arriving, folder / "arriving", {"--quiet"});
+  ASSERT_EQ(with.exit_code, 0) << with.errors;
+  for (const char* name : {"contest.svg", "contest.pdf"}) {
+    EXPECT_TRUE(testing::files_in(folder / "arriving").contains(name)) << name;
+  }
+  EXPECT_THAT(with.output, HasSubstr("contest.svg, contest.pdf"));
 }
 
 TEST(Contest, json_has_what_was_tried_and_what_everybody_believed) {
