@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/campaign/rare/rare_json.hpp"
+#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/json_values.hpp"

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/campaign/rare/rare_table.hpp"
+#include "harness/campaign/statistics/stop_report.hpp"
 #include "harness/text/number_format.hpp"
 #include "harness/text/printable.hpp"
 #include "harness/text/text_width.hpp"
