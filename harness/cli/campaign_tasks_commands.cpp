@@ -78,7 +78,7 @@ struct TasksArguments {
 
 /// A command that takes the folder and leaves a campaign's results.
 std::shared_ptr<TasksArguments> add_tasks_options(CLI::App& command) {
-  const auto arguments = std::make_shared<TasksArguments>();
+  auto arguments = std::make_shared<TasksArguments>();
   command.add_option("folder", arguments->folder, "folder of a campaign that tasks drive")
       ->required();
   command.add_flag("--quiet", arguments->talk.quiet, "no progress");

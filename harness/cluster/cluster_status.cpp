@@ -23,6 +23,7 @@ std::vector<TaskReport> last_reports(const std::string& folder, std::int64_t lau
     if (report.holder.launch == launch) last[report.holder.task] = std::move(report);
   }
   std::vector<TaskReport> reports;
+  reports.reserve(last.size());
   for (auto& [task, report] : last) reports.push_back(std::move(report));
   return reports;
 }

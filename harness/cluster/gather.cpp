@@ -42,6 +42,7 @@ bool is_there(const std::string& path) {
 
 std::string names_of(const std::vector<TaskReport>& tasks) {
   std::vector<std::string> names;
+  names.reserve(tasks.size());
   for (const TaskReport& task : tasks) {
     names.push_back(fmt::format("{} (process {} on {})", task.holder.task, task.holder.process,
                                 printable(task.holder.host)));
@@ -83,15 +84,16 @@ class RecoveredStores {
   /// Makes a whole store of one whose writer was killed; returns its folder. Its traces are those
   /// of `task`.
   std::string recover(const std::string& task, const LeasePlan& plan) {
-    const std::string copy = path_ + "/" + fs::path(task).filename().string();
+    std::string copy = path_ + "/" + fs::path(task).filename().string();
     std::error_code error;
     fs::create_directories(copy, error);
     throw_for(copy, error);
     for (const char* ending : {"", kLogEnding}) {
-      const std::string name = kStoreFile + std::string(ending);
-      if (!is_there(task + "/" + name)) continue;
-      fs::copy_file(task + "/" + name, copy + "/" + name, error);
-      throw_for(copy + "/" + name, error);
+      const std::string from = fmt::format("{}/{}{}", task, kStoreFile, ending);
+      const std::string to = fmt::format("{}/{}{}", copy, kStoreFile, ending);
+      if (!is_there(from)) continue;
+      fs::copy_file(from, to, error);
+      throw_for(to, error);
     }
     if (is_there(task + "/" + kEpisodesFolder)) {
       fs::create_symlink(fs::absolute(task) / kEpisodesFolder, copy + "/" + kEpisodesFolder, error);

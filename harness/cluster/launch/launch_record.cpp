@@ -106,8 +106,7 @@ std::string begin_launch(const std::string& folder) {
   make_durable_folder(folder + "/cluster/ends", folder);
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   for (int attempt = 0;; ++attempt) {
-    const std::string name =
-        fmt::format("{:%Y%m%dT%H%M%S}-{}-{}", fmt::gmtime(now), ::getpid(), attempt);
+    std::string name = fmt::format("{:%Y%m%dT%H%M%S}-{}-{}", fmt::gmtime(now), ::getpid(), attempt);
     const std::string path = ends_folder(folder, name);
     std::error_code error;
     if (fs::create_directory(path, error)) return name;

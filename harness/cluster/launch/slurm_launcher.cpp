@@ -28,7 +28,7 @@ std::string submit(const std::vector<std::string>& options, const std::string& s
   words.push_back(script);
   const std::string answer = command_output(words);
   // JOB, or JOB;CLUSTER
-  const std::string job = answer.substr(0, answer.find_first_of(";\n"));
+  std::string job = answer.substr(0, answer.find_first_of(";\n"));
   if (job.empty() || job.find_first_not_of("0123456789") != std::string::npos) {
     throw IoError(fmt::format("sbatch: found {}, expected a job's number", printable(answer)));
   }
