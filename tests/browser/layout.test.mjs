@@ -44,6 +44,9 @@ before(async () => {
     "greedy: {controller.horizon: 3}}\nseeds: {count: 6}\ngrid: {limit.steps: [60]}\ntraces: none\n");
   campaign("campaign_without_plane", "scenario: cart_pole_balance\nseeds: {count: 4}\ntraces: none\n");
   campaign("campaign_of_one", "scenario: dubins_corridor\nseeds: {count: 6}\ntraces: none\n");
+  campaign("campaign_rare", "scenario: dubins_corridor\nvariants: {lqr: {controller.kind: lqr, controller.lqr.about: " +
+    "target, initial_state.mean: [0, 1, 0], safe_set.bounds: {x: [-1, 14], y: [-0.15, 2.15]}, limit.steps: 40}}\n" +
+    "seeds: {count: 4}\nrare: {particles: 20}\nuntil: {rate_halfwidth: 0.2}\ntraces: none\n");
   folders.contest = temporaryFolder();
   const contest = join(temporaryFolder(), "contest.yaml");
   writeFileSync(contest, "description: Three ways to drive\ncontrollers: {quantised: {}, nominal: {controller.kind: " +
@@ -58,7 +61,7 @@ after(async () => { await browser?.close(); });
 
 const pages = ["episode", "episode_without_video", "episode_without_plan", "episode_without_plane", "episode_of_a_cart",
                "comparison", "comparison_of_one", "campaign", "campaign_of_one", "campaign_without_plane",
-               "contest"];
+               "campaign_rare", "contest"];
 const pageOf = (name) => join(folders[name], name === "contest" ? "contest.html" : "report.html");
 
 for (const name of pages) {
