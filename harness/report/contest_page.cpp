@@ -35,21 +35,23 @@ std::string contest_head(const ContestResults& results) {
   return html + "<p class=\"lead\">" + escape_html(contest_headline(results)) + "</p>\n";
 }
 
-/// "1.5 % [0.1, 6]"; to be seen where it is a failure.
-std::string share_html(const EpisodeRate& rate, bool is_failure_share) {
-  if (!std::isfinite(rate.rate)) return "–";
-  const std::string share = escape_html(format_percent(rate.rate)) + " %";
-  return fmt::format("{} <span class=\"soft\">[{}, {}]</span>",
-                     is_failure_share && rate.events > 0
-                         ? "<strong class=\"alarm\">" + share + "</strong>"
-                         : share,
-                     escape_html(format_percent(rate.interval.lower)),
-                     escape_html(format_percent(rate.interval.upper)));
-}
-
 std::string share_alone_html(const EpisodeRate& rate) {
   if (!std::isfinite(rate.rate)) return "–";
   return escape_html(format_percent(rate.rate)) + " %";
+}
+
+/// To be seen where there is any.
+std::string failure_share_html(const EpisodeRate& rate) {
+  const std::string share = share_alone_html(rate);
+  return rate.events > 0 ? "<strong class=\"alarm\">" + share + "</strong>" : share;
+}
+
+/// "1.5 % [0.1, 6]".
+std::string failure_share_with_interval_html(const EpisodeRate& rate) {
+  if (!std::isfinite(rate.rate)) return "–";
+  return fmt::format("{} <span class=\"soft\">[{}, {}]</span>", failure_share_html(rate),
+                     escape_html(format_percent(rate.interval.lower)),
+                     escape_html(format_percent(rate.interval.upper)));
 }
 
 const char* mark_of(MatchResult result) {
@@ -104,9 +106,11 @@ std::vector<std::string> time_cells(const ContestTimes& times) {
                               : "")};
 }
 
-/// The cells that a row of either table begins with, after its head.
-std::vector<std::string> outcome_cells(const Standing& standing) {
-  return {share_alone_html(standing.reached), share_html(standing.collision, true),
+/// The cells that a row of either table begins with, after its head. `collided`: how it shows that
+/// share.
+std::vector<std::string> outcome_cells(const Standing& standing,
+                                       std::string (*collided)(const EpisodeRate&)) {
+  return {share_alone_html(standing.reached), collided(standing.collision),
           share_alone_html(standing.left_bounds), share_alone_html(standing.timeout)};
 }
 
@@ -132,7 +136,7 @@ std::string overall_table(const ContestResults& results) {
   for (std::size_t n = 0; n < results.overall.size(); ++n) {
     const Standing& standing = results.overall[n];
     std::vector<std::string> row = {escape_html(results.contest.controllers[n].name)};
-    append(row, outcome_cells(standing));
+    append(row, outcome_cells(standing, failure_share_with_interval_html));
     if (has_faults(results)) row.push_back(share_alone_html(standing.fault));
     append(row, {share_versus_html(standing.versus), sum_html(standing.believed),
                  certified_html(standing), ratio_html(standing.versus)});
@@ -191,29 +195,30 @@ std::string cells_section(const ContestResults& results) {
       .label = "By map, plant and noise", .heads = {"map"}, .rows = {}, .text_columns = {1}};
   append(table.heads, {"controller"});
   append(table.heads, outcome_heads());
-  append(table.heads, {"unsafe, less reference", "believed", "certified", "cost, mean",
-                       "to reference", "ms", "99 %"});
+  append(table.heads,
+         {"unsafe, less reference", "believed", "certified", "cost, to reference", "ms", "99 %"});
   for (const CellStandings& cell : results.cells) {
     for (std::size_t n = 0; n < cell.standings.size(); ++n) {
       const Standing& standing = cell.standings[n];
       const std::string name = escape_html(cell.name);
       std::vector<std::string> row = {n == 0 ? name : "<span class=\"soft\">" + name + "</span>",
                                       escape_html(results.contest.controllers[n].name)};
-      append(row, outcome_cells(standing));
+      append(row, outcome_cells(standing, failure_share_html));
       append(row, {share_versus_html(standing.versus), sum_html(standing.believed),
-                   certified_html(standing), number_html(standing.cost.mean),
-                   ratio_html(standing.versus)});
+                   certified_html(standing), ratio_html(standing.versus)});
       append(row, time_cells(standing.times));
       table.rows.push_back(std::move(row));
     }
   }
   std::string charts;
   for (const Chart& chart : cell_charts(results)) charts += chart_figure(chart);
-  return section_head("Each map, plant and noise",
-                      "Left and down is better. Whiskers are 99 % intervals; a controller without "
-                      "an unsafe drive stands at 0, left of the break. Costs are means over the "
-                      "drives that arrive: a controller that arrives from easy starts only looks "
-                      "cheaper than it is, and the table compares the seeds on which both do.") +
+  return section_head(
+             "Each map, plant and noise",
+             "Left and down is better. Whiskers are 99 % intervals; a controller without "
+             "an unsafe drive stands at 0, left of the break. Costs are means over the "
+             "drives that arrive: a controller that arrives from easy starts only looks "
+             "cheaper than it is, and the table compares the seeds on which both do. contest.csv "
+             "has all intervals.") +
          fmt::format("<div class=\"grid{}\">\n", results.cells.size() % 3 == 0 ? " thirds" : "") +
          charts + "</div>\n" + table_html(table);
 }
