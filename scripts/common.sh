@@ -44,9 +44,20 @@ install_packages() {
   rm -f "$log"
 }
 
+# remember_objects: lets builds that follow take what was compiled before, of the same sources with the
+# same options in any folder, from ccache, where that is installed.
+remember_objects() {
+  command -v ccache >/dev/null || return 0
+  export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
+  # Paths as seen from the build's folder; precompiled headers by their content.
+  export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
+  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+}
+
 # build PRESET [options of cmake --build]: configures and builds a preset of CMakePresets.json.
 build() {
   say "Building the preset '$1' into build/$1"
+  remember_objects
   mkdir -p build
   cmake --preset "$1" >"build/$1.log" 2>&1 || {
     tail -n 25 "build/$1.log" >&2
