@@ -42,8 +42,16 @@ void check_body(const Body& body, Eigen::Index dim) {
 
 void check_safe_set(const SafeSet& safe_set) {
   check_box(safe_set.bounds, safe_set.dim(), "safe set bounds");
-  for (const Box& obstacle : safe_set.obstacles) {
-    check_box(obstacle, safe_set.dim(), "obstacle");
+  const auto is_state = [&](int index) { return index >= 0 && index < safe_set.dim(); };
+  for (const Obstacle& obstacle : safe_set.obstacles) {
+    if (const Box* box = obstacle.box()) {
+      check_box(*box, safe_set.dim(), "obstacle");
+      continue;
+    }
+    check_planar_shape(*obstacle.shape());
+    if (!is_state(safe_set.body.x) || !is_state(safe_set.body.y)) {
+      throw std::invalid_argument("obstacle: a shape needs a position in the plane");
+    }
   }
   check_body(safe_set.body, safe_set.dim());
 }

@@ -1,4 +1,5 @@
-// The safe set (Eq. 4-7): a box in state space without a number of rectangular obstacles.
+// The safe set (Eq. 4-7): a box in state space without a number of obstacles, boxes of any
+// coordinates or shapes of the plane of position.
 //
 // Its complement, the unsafe set (unsafe_set.hpp), is closed: touching a wall or an obstacle counts
 // as unsafe, so that every probability of being unsafe that is computed from it is on the cautious
@@ -6,11 +7,14 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "controller/regions/body.hpp"
+#include "controller/regions/planar/planar_shape.hpp"
 
 #pragma GCC visibility push(default)
 
@@ -22,11 +26,26 @@ struct Box {
   Eigen::VectorXd upper;
 };
 
+/// A closed set that must not be entered.
+struct Obstacle {
+  // NOLINTBEGIN(google-explicit-constructor): a box is an obstacle, and so is a shape
+  Obstacle(Box box) : form(std::move(box)) {}
+  Obstacle(PlanarShape shape) : form(std::move(shape)) {}
+  // NOLINTEND(google-explicit-constructor)
+
+  std::variant<Box, PlanarShape> form;
+
+  /// null where it is a shape.
+  [[nodiscard]] const Box* box() const { return std::get_if<Box>(&form); }
+  /// null where it is a box.
+  [[nodiscard]] const PlanarShape* shape() const { return std::get_if<PlanarShape>(&form); }
+};
+
 /// The states x in which every point of the body is within bounds.lower < x < bounds.upper and in
-/// none of the closed boxes in `obstacles`.
+/// none of the obstacles. Shapes are in the plane of body.x and body.y.
 struct SafeSet {
   Box bounds;
-  std::vector<Box> obstacles;
+  std::vector<Obstacle> obstacles;
   Body body{};
 
   [[nodiscard]] Eigen::Index dim() const { return bounds.lower.size(); }
@@ -43,7 +62,8 @@ void check_box(const Box& box, Eigen::Index dim, const std::string& name);
 /// dimension `dim` cannot place.
 void check_body(const Body& body, Eigen::Index dim);
 
-/// check_box for the bounds and all obstacles, check_body for the body.
+/// check_box for the bounds and all boxes, check_planar_shape for all shapes, which need a plane of
+/// position, and check_body for the body.
 void check_safe_set(const SafeSet& safe_set);
 
 /// Euclidean distance from `point` to the box; 0 inside it.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "controller/named_entry.hpp"
+#include "controller/regions/planar/shape_region.hpp"
 #include "controller/regions/shapes.hpp"
 #include "models/constants.hpp"
 
@@ -37,9 +38,12 @@ DiscView view_of(const SafeSet& safe_set, const Disc& disc, bool first) {
     view.bounds.lower[axis] += disc.radius;
     view.bounds.upper[axis] -= disc.radius;
   }
-  for (const Box& obstacle : safe_set.obstacles) {
-    if (!first && !restricts_position(obstacle, body)) continue;
-    view.regions.push_back(make_region("box", obstacle, growth));
+  for (const Obstacle& obstacle : safe_set.obstacles) {
+    if (const PlanarShape* shape = obstacle.shape()) {
+      view.regions.push_back(make_shape(*shape, growth));
+    } else if (first || restricts_position(*obstacle.box(), body)) {
+      view.regions.push_back(make_region("box", *obstacle.box(), growth));
+    }
   }
   return view;
 }

@@ -62,8 +62,8 @@ Json box_json(const controller::Box& box) {
 Json safe_set_json(const controller::SafeSet& safe_set) {
   Json json = box_json(safe_set.bounds);
   json["obstacles"] = Json::array();
-  for (const controller::Box& obstacle : safe_set.obstacles) {
-    json["obstacles"].push_back(box_json(obstacle));
+  for (const controller::Obstacle& obstacle : safe_set.obstacles) {
+    if (const controller::Box* box = obstacle.box()) json["obstacles"].push_back(box_json(*box));
   }
   return json;
 }

@@ -111,10 +111,13 @@ std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
                        bounds_text(bounds, i, name));
   }
   for (std::size_t k = 0; k < safe_set.obstacles.size(); ++k) {
-    const controller::Box& obstacle = safe_set.obstacles[k];
-    const bool inside = (point.array() >= obstacle.lower.array()).all() &&
-                        (point.array() <= obstacle.upper.array()).all();
-    if (inside) return fmt::format("a state inside safe_set.obstacles.{}", k);
+    controller::SafeSet one{.bounds = controller::unbounded_safe_set(point.size()).bounds,
+                            .obstacles = {safe_set.obstacles[k]}};
+    one.body.x = safe_set.body.x;
+    one.body.y = safe_set.body.y;
+    if (controller::clearance(point, one) <= 0.0) {
+      return fmt::format("a state inside safe_set.obstacles.{}", k);
+    }
   }
   if (safe_set.body.is_point()) return std::nullopt;
   return why_body_unsafe(point, safe_set, states);

@@ -89,7 +89,13 @@ std::string clearance_unit_of(const controller::SafeSet& safe_set,
     }
   };
   add(safe_set.bounds);
-  for (const controller::Box& obstacle : safe_set.obstacles) add(obstacle);
+  for (const controller::Obstacle& obstacle : safe_set.obstacles) {
+    if (const controller::Box* box = obstacle.box()) {
+      add(*box);
+    } else {
+      units.insert(system.states[static_cast<std::size_t>(system.position_x)].unit);
+    }
+  }
   return units.size() == 1 ? *units.begin() : "state units";
 }
 

@@ -72,7 +72,7 @@ controller::SafeSet planar_safe_set(const render::World& world) {
   };
   controller::SafeSet safe_set{.bounds = box(world.bounds), .obstacles = {}};
   for (const render::PlanarRectangle& obstacle : world.obstacles) {
-    safe_set.obstacles.push_back(box(obstacle));
+    safe_set.obstacles.emplace_back(box(obstacle));
   }
   return safe_set;
 }

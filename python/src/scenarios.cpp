@@ -124,8 +124,10 @@ void add_scenario_class(nb::module_& module) {
       .def_prop_ro("obstacles",
                    [](const Scenario& s) {
                      std::vector<std::pair<Eigen::VectorXd, Eigen::VectorXd>> boxes;
-                     for (const auto& box : s.safe_set.obstacles) {
-                       boxes.emplace_back(box.lower, box.upper);
+                     for (const auto& obstacle : s.safe_set.obstacles) {
+                       if (const auto* box = obstacle.box()) {
+                         boxes.emplace_back(box->lower, box->upper);
+                       }
                      }
                      return boxes;
                    })

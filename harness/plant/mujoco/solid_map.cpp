@@ -99,10 +99,10 @@ std::string solid_geoms(const controller::SafeSet& safe_set,
     wall(axis, safe_set.bounds.lower[axis], 1.0);
     wall(axis, safe_set.bounds.upper[axis], -1.0);
   }
-  for (const controller::Box& obstacle : safe_set.obstacles) {
-    if (!is_in_plane(obstacle, system)) continue;
-    writer.box(finite_interval(obstacle, system.position_x),
-               finite_interval(obstacle, system.position_y));
+  for (const controller::Obstacle& obstacle : safe_set.obstacles) {
+    const controller::Box* box = obstacle.box();
+    if (box == nullptr || !is_in_plane(*box, system)) continue;
+    writer.box(finite_interval(*box, system.position_x), finite_interval(*box, system.position_y));
   }
   return writer.text();
 }

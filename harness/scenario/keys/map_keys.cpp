@@ -32,7 +32,7 @@ void read_obstacles(ScenarioReading& reading, Section& section, const KeyDescrip
     Section item = section.item(about.name, i);
     NamedIntervals obstacle = read_intervals(item, states, {.fallback = unbounded_box(reading)});
     if (obstacle.any) {
-      reading.scenario.safe_set.obstacles.push_back(std::move(obstacle.box));
+      reading.scenario.safe_set.obstacles.emplace_back(std::move(obstacle.box));
     } else if (item.present() && item.keys().empty()) {
       item.note_here(fmt::format("an interval of at least one of {}",
                                  fmt::join(coordinate_names(states), ", ")),
@@ -45,8 +45,8 @@ std::optional<std::string> obstacles_text(const Scenario& scenario,
                                           const models::SystemDescription& system) {
   if (scenario.safe_set.obstacles.empty()) return "[]";
   std::string out;
-  for (const controller::Box& obstacle : scenario.safe_set.obstacles) {
-    out += "\n    - " + intervals_text(obstacle, system.states);
+  for (const controller::Obstacle& obstacle : scenario.safe_set.obstacles) {
+    out += "\n    - " + intervals_text(*obstacle.box(), system.states);
   }
   return out;
 }

@@ -1,4 +1,6 @@
 // Algorithm 2 and Eq. 4-10 as printed, at the particles of each stage.
+#include <stdexcept>
+
 #include "controller/planning/cost/cost_terms.hpp"
 #include "controller/planning/cost/printed_penalty.hpp"
 
@@ -25,8 +27,11 @@ class PrintedBoundsTerm final : public StageTerm {
 class PrintedObstacleTerm final : public StageTerm {
  public:
   explicit PrintedObstacleTerm(const HorizonCostTerms& terms) : penalty_(terms.penalty) {
-    for (const Box& obstacle : terms.safe_set.obstacles) {
-      obstacles_.push_back(bounded_axes(obstacle));
+    for (const Obstacle& obstacle : terms.safe_set.obstacles) {
+      if (obstacle.box() == nullptr) {
+        throw std::invalid_argument("penalties as printed are for boxes");
+      }
+      obstacles_.push_back(bounded_axes(*obstacle.box()));
     }
   }
 

@@ -1,0 +1,162 @@
+#include "controller/regions/planar/convex_bound.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+
+#include "controller/regions/box_part.hpp"
+#include "controller/regions/planar/convex_surface.hpp"
+#include "models/constants.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// Of a covariance, relative to the product of its variances: below it there is no second direction.
+constexpr double kRegularShare = 1e-10;
+// Projections whose correlation is less count as independent only if it is rounding.
+constexpr double kNoCorrelation = 1e-12;
+
+Eigen::Vector2d across(const Eigen::Vector2d& direction) { return {-direction.y(), direction.x()}; }
+
+bool is_regular(const Eigen::Matrix2d& covariance) {
+  const double product = covariance(0, 0) * covariance(1, 1);
+  return covariance.determinant() > kRegularShare * product;
+}
+
+/// The direction whose projection is uncorrelated with that on `direction`.
+Eigen::Vector2d conjugate(const Eigen::Vector2d& direction, const Eigen::Matrix2d& covariance) {
+  const Eigen::Vector2d other = across(covariance * direction);
+  const double length = other.norm();
+  return length > 0.0 ? Eigen::Vector2d(other / length) : across(direction);
+}
+
+DirectionPair pair_of(const Eigen::Vector2d& one, const Eigen::Vector2d& two) {
+  DirectionPair pair;
+  pair << one.transpose(), two.transpose();
+  return pair;
+}
+
+/// The rectangle about the part in the projections.
+BoxPart rectangle_about(const ConvexPart& part, const DirectionPair& pair) {
+  BoxPart rectangle{.box = {.lower = Eigen::Vector2d::Constant(-kInfinity),
+                            .upper = Eigen::Vector2d::Constant(kInfinity)},
+                    .axes = {}};
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const Eigen::Vector2d direction = pair.row(i).transpose();
+    rectangle.box.upper[i] = support(part, direction);
+    rectangle.box.lower[i] = -support(part, -direction);
+    const bool bounded =
+        std::isfinite(rectangle.box.lower[i]) || std::isfinite(rectangle.box.upper[i]);
+    if (bounded) rectangle.axes.push_back(i);
+  }
+  return rectangle;
+}
+
+/// The surrogate of a disc's centre in two projections.
+class ProjectedLaw {
+ public:
+  ProjectedLaw(const SurrogateLaw& state, PlaneAxes axes, const DirectionPair& pair)
+      : pair_(pair), axes_({axes.x, axes.y}), state_(state) {
+    law_.mean = pair * state.law.mean(axes_);
+    law_.covariance = projected(state.law.covariance);
+    error_ = pair.cwiseAbs() * state.error(axes_);
+    for (std::size_t k = 0; k < kHigherOrders.size(); ++k) {
+      higher_[k] = pair.cwiseAbs() * state.higher[k](axes_);
+    }
+    smoothing_ = [this](const std::vector<Eigen::Index>& /*axes*/) -> Eigen::MatrixXd {
+      // One projection alone moves with both coordinates.
+      return projected(state_.smoothing(axes_));
+    };
+  }
+  ProjectedLaw(const ProjectedLaw&) = delete;
+  ProjectedLaw& operator=(const ProjectedLaw&) = delete;
+
+  [[nodiscard]] SurrogateLaw surrogate() const {
+    return {.law = law_,
+            .error = error_,
+            .higher = higher_,
+            .smoothing = smoothing_,
+            .worthwhile = state_.worthwhile};
+  }
+
+ private:
+  [[nodiscard]] Eigen::MatrixXd projected(const Eigen::MatrixXd& covariance) const {
+    const Eigen::Matrix2d plane = pair_ * covariance(axes_, axes_) * pair_.transpose();
+    return 0.5 * (plane + plane.transpose());
+  }
+
+  DirectionPair pair_;
+  std::vector<Eigen::Index> axes_;
+  const SurrogateLaw& state_;
+  Gaussian law_;
+  Eigen::VectorXd error_;
+  HigherNorms higher_;
+  std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing_;
+};
+
+}  // namespace
+
+std::vector<DirectionPair> direction_pairs(const ConvexPart& part, const Eigen::Vector2d& mean,
+                                           const Eigen::Matrix2d& covariance) {
+  const Eigen::Vector2d out = nearest_surface(part, mean).outward;
+  std::vector<DirectionPair> pairs = {pair_of(out, across(out))};
+  if (part.corners.cols() == 0 || !is_regular(covariance)) return pairs;
+  pairs.push_back(pair_of(out, conjugate(out, covariance)));
+  const PlanarSeparation apart = separation(part, mean, covariance);
+  const double length = apart.slope.norm();
+  if (length > 0.0) {
+    const Eigen::Vector2d shortest = apart.slope / length;
+    pairs.push_back(pair_of(shortest, conjugate(shortest, covariance)));
+    pairs.push_back(pair_of(shortest, across(shortest)));
+  }
+  return pairs;
+}
+
+void add_convex_probability(const SurrogateLaw& state, const ConvexPart& part, PlaneAxes axes,
+                            RegionProbability& sum) {
+  const std::vector<Eigen::Index> plane = {axes.x, axes.y};
+  const Eigen::Vector2d mean = state.law.mean(plane);
+  const Eigen::Matrix2d covariance = state.law.covariance(plane, plane);
+  RegionProbability least{.markov = 1.0, .smooth = 1.0};
+  if (mean.allFinite() && covariance.allFinite()) {
+    for (const DirectionPair& pair : direction_pairs(part, mean, covariance)) {
+      const ProjectedLaw projected(state, axes, pair);
+      RegionProbability bound;
+      add_part_probability(projected.surrogate(), rectangle_about(part, pair), bound);
+      least.markov = std::min(least.markov, bound.markov);
+      least.smooth = std::min(least.smooth, bound.smooth);
+      // Others cannot matter.
+      if (least.smooth <= state.worthwhile && least.markov <= state.worthwhile) break;
+    }
+  }
+  sum.markov += least.markov;
+  sum.smooth += std::min(least.smooth, least.markov);
+}
+
+SoftPart soft_convex(const ConvexPart& part, const Eigen::Vector2d& mean,
+                     const Eigen::Matrix2d& covariance) {
+  SoftPart soft{.intervals = {}, .independent = false};
+  const auto add = [&](const Eigen::Vector2d& direction) {
+    const double at = direction.dot(mean);
+    soft.intervals.push_back(
+        {.lower = -support(part, -direction) - at,
+         .upper = support(part, direction) - at,
+         .deviation = std::sqrt(std::max(0.0, direction.dot(covariance * direction)))});
+  };
+  const Eigen::Vector2d out = nearest_surface(part, mean).outward;
+  add(out);
+  if (part.corners.cols() == 0) return soft;
+  add(across(out));
+  const double product = soft.intervals[0].deviation * soft.intervals[1].deviation;
+  const double correlation = across(out).dot(covariance * out);
+  soft.independent = std::abs(correlation) <= kNoCorrelation * product;
+  if (soft.independent || !is_regular(covariance)) return soft;
+  const PlanarSeparation apart = separation(part, mean, covariance);
+  if (apart.slope.norm() > 0.0) add(apart.slope.normalized());
+  return soft;
+}
+
+}  // namespace qsmpc::controller

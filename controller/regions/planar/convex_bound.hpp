@@ -1,0 +1,41 @@
+// What certificates need of convex parts of the plane, as a Gaussian sees them: projections on two
+// directions, in which a part lies in a rectangle (docs/theory/shapes.md).
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/regions/planar/planar_shape.hpp"
+#include "controller/regions/soft_part.hpp"
+#include "controller/regions/unsafe_region.hpp"
+
+namespace qsmpc::controller {
+
+/// The states that are the plane.
+struct PlaneAxes {
+  Eigen::Index x = 0;
+  Eigen::Index y = 1;
+};
+
+/// Two directions of length 1, in rows; for a half-plane the first alone is of use.
+using DirectionPair = Eigen::Matrix2d;
+
+/// Pairs in which a rectangle about the part leaves little of the law besides: along the way from
+/// the part to the mean, along the way that is shortest in deviations, and the same across or
+/// uncorrelated. At least one.
+[[nodiscard]] std::vector<DirectionPair> direction_pairs(const ConvexPart& part,
+                                                         const Eigen::Vector2d& mean,
+                                                         const Eigen::Matrix2d& covariance);
+
+/// Adds bounds C3 and C4 of P(z + e in the part): for each pair those of the rectangle in the
+/// projections (box_part.hpp), whose errors are bounded by the triangle inequality; of all pairs
+/// the least.
+void add_convex_probability(const SurrogateLaw& state, const ConvexPart& part, PlaneAxes axes,
+                            RegionProbability& sum);
+
+/// What does not depend on t of a bound of E(1 − d(y, part)²/t²)₊ for y ~ N(mean, covariance).
+[[nodiscard]] SoftPart soft_convex(const ConvexPart& part, const Eigen::Vector2d& mean,
+                                   const Eigen::Matrix2d& covariance);
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,165 @@
+#include "controller/regions/planar/convex_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "models/constants.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+constexpr int kNewtonSteps = 6;
+// What is shorter has no direction.
+constexpr double kNoLength = 1e-300;
+
+/// The polygon alone, of at least one face, from inside: the face that is nearest.
+SurfacePoint nearest_face(const ConvexPart& part, const Eigen::Vector2d& point) {
+  SurfacePoint nearest{.distance = -kInfinity};
+  for (Eigen::Index i = 0; i < part.normals.cols(); ++i) {
+    const double distance = part.normals.col(i).dot(point) - part.offsets[i];
+    if (distance <= nearest.distance) continue;
+    nearest = {.distance = distance, .outward = part.normals.col(i)};
+  }
+  return nearest;
+}
+
+/// The polygon alone, from outside.
+SurfacePoint nearest_on_edges(const ConvexPart& part, const Eigen::Vector2d& point) {
+  SurfacePoint nearest{.distance = kInfinity};
+  const Eigen::Index count = part.corners.cols();
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::Vector2d from = part.corners.col(i);
+    const Eigen::Vector2d along = part.corners.col((i + 1) % count) - from;
+    const double squares = along.squaredNorm();
+    const double share =
+        squares > 0.0 ? std::clamp((point - from).dot(along) / squares, 0.0, 1.0) : 0.0;
+    const Eigen::Vector2d gap = point - from - share * along;
+    const double distance = gap.norm();
+    if (distance >= nearest.distance) continue;
+    nearest.distance = distance;
+    if (distance > kNoLength) nearest.outward = gap / distance;
+  }
+  return nearest;
+}
+
+double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  return a.x() * b.y() - a.y() * b.x();
+}
+
+double value_along(const Eigen::Vector2d& direction, const Eigen::Vector2d& gap, double radius,
+                   const Eigen::Matrix2d& covariance) {
+  return (direction.dot(gap) - radius) / std::sqrt(direction.dot(covariance * direction));
+}
+
+/// The angle of the n of length 1 at which (n·gap − radius)/√(nᵀSn) is greatest, from Newton steps
+/// on its derivative; those that do not raise it are cut short.
+double best_angle(const Eigen::Vector2d& gap, double radius, const Eigen::Matrix2d& covariance,
+                  double angle) {
+  const auto direction = [](double at) { return Eigen::Vector2d(std::cos(at), std::sin(at)); };
+  double value = value_along(direction(angle), gap, radius, covariance);
+  for (int step = 0; step < kNewtonSteps; ++step) {
+    const Eigen::Vector2d n = direction(angle);
+    const Eigen::Vector2d t(-n.y(), n.x());
+    // f = a/√q with a = n·gap − radius, q = nᵀSn; the sign of f' is that of g = a' q − a q'/2.
+    const double a = n.dot(gap) - radius;
+    const double a1 = t.dot(gap);
+    const double q = n.dot(covariance * n);
+    const double q1 = 2.0 * t.dot(covariance * n);
+    const double q2 = 2.0 * (t.dot(covariance * t) - q);
+    const double g = a1 * q - 0.5 * a * q1;
+    const double g1 = -n.dot(gap) * q + 0.5 * a1 * q1 - 0.5 * a * q2;
+    double move = g1 < 0.0 ? -g / g1 : (g > 0.0 ? 0.5 : -0.5);
+    move = std::clamp(move, -0.7, 0.7);
+    bool raised = false;
+    for (int half = 0; half < 5 && !raised; ++half, move *= 0.5) {
+      const double at = value_along(direction(angle + move), gap, radius, covariance);
+      if (!(at > value)) continue;
+      raised = true;
+      value = at;
+      angle += move;
+    }
+    if (!raised) break;
+  }
+  return angle;
+}
+
+void take(const Eigen::Vector2d& direction, double z, const Eigen::Matrix2d& covariance,
+          PlanarSeparation& best) {
+  if (z <= best.z) return;
+  best.z = z;
+  best.slope = direction / std::sqrt(direction.dot(covariance * direction));
+}
+
+}  // namespace
+
+SurfacePoint nearest_surface(const ConvexPart& part, const Eigen::Vector2d& point) {
+  SurfacePoint nearest;
+  if (part.normals.cols() == 0) {
+    const Eigen::Vector2d gap = point - part.corners.col(0);
+    nearest.distance = gap.norm();
+    if (nearest.distance > kNoLength) nearest.outward = gap / nearest.distance;
+  } else {
+    nearest = nearest_face(part, point);
+    if (nearest.distance > 0.0 && part.corners.cols() > 0) nearest = nearest_on_edges(part, point);
+  }
+  nearest.distance -= part.radius;
+  return nearest;
+}
+
+SurfacePoint nearest_surface(std::span<const ConvexPart> parts, const Eigen::Vector2d& point) {
+  SurfacePoint nearest = nearest_surface(parts.front(), point);
+  for (const ConvexPart& part : parts.subspan(1)) {
+    const SurfacePoint other = nearest_surface(part, point);
+    if (other.distance < nearest.distance) nearest = other;
+  }
+  return nearest;
+}
+
+double support(const ConvexPart& part, const Eigen::Vector2d& direction) {
+  if (part.corners.cols() > 0) {
+    return (direction.transpose() * part.corners).maxCoeff() + part.radius * direction.norm();
+  }
+  // A half-plane ends in the direction of its normal alone.
+  const Eigen::Vector2d normal = part.normals.col(0);
+  const double along = direction.dot(normal);
+  const bool is_normal = along > 0.0 && (direction - along * normal).isZero(0.0);
+  return is_normal ? along * (part.offsets[0] + part.radius) : kInfinity;
+}
+
+Circle circle_about(const ConvexPart& part) {
+  if (part.corners.cols() == 0) return {.radius = kInfinity};
+  const Eigen::Vector2d centre =
+      0.5 * (part.corners.rowwise().minCoeff() + part.corners.rowwise().maxCoeff());
+  const double reach = (part.corners.colwise() - centre).colwise().norm().maxCoeff();
+  return {.centre = centre, .radius = reach + part.radius};
+}
+
+PlanarSeparation separation(const ConvexPart& part, const Eigen::Vector2d& mean,
+                            const Eigen::Matrix2d& covariance) {
+  PlanarSeparation best{.z = -kInfinity, .slope = Eigen::Vector2d::Zero()};
+  const Eigen::Index faces = part.normals.cols();
+  for (Eigen::Index i = 0; i < faces; ++i) {
+    const Eigen::Vector2d normal = part.normals.col(i);
+    const double deviation = std::sqrt(normal.dot(covariance * normal));
+    take(normal, (normal.dot(mean) - part.offsets[i] - part.radius) / deviation, covariance, best);
+  }
+  const Eigen::Matrix2d inverse = covariance.inverse();
+  for (Eigen::Index i = 0; i < part.corners.cols(); ++i) {
+    const Eigen::Vector2d gap = mean - part.corners.col(i);
+    const Eigen::Vector2d towards = inverse * gap;
+    double angle = std::atan2(towards.y(), towards.x());  // the best for a radius of 0
+    if (part.radius > 0.0) angle = best_angle(gap, part.radius, covariance, angle);
+    const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
+    // At a corner n turns from one face's normal to the next one's; beyond, a face is better.
+    if (faces > 0 && (cross(part.normals.col((i + faces - 1) % faces), n) < 0.0 ||
+                      cross(n, part.normals.col(i)) < 0.0)) {
+      continue;
+    }
+    take(n, value_along(n, gap, part.radius, covariance), covariance, best);
+  }
+  return best;
+}
+
+}  // namespace qsmpc::controller
