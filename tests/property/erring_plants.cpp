@@ -1,11 +1,13 @@
 #include "tests/property/erring_plants.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
 #include <utility>
 #include <vector>
 
+#include "controller/regions/planar/convex_surface.hpp"
 #include "models/constants.hpp"
 
 namespace qsmpc::testing {
@@ -29,7 +31,17 @@ ModelError scaled_norms(const Eigen::VectorXd& size, const std::array<double, 3>
 
 /// From every point the shortest way to the unsafe set; infinite where there is none.
 Points ways_to_unsafe(const SafeSet& safe_set, const Points& points) {
-  std::vector<Box> parts = safe_set.obstacles;
+  std::vector<Box> parts;
+  std::vector<controller::ConvexPart> shapes;
+  for (const controller::Obstacle& obstacle : safe_set.obstacles) {
+    if (const Box* box = obstacle.box()) {
+      parts.push_back(*box);
+    } else {
+      for (controller::ConvexPart& part : controller::convex_parts(*obstacle.shape())) {
+        shapes.push_back(std::move(part));
+      }
+    }
+  }
   for (Eigen::Index axis = 0; axis < points.rows(); ++axis) {
     Box face{.lower = Eigen::VectorXd::Constant(points.rows(), -kInfinity),
              .upper = Eigen::VectorXd::Constant(points.rows(), kInfinity)};
@@ -49,6 +61,13 @@ Points ways_to_unsafe(const SafeSet& safe_set, const Points& points) {
       least = way.norm();
       ways.col(i) = way;
     }
+    if (shapes.empty()) continue;
+    const Eigen::Vector2d position(points(safe_set.body.x, i), points(safe_set.body.y, i));
+    const controller::SurfacePoint surface = controller::nearest_surface(shapes, position);
+    if (!(std::max(0.0, surface.distance) < least)) continue;
+    ways.col(i).setZero();
+    ways(safe_set.body.x, i) = -std::max(0.0, surface.distance) * surface.outward.x();
+    ways(safe_set.body.y, i) = -std::max(0.0, surface.distance) * surface.outward.y();
   }
   return ways;
 }

@@ -138,6 +138,65 @@ controller::SafeSet random_safe_set(Generator& generator, const Family& family,
   return safe_set;
 }
 
+Eigen::Matrix2Xd corners_of(std::initializer_list<Eigen::Vector2d> points) {
+  Eigen::Matrix2Xd corners(2, static_cast<Eigen::Index>(points.size()));
+  Eigen::Index i = 0;
+  for (const Eigen::Vector2d& point : points) corners.col(i++) = point;
+  return corners;
+}
+
+/// A polygon on a circle of radius 1, which is convex.
+Eigen::Matrix2Xd random_convex(Generator& generator) {
+  const int count = uniform_int(generator, 3, 7);
+  Eigen::Matrix2Xd corners(2, count);
+  const double first = uniform(generator, 0.0, 6.0);
+  for (int i = 0; i < count; ++i) {
+    const double angle = first + (i + uniform(generator, 0.0, 0.7)) * 6.28 / count;
+    corners.col(i) << std::cos(angle), std::sin(angle);
+  }
+  return corners;
+}
+
+/// Of a size between a tenth of `spread` and twice as much.
+controller::PlanarShape random_shape(Generator& generator, const std::string& kind,
+                                     const Eigen::Vector2d& centre, const Eigen::Vector2d& spread) {
+  const double size = spread.mean();
+  const double angle = uniform(generator, -3.2, 3.2);
+  const Eigen::Vector2d half = size * uniform_vector(generator, 2, 0.1, 2.0);
+  if (kind == "disc") return controller::DiscShape{.centre = centre, .radius = half.x()};
+  if (kind == "ellipse") {
+    return controller::EllipseShape{.centre = centre, .semi_axes = half, .angle = angle};
+  }
+  if (kind == "box") {
+    return controller::TurnedBoxShape{.centre = centre, .size = 2.0 * half, .angle = angle};
+  }
+  if (kind == "half_plane") {
+    const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+    return controller::HalfPlaneShape{.normal = 2.0 * normal, .offset = 2.0 * normal.dot(centre)};
+  }
+  Eigen::Matrix2Xd corners =
+      kind == "polygon"
+          ? random_convex(generator)
+          : corners_of(
+                {{-1.0, -1.0}, {1.0, -1.0}, {1.0, -0.3}, {-0.2, -0.2}, {-0.3, 1.0}, {-1.0, 1.0}});
+  corners = (half.asDiagonal() * corners).colwise() + centre;
+  return controller::PolygonShape{.corners = corners};
+}
+
+controller::SafeSet random_shapes(Generator& generator, const std::string& kind,
+                                  const Eigen::MatrixXd& path, const Eigen::VectorXd& spread) {
+  controller::SafeSet safe_set = controller::unbounded_safe_set(path.rows());
+  const int count = kind == "half_plane" ? 1 : uniform_int(generator, 1, 4);
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector2d beside =
+        path.col(uniform_int(generator, 0, static_cast<int>(path.cols()) - 1)).head<2>();
+    const Eigen::Vector2d away =
+        uniform_vector(generator, 2, -4.0, 4.0).cwiseProduct(spread.head<2>());
+    safe_set.obstacles.emplace_back(random_shape(generator, kind, beside + away, spread.head<2>()));
+  }
+  return safe_set;
+}
+
 /// Up to four discs of the size of `spread`, or a point; off the position where the system has a
 /// heading.
 controller::Body random_body(Generator& generator, const Family& family,
@@ -192,8 +251,10 @@ void random_policy(Generator& generator, Problem& problem) {
 
 namespace {
 
+/// shapes: where given, obstacles are of this kind.
 Problem random_problem_of(Generator& generator, const Family& family,
-                          std::unique_ptr<const models::Dynamics> dynamics) {
+                          std::unique_ptr<const models::Dynamics> dynamics,
+                          const std::string& shapes = "") {
   const Eigen::Index dim = family.start.size();
   Problem problem;
   problem.system = family.system;
@@ -216,7 +277,8 @@ Problem random_problem_of(Generator& generator, const Family& family,
                                   0.5 * settings.horizon * settings.noise_covariance.diagonal())
                                      .cwiseSqrt()
                                      .cwiseMax(0.01);
-  settings.safe_set = random_safe_set(generator, family, path, spread);
+  settings.safe_set = shapes.empty() ? random_safe_set(generator, family, path, spread)
+                                     : random_shapes(generator, shapes, path, spread);
   settings.safe_set.body = random_body(generator, family, spread);
   if (chance(generator, 0.3)) settings.risk.plan = log_uniform(generator, -3.0, -0.3);
   return problem;
@@ -247,6 +309,20 @@ Problem random_problem(Generator& generator) {
   const Family family = random_family(generator);
   return random_problem_of(generator, family,
                            models::make_dynamics(family.system, family.parameters, kTimeStep));
+}
+
+const std::vector<std::string>& shape_kinds() {
+  static const std::vector<std::string> kinds = {"disc",    "ellipse", "box",
+                                                 "polygon", "corner",  "half_plane"};
+  return kinds;
+}
+
+Problem random_shape_problem(Generator& generator, const std::string& kind) {
+  Family family;
+  do family = random_family(generator);
+  while (family.walls.size() < 3);  // those that have a plane
+  return random_problem_of(
+      generator, family, models::make_dynamics(family.system, family.parameters, kTimeStep), kind);
 }
 
 Problem random_own_problem(Generator& generator) {

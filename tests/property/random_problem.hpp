@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "controller/planning/planner.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -25,6 +26,14 @@ struct Problem {
 /// 0 to 5 obstacles beside it, a point or up to four discs for a body, and sometimes a limit of the
 /// plan's risk.
 [[nodiscard]] Problem random_problem(Generator& generator);
+
+/// The kinds of shapes of the plane: "disc", "ellipse", "box", "polygon" (convex), "corner" (a
+/// polygon that is not), "half_plane".
+[[nodiscard]] const std::vector<std::string>& shape_kinds();
+
+/// As random_problem, of a system in the plane, with 1 to 4 shapes of this kind beside the path in
+/// place of boxes, and no walls.
+[[nodiscard]] Problem random_shape_problem(Generator& generator, const std::string& kind);
 
 /// The same of a system of a user's: of tests/support/own_systems.hpp.
 [[nodiscard]] Problem random_own_problem(Generator& generator);

@@ -116,7 +116,8 @@ double PlainPenalty::of_bounds(const Eigen::MatrixXd& x, const Eigen::VectorXd& 
 
 PenaltyValue PlainPenalty::smooth(const Eigen::VectorXd& x, Eigen::VectorXd& slope) const {
   PenaltyValue value;
-  for (const controller::Box& obstacle : safe_set_.obstacles) {
+  for (const controller::Obstacle& each : safe_set_.obstacles) {
+    const controller::Box& obstacle = *each.box();
     Eigen::VectorXd outward = Eigen::VectorXd::Zero(x.size());
     const double distance = outward_distance(x, obstacle, outward);
     const ValueAndSlope h = hinge(distance, penalty_.length);
@@ -136,7 +137,8 @@ PenaltyValue PlainPenalty::thesis(const Eigen::VectorXd& x, Eigen::VectorXd& slo
   }
   double largest = 0.0;
   Eigen::VectorXd of_largest = Eigen::VectorXd::Zero(x.size());
-  for (const controller::Box& obstacle : safe_set_.obstacles) {
+  for (const controller::Obstacle& each : safe_set_.obstacles) {
+    const controller::Box& obstacle = *each.box();
     double outside = 0.0;
     Eigen::VectorXd direction = Eigen::VectorXd::Zero(x.size());
     for (Eigen::Index axis = 0; axis < x.size(); ++axis) {

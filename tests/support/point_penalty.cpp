@@ -15,7 +15,8 @@ PenaltyValue add_penalty(const controller::Points& locations, const Eigen::Vecto
     const controller::TermBatch batch{
         .points = locations, .weights = weights, .range = range, .gradient = adjoint};
     std::vector<std::vector<controller::AxisInterval>> obstacles;
-    for (const controller::Box& obstacle : safe_set.obstacles) {
+    for (const controller::Obstacle& each : safe_set.obstacles) {
+      const controller::Box& obstacle = *each.box();
       obstacles.push_back(controller::bounded_axes(obstacle));
     }
     value.box = controller::printed_bounds_penalty(controller::bounded_axes(safe_set.bounds),

@@ -206,7 +206,8 @@ double SampledProblem::penalty(const models::StateBatch& states, models::StateBa
                             hinge(bounds.upper[axis] - state[axis], penalty.length, high));
       slope(axis, i) += penalty.box * (low - high);
     }
-    for (const controller::Box& obstacle : settings_.safe_set.obstacles) {
+    for (const controller::Obstacle& each : settings_.safe_set.obstacles) {
+      const controller::Box& obstacle = *each.box();
       double steepness = 0.0;
       sum += penalty.obstacle *
              hinge(signed_distance(state, obstacle, normal), penalty.length, steepness);

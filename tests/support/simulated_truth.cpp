@@ -7,6 +7,7 @@
 
 #include "controller/prediction/policy.hpp"
 #include "models/linear_algebra.hpp"
+#include "tests/support/shape_truth.hpp"
 
 namespace qsmpc::testing {
 namespace {
@@ -57,8 +58,12 @@ bool unsafe(const controller::SafeSet& safe_set, const controller::Points& state
   const std::vector<controller::Disc> point(1);
   for (const controller::Disc& disc : body.is_point() ? point : body.discs) {
     if (!within(safe_set.bounds, body, disc, states, i)) return true;
-    for (const controller::Box& obstacle : safe_set.obstacles) {
-      if (touches(obstacle, body, disc, states, i)) return true;
+    for (const controller::Obstacle& obstacle : safe_set.obstacles) {
+      if (const controller::Box* box = obstacle.box()) {
+        if (touches(*box, body, disc, states, i)) return true;
+      } else if (is_near(*obstacle.shape(), centre_of(body, disc, states, i), disc.radius)) {
+        return true;
+      }
     }
   }
   return false;

@@ -36,7 +36,7 @@ using testing::TemporaryFolder;
 Campaign rare_campaign(std::int64_t seeds = 4) {
   Scenario scenario = testing::quick_scenario();
   scenario.controller.kind = "lqr";
-  scenario.safe_set.obstacles.front().lower[0] = 0.5;
+  std::get<controller::Box>(scenario.safe_set.obstacles.front().form).lower[0] = 0.5;
   return {.name = "seldom",
           .variants = {{.name = "lqr",
                         .scenario = "quick.yaml",

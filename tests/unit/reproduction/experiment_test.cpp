@@ -171,7 +171,7 @@ TEST(PublishedWay, is_below_the_truth_beside_a_wall_and_in_an_obstacle) {
   room.bounds.lower << 0.0, 0.0;
   room.bounds.upper << 10.0, 10.0;
   room.obstacles.push_back(
-      {.lower = Eigen::Vector2d(4.0, 4.0), .upper = Eigen::Vector2d(6.0, 6.0)});
+      controller::Box{.lower = Eigen::Vector2d(4.0, 4.0), .upper = Eigen::Vector2d(6.0, 6.0)});
   controller::DiscreteMeasure inside{.locations = controller::Points(2, 1),
                                      .weights = Eigen::VectorXd::Ones(1)};
   inside.locations << 5.0, 5.0;

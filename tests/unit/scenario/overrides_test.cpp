@@ -19,10 +19,10 @@ TEST(Overrides, replace_add_and_reach_into_lists) {
       minimal_with({"safe_set.obstacles=[{x: [2, 3], y: [0, 1]}]", "safe_set.obstacles.0.x=[1,2]",
                     "safe_set.obstacles.1.x=[7, 8]"});
   ASSERT_EQ(scenario.safe_set.obstacles.size(), 2U);
-  EXPECT_EQ(scenario.safe_set.obstacles[0].lower[0], 1.0);
-  EXPECT_EQ(scenario.safe_set.obstacles[0].upper[1], 1.0);
-  EXPECT_EQ(scenario.safe_set.obstacles[1].upper[0], 8.0);
-  EXPECT_EQ(scenario.safe_set.obstacles[1].upper[1], kInfinity);
+  EXPECT_EQ(scenario.safe_set.obstacles[0].box()->lower[0], 1.0);
+  EXPECT_EQ(scenario.safe_set.obstacles[0].box()->upper[1], 1.0);
+  EXPECT_EQ(scenario.safe_set.obstacles[1].box()->upper[0], 8.0);
+  EXPECT_EQ(scenario.safe_set.obstacles[1].box()->upper[1], kInfinity);
 }
 
 TEST(Overrides, a_value_may_contain_an_equals_sign) {

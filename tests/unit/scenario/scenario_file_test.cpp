@@ -103,7 +103,8 @@ TEST(ScenarioFile, every_key_reaches_its_value) {
   EXPECT_EQ(scenario.safe_set.bounds.lower, Eigen::Vector3d(-10, -kInfinity, -kInfinity));
   EXPECT_EQ(scenario.safe_set.bounds.upper, Eigen::Vector3d(11, kInfinity, 9));
   ASSERT_EQ(scenario.safe_set.obstacles.size(), 1U);
-  EXPECT_EQ(scenario.safe_set.obstacles[0].lower, Eigen::Vector3d(-kInfinity, -4, -kInfinity));
+  EXPECT_EQ(scenario.safe_set.obstacles[0].box()->lower,
+            Eigen::Vector3d(-kInfinity, -4, -kInfinity));
   EXPECT_EQ(scenario.target.state, Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(scenario.target.radius, 0.25);
   EXPECT_EQ(scenario.target.angles, std::vector<int>{2});

@@ -27,8 +27,8 @@ inline void expect_equal(const Scenario& a, const Scenario& b) {
   EXPECT_EQ(a.safe_set.bounds.upper, b.safe_set.bounds.upper);
   ASSERT_EQ(a.safe_set.obstacles.size(), b.safe_set.obstacles.size());
   for (std::size_t i = 0; i < a.safe_set.obstacles.size(); ++i) {
-    EXPECT_EQ(a.safe_set.obstacles[i].lower, b.safe_set.obstacles[i].lower);
-    EXPECT_EQ(a.safe_set.obstacles[i].upper, b.safe_set.obstacles[i].upper);
+    EXPECT_EQ(a.safe_set.obstacles[i].box()->lower, b.safe_set.obstacles[i].box()->lower);
+    EXPECT_EQ(a.safe_set.obstacles[i].box()->upper, b.safe_set.obstacles[i].box()->upper);
   }
   EXPECT_EQ(a.target.state, b.target.state);
   EXPECT_EQ(a.target.radius, b.target.radius);

@@ -125,8 +125,8 @@ TEST(Certificate, value_is_the_least_bound_and_names_it) {
   for (const bool closed_loop : {false, true}) {
     PlannerSettings settings = dubins_settings();
     settings.closed_loop = closed_loop;
-    settings.safe_set.obstacles.push_back({.lower = Eigen::Vector3d(0.4, -0.2, -kInfinity),
-                                           .upper = Eigen::Vector3d(0.6, 0.4, kInfinity)});
+    settings.safe_set.obstacles.push_back(Box{.lower = Eigen::Vector3d(0.4, -0.2, -kInfinity),
+                                              .upper = Eigen::Vector3d(0.6, 0.4, kInfinity)});
     Planner planner(*car, settings);
     const Plan& plan = planner.plan(dubins_belief());
     const auto certificates = certificates_of(planner, dubins_belief(), plan);
@@ -164,8 +164,8 @@ TEST(Certificate, surrogate_speaks_of_a_restricted_heading) {
     PlannerSettings settings = dubins_settings();
     settings.closed_loop = closed_loop;
     settings.safe_set.bounds.upper[2] = 0.7;
-    settings.safe_set.obstacles.push_back({.lower = Eigen::Vector3d(0.3, -kInfinity, -0.6),
-                                           .upper = Eigen::Vector3d(2.0, kInfinity, -0.3)});
+    settings.safe_set.obstacles.push_back(Box{.lower = Eigen::Vector3d(0.3, -kInfinity, -0.6),
+                                              .upper = Eigen::Vector3d(2.0, kInfinity, -0.3)});
     Planner planner(*car, settings);
     const Plan& plan = planner.prescribe(belief, Eigen::MatrixXd::Constant(1, 5, 0.2));
     const PredictedMotion motion = motion_of(planner, belief, plan);

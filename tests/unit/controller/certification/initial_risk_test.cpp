@@ -15,8 +15,8 @@ SafeSet corridor() {
   SafeSet safe_set = unbounded_safe_set(3);
   safe_set.bounds.lower[0] = 0.0;
   safe_set.bounds.upper[0] = 10.0;
-  safe_set.obstacles.push_back({.lower = Eigen::Vector3d(4.0, 2.0, -kInfinity),
-                                .upper = Eigen::Vector3d(6.0, 3.0, kInfinity)});
+  safe_set.obstacles.push_back(Box{.lower = Eigen::Vector3d(4.0, 2.0, -kInfinity),
+                                   .upper = Eigen::Vector3d(6.0, 3.0, kInfinity)});
   return safe_set;
 }
 

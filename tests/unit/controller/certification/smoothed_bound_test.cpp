@@ -128,8 +128,8 @@ TEST(SoftUnsafe, correlated_obstacle_uses_the_most_unlikely_half_space) {
       0.95, 1.0, 0.3,            //
       0.3, 0.3, 1.0;
   SafeSet room = unbounded_safe_set(3);
-  room.obstacles.push_back({.lower = Eigen::Vector3d(1.5, -2.0, -kInfinity),
-                            .upper = Eigen::Vector3d(2.0, -1.5, kInfinity)});
+  room.obstacles.push_back(Box{.lower = Eigen::Vector3d(1.5, -2.0, -kInfinity),
+                               .upper = Eigen::Vector3d(2.0, -1.5, kInfinity)});
   const double t = 0.01;
   const double value = soft_unsafe_probability(Eigen::Vector3d::Zero(), covariance, room, t);
   // The half-space x − y ≥ 3 is 3/√0.1 ≈ 9.5 deviations away; a single axis is 1.5.

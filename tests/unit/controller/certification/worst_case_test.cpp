@@ -85,7 +85,7 @@ TEST(WorstCase, grows_with_the_radius) {
 TEST(WorstCase, of_a_measure_uses_the_distance_to_walls_and_obstacles) {
   SafeSet safe_set{
       .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(9.0, 9.0)},
-      .obstacles = {{.lower = Eigen::Vector2d(5.0, 0.0), .upper = Eigen::Vector2d(6.0, 9.0)}}};
+      .obstacles = {Box{.lower = Eigen::Vector2d(5.0, 0.0), .upper = Eigen::Vector2d(6.0, 9.0)}}};
   DiscreteMeasure measure{.locations = Points(2, 2), .weights = Eigen::Vector2d(0.5, 0.5)};
   measure.locations << 4.0, 1.0,  //
       4.0, 4.5;
@@ -130,7 +130,7 @@ TEST(LinearTransportProbability, is_never_below_the_exact_worst_case) {
   std::uniform_real_distribution<double> place(0.0, 8.0);
   const SafeSet room{
       .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(8.0, 8.0)},
-      .obstacles = {{.lower = Eigen::Vector2d(3.0, 4.0), .upper = Eigen::Vector2d(3.5, 4.5)}}};
+      .obstacles = {Box{.lower = Eigen::Vector2d(3.0, 4.0), .upper = Eigen::Vector2d(3.5, 4.5)}}};
   for (int repeat = 0; repeat < 200; ++repeat) {
     constexpr Eigen::Index kCount = 12;
     DiscreteMeasure measure{.locations = Points(2, kCount),
@@ -145,7 +145,7 @@ TEST(LinearTransportProbability, is_never_below_the_exact_worst_case) {
 TEST(ThesisProbability, takes_the_norm_of_the_face_distances_and_ignores_obstacles) {
   const SafeSet room{
       .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(8.0, 10.0)},
-      .obstacles = {{.lower = Eigen::Vector2d(3.0, 4.0), .upper = Eigen::Vector2d(3.5, 4.5)}}};
+      .obstacles = {Box{.lower = Eigen::Vector2d(3.0, 4.0), .upper = Eigen::Vector2d(3.5, 4.5)}}};
   const DiscreteMeasure point{.locations = Eigen::Vector2d(3.0, 4.0),
                               .weights = Eigen::VectorXd::Ones(1)};
   // Distance 5 as printed, spent linearly: 1/5; the point is in fact on an obstacle.

@@ -21,8 +21,8 @@ ChancePlannerSettings settings_of(const std::string& constraint) {
   settings.problem.noise_covariance = Eigen::Vector3d(5e-5, 5e-5, 5e-5).asDiagonal();
   settings.problem.cost.angles = {2};
   // Farther away: there is room to turn for every method.
-  settings.problem.safe_set.obstacles.front().lower[0] += 0.3;
-  settings.problem.safe_set.obstacles.front().upper[0] += 0.3;
+  std::get<Box>(settings.problem.safe_set.obstacles.front().form).lower[0] += 0.3;
+  std::get<Box>(settings.problem.safe_set.obstacles.front().form).upper[0] += 0.3;
   settings.chance.paths = 50;
   settings.chance.risk = 0.1;
   return settings;
@@ -79,9 +79,9 @@ TEST_P(EveryConstraint, says_where_it_cannot_be_kept) {
   const auto car = dubins_car();
   ChancePlannerSettings settings = settings_of(GetParam());
   // The only way is through: a block from wall to wall, which the car cannot stop before.
-  settings.problem.safe_set.obstacles.front().lower[1] = -20.0;
-  settings.problem.safe_set.obstacles.front().upper[1] = 20.0;
-  settings.problem.safe_set.obstacles.front().lower[0] = 0.3;
+  std::get<Box>(settings.problem.safe_set.obstacles.front().form).lower[1] = -20.0;
+  std::get<Box>(settings.problem.safe_set.obstacles.front().form).upper[1] = 20.0;
+  std::get<Box>(settings.problem.safe_set.obstacles.front().form).lower[0] = 0.3;
   ChancePlanner planner(*car, settings);
   const ChancePlan& plan = planner.plan(small_belief(), 0);
   EXPECT_EQ(plan.status, SolverStatus::kInfeasible);

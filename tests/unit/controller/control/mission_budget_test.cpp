@@ -106,7 +106,7 @@ TEST(MissionBudget, drives_never_spend_more) {
   problem.feedback_effort = 10.0;
   problem.noise_covariance = Eigen::Vector3d(1e-3, 1e-3, 1e-4).asDiagonal();
   problem.safe_set.obstacles = {
-      {.lower = Eigen::Vector3d(1.5, -0.3, -1e9), .upper = Eigen::Vector3d(2.0, 0.35, 1e9)}};
+      Box{.lower = Eigen::Vector3d(1.5, -0.3, -1e9), .upper = Eigen::Vector3d(2.0, 0.35, 1e9)}};
   NormalSampler noise(problem.noise_covariance);
   double last = kInfinity;
   for (const double limit : {0.2, 1e-3}) {

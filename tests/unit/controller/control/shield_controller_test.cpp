@@ -22,8 +22,8 @@ ControllerSettings settings_beside(double distance) {
   problem.cost.target << 2.0, -3.0, -1.5;  // to the right, where the block is
   problem.penalty = {.box = 0.0, .obstacle = 0.0};
   problem.safe_set.bounds.lower.head<2>().setConstant(-10.0);
-  problem.safe_set.obstacles.push_back(
-      {.lower = Eigen::Vector3d(-1.0, -2.0, -1e9), .upper = Eigen::Vector3d(1.0, -distance, 1e9)});
+  problem.safe_set.obstacles.push_back(Box{.lower = Eigen::Vector3d(-1.0, -2.0, -1e9),
+                                           .upper = Eigen::Vector3d(1.0, -distance, 1e9)});
   settings.shield = {.of = "nominal", .limit = 0.01};
   return settings;
 }

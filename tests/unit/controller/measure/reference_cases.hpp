@@ -118,7 +118,7 @@ class ReferenceProblem {
     };
     safe_set_.obstacles = {block(reach, 0.1, 0.1), block(1.2 * reach, 0.2, 0.15),
                            block(2.5 * reach, -0.5, 0.3)};
-    safe_set_.obstacles[2].upper[2] = mean[2] + 0.05;
+    std::get<controller::Box>(safe_set_.obstacles[2].form).upper[2] = mean[2] + 0.05;
   }
 
   void make_policy(Generator& generator, const Eigen::VectorXd& mean) {

@@ -105,8 +105,8 @@ TEST(VectorTargets, penalties_are_equal_bit_for_bit) {
   room.bounds.lower.head<2>().setConstant(-1.5);
   room.bounds.upper.head<2>().setConstant(1.2);
   room.obstacles = {
-      {.lower = Eigen::Vector3d(-0.5, -0.5, -1.0), .upper = Eigen::Vector3d(0.6, 0.7, 0.9)},
-      {.lower = Eigen::Vector3d(0.2, 0.1, -1e300), .upper = Eigen::Vector3d(0.9, 1.0, 1e300)}};
+      Box{.lower = Eigen::Vector3d(-0.5, -0.5, -1.0), .upper = Eigen::Vector3d(0.6, 0.7, 0.9)},
+      Box{.lower = Eigen::Vector3d(0.2, 0.1, -1e300), .upper = Eigen::Vector3d(0.9, 1.0, 1e300)}};
   for (const PenaltyShape shape : {PenaltyShape::kSmooth, PenaltyShape::kThesis}) {
     const Penalty penalty{.shape = shape};
     for (const int size : kSizes) {

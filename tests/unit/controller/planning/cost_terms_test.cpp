@@ -33,8 +33,8 @@ struct Problem {
   std::unique_ptr<const models::Dynamics> dynamics = models::make_dynamics("dubins", {}, 0.1);
   SafeSet safe_set{.bounds = {.lower = Eigen::Vector3d(-1.5, -1.5, -4.0),
                               .upper = Eigen::Vector3d(1.2, 1.4, 4.0)},
-                   .obstacles = {{.lower = Eigen::Vector3d(-0.5, -0.5, -1e300),
-                                  .upper = Eigen::Vector3d(0.1, 0.4, 1e300)}}};
+                   .obstacles = {Box{.lower = Eigen::Vector3d(-0.5, -0.5, -1e300),
+                                     .upper = Eigen::Vector3d(0.1, 0.4, 1e300)}}};
   QuadraticCost cost{.state = Eigen::Vector3d(3.0, 2.0, 0.5).asDiagonal(),
                      .input = Eigen::MatrixXd::Constant(1, 1, 0.7),
                      .terminal = Eigen::Vector3d(6.0, 5.0, 1.0).asDiagonal(),

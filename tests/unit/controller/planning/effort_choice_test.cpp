@@ -26,7 +26,7 @@ PlannerSettings stiff(double plan, std::optional<double> effort) {
   settings.max_evaluations = 300;
   settings.risk.plan = plan;
   settings.safe_set.obstacles = {
-      {.lower = Eigen::Vector3d(1.2, -0.3, -1e9), .upper = Eigen::Vector3d(1.5, 0.35, 1e9)}};
+      Box{.lower = Eigen::Vector3d(1.2, -0.3, -1e9), .upper = Eigen::Vector3d(1.5, 0.35, 1e9)}};
   return settings;
 }
 

@@ -42,7 +42,7 @@ class GradientCase {
     settings_.bounds = {.lower = Eigen::VectorXd::Constant(1, -bound),
                         .upper = Eigen::VectorXd::Constant(1, 0.8 * bound)};
     settings_.safe_set.obstacles.push_back(
-        {.lower = Eigen::Vector3d(0.2, -0.3, -1e9), .upper = Eigen::Vector3d(0.5, 0.1, 1e9)});
+        Box{.lower = Eigen::Vector3d(0.2, -0.3, -1e9), .upper = Eigen::Vector3d(0.5, 0.1, 1e9)});
     settings_.safe_set.bounds.lower[0] = -0.1;
     const Gaussian belief{.mean = random_matrix(generator, 3, 1, 0.2),
                           .covariance = random_spd(generator, 3, 0.02)};

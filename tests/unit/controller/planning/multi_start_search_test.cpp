@@ -91,7 +91,7 @@ TEST(PlannerValleys, a_cold_start_takes_the_deeper_of_two) {
   const double below = planner.plan(belief).cost.total();
   EXPECT_LT(planner.plan(belief).policy.states(1, 6), -0.2);
   // The mirror image is as deep, on the other side.
-  Box& block = settings.safe_set.obstacles[0];
+  Box& block = std::get<Box>(settings.safe_set.obstacles[0].form);
   std::swap(block.lower[1], block.upper[1]);
   block.lower[1] *= -1.0;
   block.upper[1] *= -1.0;

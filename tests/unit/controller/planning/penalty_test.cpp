@@ -22,10 +22,10 @@ constexpr double kRelativeTolerance = 1e-6;
 SafeSet room() {
   return {.bounds = {.lower = Eigen::Vector3d(-2.0, -2.0, -kInfinity),
                      .upper = Eigen::Vector3d(2.0, kInfinity, 2.5)},
-          .obstacles = {{.lower = Eigen::Vector3d(-0.5, -1.0, -kInfinity),
-                         .upper = Eigen::Vector3d(0.4, 0.7, kInfinity)},
-                        {.lower = Eigen::Vector3d(0.9, -0.3, -1.0),
-                         .upper = Eigen::Vector3d(1.5, 1.0, 0.6)}}};
+          .obstacles = {Box{.lower = Eigen::Vector3d(-0.5, -1.0, -kInfinity),
+                            .upper = Eigen::Vector3d(0.4, 0.7, kInfinity)},
+                        Box{.lower = Eigen::Vector3d(0.9, -0.3, -1.0),
+                            .upper = Eigen::Vector3d(1.5, 1.0, 0.6)}}};
 }
 
 double total(const Points& points, const Eigen::VectorXd& weights, const Penalty& penalty) {
@@ -112,7 +112,7 @@ TEST(SmoothPenalty, is_a_half_on_the_boundary_and_grows_inwards) {
   const Penalty penalty{.box = 1.0, .obstacle = 1.0, .length = 0.25};
   const SafeSet pillar{
       .bounds = unbounded_safe_set(1).bounds,
-      .obstacles = {{.lower = Eigen::VectorXd::Zero(1), .upper = Eigen::VectorXd::Ones(1)}}};
+      .obstacles = {Box{.lower = Eigen::VectorXd::Zero(1), .upper = Eigen::VectorXd::Ones(1)}}};
   const auto at = [&](double x) {
     Points adjoint = Points::Zero(1, 1);
     return testing::add_penalty(Points::Constant(1, 1, x), Eigen::VectorXd::Ones(1), pillar,
@@ -130,7 +130,7 @@ TEST(ThesisPenalty, is_flat_inside_an_obstacle_with_a_halo_of_one) {
   const Penalty penalty{.shape = PenaltyShape::kThesis, .box = 1.0, .obstacle = 10.0};
   const SafeSet pillar{
       .bounds = unbounded_safe_set(1).bounds,
-      .obstacles = {{.lower = Eigen::VectorXd::Zero(1), .upper = Eigen::VectorXd::Ones(1)}}};
+      .obstacles = {Box{.lower = Eigen::VectorXd::Zero(1), .upper = Eigen::VectorXd::Ones(1)}}};
   for (const auto& [x, value, slope] : {std::tuple{0.3, 10.0, 0.0},
                                         {0.9, 10.0, 0.0},
                                         {1.25, 7.5, -10.0},

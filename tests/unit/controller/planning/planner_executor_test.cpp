@@ -36,7 +36,7 @@ TEST(PlannerExecutor, plans_are_equal_bit_for_bit_however_tasks_are_run) {
     settings.max_evaluations = 15;
     settings.optimise_gain = optimise_gain;
     settings.safe_set.obstacles.push_back(
-        {.lower = Eigen::Vector3d(0.2, 0.1, -1e9), .upper = Eigen::Vector3d(0.4, 0.5, 1e9)});
+        Box{.lower = Eigen::Vector3d(0.2, 0.1, -1e9), .upper = Eigen::Vector3d(0.4, 0.5, 1e9)});
     Planner in_turn(*car, settings);
     settings.run = run_backwards;
     Planner backwards(*car, settings);

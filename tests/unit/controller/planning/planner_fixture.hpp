@@ -47,8 +47,8 @@ inline controller::PlannerSettings block_settings() {
   settings.penalty.obstacle = 5000.0;
   settings.penalty.box = 5000.0;
   settings.safe_set.bounds.lower.head<2>().setConstant(-10.0);
-  settings.safe_set.obstacles.push_back(
-      {.lower = Eigen::Vector3d(0.7, -0.3, -1e9), .upper = Eigen::Vector3d(1.1, 0.35, 1e9)});
+  settings.safe_set.obstacles.push_back(controller::Box{.lower = Eigen::Vector3d(0.7, -0.3, -1e9),
+                                                        .upper = Eigen::Vector3d(1.1, 0.35, 1e9)});
   return settings;
 }
 

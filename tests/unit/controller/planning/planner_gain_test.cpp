@@ -20,7 +20,7 @@ PlannerSettings room_settings(double penalty) {
   settings.cost.target << 2.0, 1.0, 0.0;
   settings.penalty.obstacle = penalty;
   settings.safe_set.obstacles.push_back(
-      {.lower = Eigen::Vector3d(0.3, 0.3, -1e9), .upper = Eigen::Vector3d(0.8, 0.9, 1e9)});
+      Box{.lower = Eigen::Vector3d(0.3, 0.3, -1e9), .upper = Eigen::Vector3d(0.8, 0.9, 1e9)});
   return settings;
 }
 

@@ -28,7 +28,7 @@ PlannerSettings limited(double plan) {
   settings.risk.plan = plan;
   // Far enough off to turn away from.
   settings.safe_set.obstacles = {
-      {.lower = Eigen::Vector3d(1.2, -0.3, -1e9), .upper = Eigen::Vector3d(1.5, 0.35, 1e9)}};
+      Box{.lower = Eigen::Vector3d(1.2, -0.3, -1e9), .upper = Eigen::Vector3d(1.5, 0.35, 1e9)}};
   settings.safe_set.body = {.discs = {{.radius = 0.08, .offset = {0.1, 0.0}}, {.radius = 0.08}},
                             .x = 0,
                             .y = 1,
@@ -192,8 +192,8 @@ PlannerSettings closed_gap(double plan) {
   settings.safe_set.bounds.lower.head<2>() << -0.3, -0.6;
   settings.safe_set.bounds.upper.head<2>() << 6.0, 0.6;
   settings.safe_set.obstacles = {
-      {.lower = Eigen::Vector3d(0.7, 0.05, -1e9), .upper = Eigen::Vector3d(1.0, 2.0, 1e9)},
-      {.lower = Eigen::Vector3d(0.7, -2.0, -1e9), .upper = Eigen::Vector3d(1.0, -0.05, 1e9)}};
+      Box{.lower = Eigen::Vector3d(0.7, 0.05, -1e9), .upper = Eigen::Vector3d(1.0, 2.0, 1e9)},
+      Box{.lower = Eigen::Vector3d(0.7, -2.0, -1e9), .upper = Eigen::Vector3d(1.0, -0.05, 1e9)}};
   return settings;
 }
 

@@ -28,7 +28,7 @@ bool inside(const Box& box, const Eigen::VectorXd& point) {
 /// What the unsafe set is made of: half-spaces and boxes.
 std::vector<BoxPart> parts_of(const SafeSet& room) {
   std::vector<BoxPart> parts = half_spaces(room.bounds);
-  for (const Box& obstacle : room.obstacles) parts.push_back(box_part(obstacle));
+  for (const Obstacle& obstacle : room.obstacles) parts.push_back(box_part(*obstacle.box()));
   return parts;
 }
 
@@ -50,8 +50,8 @@ TEST(UnsafeParts, are_the_unsafe_set) {
     }
     for (int obstacle = 0; obstacle < repetition % 3; ++obstacle) {
       const Eigen::VectorXd corner = random_matrix(generator, 3, 1);
-      room.obstacles.push_back({.lower = corner, .upper = corner.array() + 0.7});
-      room.obstacles.back().upper[repetition % 2] = kInfinity;
+      room.obstacles.push_back(Box{.lower = corner, .upper = corner.array() + 0.7});
+      std::get<Box>(room.obstacles.back().form).upper[repetition % 2] = kInfinity;
     }
     const std::vector<BoxPart> parts = parts_of(room);
     for (const BoxPart& part : parts) {

@@ -21,8 +21,9 @@ constexpr double kSpacing = 0.02;
 constexpr double kDiagonal = kSpacing * 1.41422;
 
 SafeSet room_with_a_pillar() {
-  return {.bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(4.0, 3.0)},
-          .obstacles = {{.lower = Eigen::Vector2d(2.0, 1.0), .upper = Eigen::Vector2d(3.0, 2.0)}}};
+  return {
+      .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(4.0, 3.0)},
+      .obstacles = {Box{.lower = Eigen::Vector2d(2.0, 1.0), .upper = Eigen::Vector2d(3.0, 2.0)}}};
 }
 
 bool unsafe(const Eigen::Vector2d& point, const SafeSet& safe_set) {
@@ -33,7 +34,8 @@ bool unsafe(const Eigen::Vector2d& point, const SafeSet& safe_set) {
     return (point.array() > box.lower.array()).all() && (point.array() < box.upper.array()).all();
   };
   if (!strictly_in(safe_set.bounds)) return true;
-  for (const Box& obstacle : safe_set.obstacles) {
+  for (const Obstacle& each : safe_set.obstacles) {
+    const Box& obstacle = *each.box();
     if (in(obstacle)) return true;
   }
   return false;
@@ -134,8 +136,8 @@ TEST(SafeSet, unrestricted_coordinates_do_not_count) {
   SafeSet corridor = unbounded_safe_set(3);
   EXPECT_EQ(distance_to_unsafe(Eigen::Vector3d(1e6, -4.0, 2.0), corridor), kInfinity);
   corridor.bounds.upper[1] = 1.0;
-  corridor.obstacles.push_back({.lower = Eigen::Vector3d(2.0, -kInfinity, -kInfinity),
-                                .upper = Eigen::Vector3d(3.0, kInfinity, kInfinity)});
+  corridor.obstacles.push_back(Box{.lower = Eigen::Vector3d(2.0, -kInfinity, -kInfinity),
+                                   .upper = Eigen::Vector3d(3.0, kInfinity, kInfinity)});
   EXPECT_NEAR(distance_to_unsafe(Eigen::Vector3d(0.0, -7.0, 50.0), corridor), 2.0, kRounding);
   EXPECT_NEAR(distance_to_unsafe(Eigen::Vector3d(0.0, 0.5, 50.0), corridor), 0.5, kRounding);
   EXPECT_NEAR(clearance(Eigen::Vector3d(2.9, 0.5, 50.0), corridor), -0.1, kRounding);
@@ -144,13 +146,13 @@ TEST(SafeSet, unrestricted_coordinates_do_not_count) {
 TEST(SafeSet, senseless_boxes_are_refused) {
   SafeSet room = room_with_a_pillar();
   EXPECT_NO_THROW(check_safe_set(room));
-  room.obstacles[0].upper[0] = 2.0;  // no interior
+  std::get<Box>(room.obstacles[0].form).upper[0] = 2.0;  // no interior
   EXPECT_THROW(check_safe_set(room), std::invalid_argument);
   room = room_with_a_pillar();
   room.bounds.lower[1] = std::nan("");
   EXPECT_THROW(check_safe_set(room), std::invalid_argument);
   room = room_with_a_pillar();
-  room.obstacles[0].lower = Eigen::VectorXd::Zero(3);
+  std::get<Box>(room.obstacles[0].form).lower = Eigen::VectorXd::Zero(3);
   EXPECT_THROW(check_safe_set(room), std::invalid_argument);
   room = room_with_a_pillar();
   room.bounds.upper = Eigen::VectorXd::Ones(1);

@@ -5,11 +5,14 @@
 #include <limits>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "controller/regions/planar/shape_region.hpp"
 #include "controller/regions/unsafe_set.hpp"
 #include "models/constants.hpp"
 #include "tests/unit/controller/measure/random_measures.hpp"
@@ -35,8 +38,60 @@ Box random_intervals(Generator& generator) {
   return box;
 }
 
+Eigen::Vector2d random_place(Generator& generator) {
+  return {uniform(generator, -0.6, 0.6), uniform(generator, -0.6, 0.6)};
+}
+
+/// One of each kind, of about the size of the intervals; polygons are convex.
+std::vector<std::pair<std::string, PlanarShape>> random_planar_shapes(Generator& generator) {
+  PolygonShape polygon{.corners = Eigen::Matrix2Xd(2, 5)};
+  const Eigen::Vector2d centre = random_place(generator);
+  double angle = uniform(generator, 0.0, 1.0);
+  for (int i = 0; i < 5; ++i, angle += uniform(generator, 0.9, 1.3)) {
+    polygon.corners.col(i) = centre + 0.5 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  }
+  return {
+      {"disc",
+       DiscShape{.centre = random_place(generator), .radius = uniform(generator, 0.1, 0.6)}},
+      {"ellipse",
+       EllipseShape{.centre = random_place(generator),
+                    .semi_axes = {uniform(generator, 0.1, 0.3), uniform(generator, 0.3, 0.6)},
+                    .angle = uniform(generator, -3.0, 3.0)}},
+      {"box", TurnedBoxShape{.centre = random_place(generator),
+                             .size = {uniform(generator, 0.2, 0.8), uniform(generator, 0.2, 0.8)},
+                             .angle = uniform(generator, -3.0, 3.0)}},
+      {"polygon", polygon},
+      {"half_plane",
+       HalfPlaneShape{.normal = random_place(generator), .offset = uniform(generator, -0.3, 0.3)}}};
+}
+
+/// An L.
+PlanarShape random_corner(Generator& generator) {
+  PolygonShape polygon{.corners = Eigen::Matrix2Xd(2, 6)};
+  polygon.corners << 0.0, 0.8, 0.8, 0.3, 0.3, 0.0,  //
+      0.0, 0.0, 0.25, 0.25, 0.9, 0.9;
+  return moved(polygon, random_place(generator));
+}
+
+/// `check` with regions of each shape, some of them grown.
 template <class Check>
-void for_every_shape(const Check& check) {
+void for_every_planar_shape(const Check& check, bool convex_alone = false) {
+  Generator generator(73);
+  for (int repetition = 0; repetition < 20; ++repetition) {
+    const Growth growth{.radius = repetition % 2 == 0 ? 0.0 : 0.2, .x = 0, .y = 1};
+    for (const auto& [name, shape] : random_planar_shapes(generator)) {
+      SCOPED_TRACE(name + " " + std::to_string(repetition));
+      check(*make_shape(shape, growth), generator);
+    }
+    if (convex_alone) continue;
+    SCOPED_TRACE("corner " + std::to_string(repetition));
+    check(*make_shape(random_corner(generator), growth), generator);
+  }
+}
+
+template <class Check>
+void for_every_shape(const Check& check, bool convex_alone = false) {
+  for_every_planar_shape(check, convex_alone);
   Generator generator(71);
   for (const ShapeEntry& entry : region_shapes()) {
     SCOPED_TRACE(entry.name);
@@ -77,29 +132,31 @@ TEST(Shapes, distances_of_many_points_are_those_of_each) {
 // The distance is how far one can move without changing sides: a step of less never does, and one
 // along the gradient of a little more does.
 TEST(Shapes, distance_is_how_far_the_boundary_is) {
-  for_every_shape([](const UnsafeRegion& region, Generator& generator) {
-    for (int i = 0; i < 20; ++i) {
-      const Eigen::Vector3d point = random_matrix(generator, 3, 1, 1.3);
-      const double distance = region.signed_distance(kStage, point);
-      for (int k = 0; k < 20; ++k) {
-        const Eigen::Vector3d direction = random_matrix(generator, 3, 1).normalized();
-        const Eigen::Vector3d moved = point + 0.999 * std::abs(distance) * direction;
-        EXPECT_EQ(region.signed_distance(kStage, moved) > 0.0, distance > 0.0);
-      }
-      Eigen::Vector3d gradient;
-      for (int axis = 0; axis < 3; ++axis) {
-        constexpr double kStep = 1e-7;
-        const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(axis);
-        gradient[axis] = (region.signed_distance(kStage, point + step) -
-                          region.signed_distance(kStage, point - step)) /
-                         (2.0 * kStep);
-      }
-      const Eigen::Vector3d across =
-          point - (distance + std::copysign(1e-5, distance)) * gradient.normalized();
-      EXPECT_NE(region.signed_distance(kStage, across) > 0.0, distance > 0.0)
-          << point.transpose() << ", at " << distance;
-    }
-  });
+  for_every_shape(
+      [](const UnsafeRegion& region, Generator& generator) {
+        for (int i = 0; i < 20; ++i) {
+          const Eigen::Vector3d point = random_matrix(generator, 3, 1, 1.3);
+          const double distance = region.signed_distance(kStage, point);
+          for (int k = 0; k < 20; ++k) {
+            const Eigen::Vector3d direction = random_matrix(generator, 3, 1).normalized();
+            const Eigen::Vector3d moved = point + 0.999 * std::abs(distance) * direction;
+            EXPECT_EQ(region.signed_distance(kStage, moved) > 0.0, distance > 0.0);
+          }
+          Eigen::Vector3d gradient;
+          for (int axis = 0; axis < 3; ++axis) {
+            constexpr double kStep = 1e-7;
+            const Eigen::Vector3d step = kStep * Eigen::Vector3d::Unit(axis);
+            gradient[axis] = (region.signed_distance(kStage, point + step) -
+                              region.signed_distance(kStage, point - step)) /
+                             (2.0 * kStep);
+          }
+          const Eigen::Vector3d across =
+              point - (distance + std::copysign(1e-5, distance)) * gradient.normalized();
+          EXPECT_NE(region.signed_distance(kStage, across) > 0.0, distance > 0.0)
+              << point.transpose() << ", at " << distance;
+        }
+      },
+      true);
 }
 
 TEST(Shapes, penalty_has_its_gradient_and_falls_with_the_distance) {

@@ -11,7 +11,7 @@ namespace unsafe_weight_test {
 UnsafeSet room() {
   return SafeSet{
       .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(4.0, 3.0)},
-      .obstacles = {{.lower = Eigen::Vector2d(2.0, 1.0), .upper = Eigen::Vector2d(3.0, 5.0)}}};
+      .obstacles = {Box{.lower = Eigen::Vector2d(2.0, 1.0), .upper = Eigen::Vector2d(3.0, 5.0)}}};
 }
 
 TEST(UnsafeWeight, is_that_of_the_points_that_touch_the_unsafe_set) {

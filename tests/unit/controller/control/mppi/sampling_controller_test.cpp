@@ -237,7 +237,7 @@ double planned_clearance(const std::string& kind, const ControllerSettings& sett
 // In the block's way: only a plan that knows of the noise keeps what it needs for it.
 TEST(SamplingControllers, keep_clear_of_a_block_and_farther_off_where_they_know_the_noise) {
   ControllerSettings settings{.problem = block_settings()};
-  Box& block = settings.problem.safe_set.obstacles.front();
+  Box& block = std::get<Box>(settings.problem.safe_set.obstacles.front().form);
   block.lower[0] = 1.2;
   block.upper[0] = 1.6;
   settings.problem.noise_covariance = Eigen::Vector3d(1e-3, 1e-3, 2e-5).asDiagonal();
