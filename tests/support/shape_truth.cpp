@@ -30,7 +30,7 @@ struct Nearness {
   bool operator()(const controller::EllipseShape& ellipse) const {
     const Eigen::Vector2d at = Eigen::Rotation2Dd(-ellipse.angle) * (point - ellipse.centre);
     if (at.cwiseQuotient(ellipse.semi_axes).squaredNorm() <= 1.0) return true;
-    if (at.norm() > ellipse.semi_axes.maxCoeff() + reach) return false;
+    if (reach == 0.0 || at.norm() > ellipse.semi_axes.maxCoeff() + reach) return false;
     const auto distance = [&](double angle) {
       return (at -
               ellipse.semi_axes.cwiseProduct(Eigen::Vector2d(std::cos(angle), std::sin(angle))))

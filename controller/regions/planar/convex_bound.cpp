@@ -18,6 +18,8 @@ namespace {
 constexpr double kRegularShare = 1e-10;
 // Projections whose correlation is less count as independent only if it is rounding.
 constexpr double kNoCorrelation = 1e-12;
+// What a part may add without being worked out further.
+constexpr double kNegligiblePart = 1e-8;
 
 Eigen::Vector2d across(const Eigen::Vector2d& direction) { return {-direction.y(), direction.x()}; }
 
@@ -99,12 +101,16 @@ class ProjectedLaw {
 
 }  // namespace
 
-std::vector<DirectionPair> direction_pairs(const ConvexPart& part, const Eigen::Vector2d& mean,
-                                           const Eigen::Matrix2d& covariance) {
+DirectionPair nearest_pair(const ConvexPart& part, const Eigen::Vector2d& mean) {
   const Eigen::Vector2d out = nearest_surface(part, mean).outward;
-  std::vector<DirectionPair> pairs = {pair_of(out, across(out))};
-  if (part.corners.cols() == 0 || !is_regular(covariance)) return pairs;
-  pairs.push_back(pair_of(out, conjugate(out, covariance)));
+  return pair_of(out, across(out));
+}
+
+std::vector<DirectionPair> other_pairs(const ConvexPart& part, const Eigen::Vector2d& mean,
+                                       const Eigen::Matrix2d& covariance) {
+  if (part.corners.cols() == 0 || !is_regular(covariance)) return {};
+  const Eigen::Vector2d out = nearest_surface(part, mean).outward;
+  std::vector<DirectionPair> pairs = {pair_of(out, conjugate(out, covariance))};
   const PlanarSeparation apart = separation(part, mean, covariance);
   const double length = apart.slope.norm();
   if (length > 0.0) {
@@ -115,25 +121,25 @@ std::vector<DirectionPair> direction_pairs(const ConvexPart& part, const Eigen::
   return pairs;
 }
 
-void add_convex_probability(const SurrogateLaw& state, const ConvexPart& part, PlaneAxes axes,
-                            RegionProbability& sum) {
+RegionProbability convex_probability(const SurrogateLaw& state, const ConvexPart& part,
+                                     PlaneAxes axes) {
   const std::vector<Eigen::Index> plane = {axes.x, axes.y};
   const Eigen::Vector2d mean = state.law.mean(plane);
   const Eigen::Matrix2d covariance = state.law.covariance(plane, plane);
   RegionProbability least{.markov = 1.0, .smooth = 1.0};
-  if (mean.allFinite() && covariance.allFinite()) {
-    for (const DirectionPair& pair : direction_pairs(part, mean, covariance)) {
-      const ProjectedLaw projected(state, axes, pair);
-      RegionProbability bound;
-      add_part_probability(projected.surrogate(), rectangle_about(part, pair), bound);
-      least.markov = std::min(least.markov, bound.markov);
-      least.smooth = std::min(least.smooth, bound.smooth);
-      // Others cannot matter.
-      if (least.smooth <= state.worthwhile && least.markov <= state.worthwhile) break;
-    }
-  }
-  sum.markov += least.markov;
-  sum.smooth += std::min(least.smooth, least.markov);
+  if (!mean.allFinite() || !covariance.allFinite()) return least;
+  const auto take = [&](const DirectionPair& pair) {
+    const ProjectedLaw projected(state, axes, pair);
+    RegionProbability bound;
+    add_part_probability(projected.surrogate(), rectangle_about(part, pair), bound);
+    least.markov = std::min(least.markov, bound.markov);
+    least.smooth = std::min({least.smooth, bound.smooth, least.markov});
+  };
+  take(nearest_pair(part, mean));
+  // Others cannot matter.
+  if (least.markov <= std::max(state.worthwhile, kNegligiblePart)) return least;
+  for (const DirectionPair& pair : other_pairs(part, mean, covariance)) take(pair);
+  return least;
 }
 
 SoftPart soft_convex(const ConvexPart& part, const Eigen::Vector2d& mean,

@@ -21,18 +21,21 @@ struct PlaneAxes {
 /// Two directions of length 1, in rows; for a half-plane the first alone is of use.
 using DirectionPair = Eigen::Matrix2d;
 
-/// Pairs in which a rectangle about the part leaves little of the law besides: along the way from
-/// the part to the mean, along the way that is shortest in deviations, and the same across or
-/// uncorrelated. At least one.
-[[nodiscard]] std::vector<DirectionPair> direction_pairs(const ConvexPart& part,
-                                                         const Eigen::Vector2d& mean,
-                                                         const Eigen::Matrix2d& covariance);
+/// The direction from the part to the mean, and the one across: the only pair that is needed where
+/// the part is far away.
+[[nodiscard]] DirectionPair nearest_pair(const ConvexPart& part, const Eigen::Vector2d& mean);
 
-/// Adds bounds C3 and C4 of P(z + e in the part): for each pair those of the rectangle in the
+/// More pairs in which a rectangle about the part leaves little of the law besides: along the way
+/// that is shortest in deviations, and uncorrelated or across. None for a half-plane.
+[[nodiscard]] std::vector<DirectionPair> other_pairs(const ConvexPart& part,
+                                                     const Eigen::Vector2d& mean,
+                                                     const Eigen::Matrix2d& covariance);
+
+/// Bounds C3 and C4 of P(z + e in the part): for each pair those of the rectangle in the
 /// projections (box_part.hpp), whose errors are bounded by the triangle inequality; of all pairs
 /// the least.
-void add_convex_probability(const SurrogateLaw& state, const ConvexPart& part, PlaneAxes axes,
-                            RegionProbability& sum);
+[[nodiscard]] RegionProbability convex_probability(const SurrogateLaw& state,
+                                                   const ConvexPart& part, PlaneAxes axes);
 
 /// What does not depend on t of a bound of E(1 − d(y, part)²/t²)₊ for y ~ N(mean, covariance).
 [[nodiscard]] SoftPart soft_convex(const ConvexPart& part, const Eigen::Vector2d& mean,

@@ -61,6 +61,16 @@ bool edges_meet(const Eigen::Matrix2Xd& corners, Eigen::Index i, Eigen::Index j)
   return meet(a, b, c, d);
 }
 
+/// Whether all corners are on one line, triangles of at most twice this area aside.
+bool is_flat(const Eigen::Matrix2Xd& corners, double area) {
+  Eigen::Index far = 0;
+  (corners.colwise() - corners.col(0)).colwise().squaredNorm().maxCoeff(&far);
+  for (const auto& corner : corners.colwise()) {
+    if (std::abs(turn(corners.col(0), corners.col(far), corner)) > area) return false;
+  }
+  return true;
+}
+
 bool in_triangle(const Corner& point, const std::array<Corner, 3>& triangle) {
   return turn(triangle[0], triangle[1], point) >= 0.0 &&
          turn(triangle[1], triangle[2], point) >= 0.0 &&
@@ -149,6 +159,8 @@ std::string why_no_polygon(const Eigen::Matrix2Xd& corners) {
              std::to_string((i + 1) % count) + " are the same";
     }
   }
+  const double size = (corners.rowwise().maxCoeff() - corners.rowwise().minCoeff()).squaredNorm();
+  if (is_flat(corners, kLeastArea * size)) return "an area above 0";
   for (Eigen::Index i = 0; i < count; ++i) {
     for (Eigen::Index j = i + 1; j < count; ++j) {
       if (edges_meet(corners, i, j)) {
@@ -157,7 +169,6 @@ std::string why_no_polygon(const Eigen::Matrix2Xd& corners) {
       }
     }
   }
-  const double size = (corners.rowwise().maxCoeff() - corners.rowwise().minCoeff()).squaredNorm();
   const double area = std::abs(twice_area(corners));
   if (area <= kLeastArea * size) return "an area above 0";
   double of_pieces = 0.0;
@@ -192,6 +203,34 @@ ConvexPart convex_polygon(const Eigen::Matrix2Xd& corners) {
     part.offsets[i] = part.normals.col(i).dot(from);
   }
   return part;
+}
+
+ConvexPart convex_hull(const Eigen::Matrix2Xd& points) {
+  std::vector<Corner> sorted;
+  for (const auto& point : points.colwise()) sorted.emplace_back(point);
+  const auto before = [](const Corner& a, const Corner& b) {
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+  };
+  std::sort(sorted.begin(), sorted.end(), before);
+  std::vector<Corner> chain;
+  // The lower side from left to right, then the upper one back.
+  for (const bool upper : {false, true}) {
+    const std::size_t start = chain.size();
+    for (const Corner& point : sorted) {
+      while (chain.size() >= start + 2 &&
+             turn(chain[chain.size() - 2], chain.back(), point) <= 0.0) {
+        chain.pop_back();
+      }
+      chain.push_back(point);
+    }
+    chain.pop_back();  // the other side begins with it
+    if (!upper) std::reverse(sorted.begin(), sorted.end());
+  }
+  Eigen::Matrix2Xd corners(2, static_cast<Eigen::Index>(chain.size()));
+  for (std::size_t i = 0; i < chain.size(); ++i) {
+    corners.col(static_cast<Eigen::Index>(i)) = chain[i];
+  }
+  return convex_polygon(corners);
 }
 
 std::vector<Eigen::Matrix2Xd> convex_pieces(const Eigen::Matrix2Xd& corners) {

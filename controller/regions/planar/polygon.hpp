@@ -17,6 +17,9 @@ namespace qsmpc::controller {
 /// straight on are left out.
 [[nodiscard]] ConvexPart convex_polygon(const Eigen::Matrix2Xd& corners);
 
+/// The least convex polygon that holds the points, of which three are not on a line (Andrew 1979).
+[[nodiscard]] ConvexPart convex_hull(const Eigen::Matrix2Xd& points);
+
 /// Convex polygons, counterclockwise, whose union is the polygon, and that share edges alone: the
 /// polygon cut into triangles by its ears, and triangles joined where the result is convex (Hertel
 /// and Mehlhorn 1983: at most four times as many as the least possible).

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "controller/regions/planar/convex_surface.hpp"
+#include "controller/regions/planar/polygon.hpp"
 #include "controller/regions/soft_part.hpp"
 #include "models/constants.hpp"
 
@@ -74,6 +76,10 @@ class ShapeRegion final : public UnsafeRegion {
       const Circle circle = circle_about(part);
       parts_.push_back({.part = std::move(part), .circle = circle});
     }
+    if (parts_.size() > 1) {
+      hull_ = convex_hull(std::get<PolygonShape>(shape).corners);
+      hull_->radius += growth.radius;
+    }
   }
 
   [[nodiscard]] double signed_distance(
@@ -117,7 +123,21 @@ class ShapeRegion final : public UnsafeRegion {
 
   void add_probability(Eigen::Index /*stage*/, const SurrogateLaw& state,
                        RegionProbability& sum) const override {
-    for (const BoundedPart& one : parts_) add_convex_probability(state, one.part, axes_, sum);
+    RegionProbability total;
+    for (const BoundedPart& one : parts_) {
+      const RegionProbability bound = convex_probability(state, one.part, axes_);
+      total.markov += bound.markov;
+      total.smooth += bound.smooth;
+    }
+    // Parts share edges, at which each counts what the error may do: all of them at once are better
+    // where they are small.
+    if (hull_ && total.smooth > state.worthwhile) {
+      const RegionProbability bound = convex_probability(state, *hull_, axes_);
+      total.markov = std::min(total.markov, bound.markov);
+      total.smooth = std::min(total.smooth, bound.smooth);
+    }
+    sum.markov += total.markov;
+    sum.smooth += total.smooth;
   }
 
   void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {
@@ -129,7 +149,11 @@ class ShapeRegion final : public UnsafeRegion {
     covariance.diagonal() = covariance.diagonal().cwiseMax(floor);
     const double most = (1.0 - 1e-12) * std::sqrt(covariance(0, 0) * covariance(1, 1));
     covariance(0, 1) = covariance(1, 0) = std::clamp(covariance(0, 1), -most, most);
+    // Beyond it the tail is 0 in doubles.
+    constexpr double kNoTail = 39.0;
     for (const BoundedPart& one : parts_) {
+      const double gap = (mean - one.circle.centre).norm() - one.circle.radius;
+      if (gap > kNoTail * std::sqrt(covariance.trace())) continue;
       const PlanarSeparation apart = separation(one.part, mean, covariance);
       sum.add(apart.z, plane, std::vector<double>{apart.slope.x(), apart.slope.y()});
     }
@@ -187,7 +211,8 @@ class ShapeRegion final : public UnsafeRegion {
 
   PlaneAxes axes_;
   std::vector<BoundedPart> parts_;
-  Eigen::Matrix2Xd outline_;  ///< of the shape itself
+  std::optional<ConvexPart> hull_;  ///< of several parts
+  Eigen::Matrix2Xd outline_;        ///< of the shape itself
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <string>
@@ -129,8 +130,23 @@ TEST(Shapes, distances_of_many_points_are_those_of_each) {
   });
 }
 
-// The distance is how far one can move without changing sides: a step of less never does, and one
-// along the gradient of a little more does.
+/// Whether a little about `point` there is one that is unsafe, or not, other than `safe` says.
+bool has_other_side(const UnsafeRegion& region, const Eigen::Vector3d& point, bool safe) {
+  constexpr double kAbout = 2e-5;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int k = 0; k < 90; ++k) {
+      const double angle = 2.0 * std::numbers::pi * k / 90;
+      Eigen::Vector3d moved = point;
+      moved[axis] += kAbout * std::cos(angle);
+      moved[(axis + 1) % 3] += kAbout * std::sin(angle);
+      if ((region.signed_distance(kStage, moved) > 0.0) != safe) return true;
+    }
+  }
+  return false;
+}
+
+// The distance is how far one can move without changing sides: a step of less never does, and where
+// one along the gradient ends, the other side is near.
 TEST(Shapes, distance_is_how_far_the_boundary_is) {
   for_every_shape(
       [](const UnsafeRegion& region, Generator& generator) {
@@ -150,9 +166,8 @@ TEST(Shapes, distance_is_how_far_the_boundary_is) {
                               region.signed_distance(kStage, point - step)) /
                              (2.0 * kStep);
           }
-          const Eigen::Vector3d across =
-              point - (distance + std::copysign(1e-5, distance)) * gradient.normalized();
-          EXPECT_NE(region.signed_distance(kStage, across) > 0.0, distance > 0.0)
+          const Eigen::Vector3d boundary = point - distance * gradient.normalized();
+          EXPECT_TRUE(has_other_side(region, boundary, distance > 0.0))
               << point.transpose() << ", at " << distance;
         }
       },
