@@ -43,7 +43,7 @@ struct Nearness {
       return std::atan2(std::copysign(std::sin(angle), at.y()),
                         std::copysign(std::cos(angle), at.x()));
     };
-    for (int step = 0; step < 60; ++step) {
+    for (int step = 0; step < 36; ++step) {
       const double third = (high - low) / 3.0;
       if (distance(mirrored(low + third)) < distance(mirrored(high - third))) {
         high -= third;

@@ -14,33 +14,47 @@ constexpr int kNewtonSteps = 6;
 // What is shorter has no direction.
 constexpr double kNoLength = 1e-300;
 
-/// The polygon alone, of at least one face, from inside: the face that is nearest.
-SurfacePoint nearest_face(const ConvexPart& part, const Eigen::Vector2d& point) {
-  SurfacePoint nearest{.distance = -kInfinity};
+/// The face that the point is farthest beyond, or inside nearest to; one there must be.
+Eigen::Index farthest_face(const ConvexPart& part, const Eigen::Vector2d& point) {
+  Eigen::Index farthest = 0;
+  double most = -kInfinity;
   for (Eigen::Index i = 0; i < part.normals.cols(); ++i) {
     const double distance = part.normals.col(i).dot(point) - part.offsets[i];
-    if (distance <= nearest.distance) continue;
-    nearest = {.distance = distance, .outward = part.normals.col(i)};
+    if (distance <= most) continue;
+    most = distance;
+    farthest = i;
   }
-  return nearest;
+  return farthest;
 }
 
-/// The polygon alone, from outside.
-SurfacePoint nearest_on_edges(const ConvexPart& part, const Eigen::Vector2d& point) {
-  SurfacePoint nearest{.distance = kInfinity};
+/// From the edge of face i to a point.
+Eigen::Vector2d gap_to_edge(const ConvexPart& part, Eigen::Index i, const Eigen::Vector2d& point) {
+  const Eigen::Vector2d from = part.corners.col(i);
+  const Eigen::Vector2d along = part.corners.col((i + 1) % part.corners.cols()) - from;
+  const double share = std::clamp((point - from).dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return point - from - share * along;
+}
+
+/// The polygon alone, from outside. Along the edges that can be seen from the point the distance
+/// falls to its least and rises again; `face` is one of them.
+SurfacePoint nearest_on_edges(const ConvexPart& part, Eigen::Index face,
+                              const Eigen::Vector2d& point) {
   const Eigen::Index count = part.corners.cols();
-  for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::Vector2d from = part.corners.col(i);
-    const Eigen::Vector2d along = part.corners.col((i + 1) % count) - from;
-    const double squares = along.squaredNorm();
-    const double share =
-        squares > 0.0 ? std::clamp((point - from).dot(along) / squares, 0.0, 1.0) : 0.0;
-    const Eigen::Vector2d gap = point - from - share * along;
-    const double distance = gap.norm();
-    if (distance >= nearest.distance) continue;
-    nearest.distance = distance;
-    if (distance > kNoLength) nearest.outward = gap / distance;
+  Eigen::Vector2d gap = gap_to_edge(part, face, point);
+  double square = gap.squaredNorm();
+  for (const Eigen::Index step : {Eigen::Index{1}, count - 1}) {
+    Eigen::Index at = face;
+    for (Eigen::Index k = 1; k < count; ++k) {
+      at = (at + step) % count;
+      const Eigen::Vector2d next = gap_to_edge(part, at, point);
+      // Equal where both are nearest in the corner between them.
+      if (next.squaredNorm() > square) break;
+      gap = next;
+      square = gap.squaredNorm();
+    }
   }
+  SurfacePoint nearest{.distance = std::sqrt(square), .outward = part.normals.col(face)};
+  if (nearest.distance > kNoLength) nearest.outward = gap / nearest.distance;
   return nearest;
 }
 
@@ -51,6 +65,14 @@ double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
 double value_along(const Eigen::Vector2d& direction, const Eigen::Vector2d& gap, double radius,
                    const Eigen::Matrix2d& covariance) {
   return (direction.dot(gap) - radius) / std::sqrt(direction.dot(covariance * direction));
+}
+
+/// Has the sign of the derivative of (n·gap − radius)/√(nᵀSn) as n turns left.
+double rise(const Eigen::Vector2d& n, const Eigen::Vector2d& gap, double radius,
+            const Eigen::Matrix2d& covariance) {
+  const Eigen::Vector2d t(-n.y(), n.x());
+  const Eigen::Vector2d spread = covariance * n;
+  return t.dot(gap) * n.dot(spread) - (n.dot(gap) - radius) * t.dot(spread);
 }
 
 /// The angle of the n of length 1 at which (n·gap − radius)/√(nᵀSn) is greatest, from Newton steps
@@ -101,8 +123,12 @@ SurfacePoint nearest_surface(const ConvexPart& part, const Eigen::Vector2d& poin
     nearest.distance = gap.norm();
     if (nearest.distance > kNoLength) nearest.outward = gap / nearest.distance;
   } else {
-    nearest = nearest_face(part, point);
-    if (nearest.distance > 0.0 && part.corners.cols() > 0) nearest = nearest_on_edges(part, point);
+    const Eigen::Index face = farthest_face(part, point);
+    nearest = {.distance = part.normals.col(face).dot(point) - part.offsets[face],
+               .outward = part.normals.col(face)};
+    if (nearest.distance > 0.0 && part.corners.cols() > 0) {
+      nearest = nearest_on_edges(part, face, point);
+    }
   }
   nearest.distance -= part.radius;
   return nearest;
@@ -148,16 +174,30 @@ PlanarSeparation separation(const ConvexPart& part, const Eigen::Vector2d& mean,
   const Eigen::Matrix2d inverse = covariance.inverse();
   for (Eigen::Index i = 0; i < part.corners.cols(); ++i) {
     const Eigen::Vector2d gap = mean - part.corners.col(i);
-    const Eigen::Vector2d towards = inverse * gap;
-    double angle = std::atan2(towards.y(), towards.x());  // the best for a radius of 0
-    if (part.radius > 0.0) angle = best_angle(gap, part.radius, covariance, angle);
-    const Eigen::Vector2d n(std::cos(angle), std::sin(angle));
-    // At a corner n turns from one face's normal to the next one's; beyond, a face is better.
-    if (faces > 0 && (cross(part.normals.col((i + faces - 1) % faces), n) < 0.0 ||
-                      cross(n, part.normals.col(i)) < 0.0)) {
+    Eigen::Vector2d before = Eigen::Vector2d::Zero();
+    Eigen::Vector2d after = Eigen::Vector2d::Zero();
+    if (faces > 0) {
+      before = part.normals.col((i + faces - 1) % faces);
+      after = part.normals.col(i);
+    }
+    // At a corner n turns from one face's normal to the next one's; where the best is not between
+    // them, a face is better.
+    if (faces > 0 && (rise(before, gap, part.radius, covariance) < 0.0 ||
+                      rise(after, gap, part.radius, covariance) > 0.0)) {
       continue;
     }
-    take(n, value_along(n, gap, part.radius, covariance), covariance, best);
+    const auto between = [&](const Eigen::Vector2d& n) {
+      return faces == 0 || (cross(before, n) >= 0.0 && cross(n, after) >= 0.0);
+    };
+    Eigen::Vector2d n = (inverse * gap).normalized();  // the best for a radius of 0
+    if (!between(n)) n = (before + after).normalized();
+    if (part.radius > 0.0) {
+      const double angle = best_angle(gap, part.radius, covariance, std::atan2(n.y(), n.x()));
+      n = {std::cos(angle), std::sin(angle)};
+    }
+    if (n.allFinite() && between(n)) {
+      take(n, value_along(n, gap, part.radius, covariance), covariance, best);
+    }
   }
   return best;
 }
