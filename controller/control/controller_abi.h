@@ -59,7 +59,7 @@ typedef struct qsmpc_problem {
 
   const double* bounds_lower; /* n, of the safe set; infinite where there are none */
   const double* bounds_upper;
-  int32_t obstacle_count;
+  int32_t obstacle_count;       /* of boxes; shapes of the plane of position are in `json` alone */
   const double* obstacle_lower; /* obstacle_count x n, boxes; infinite as the bounds */
   const double* obstacle_upper;
   int32_t disc_count;         /* of the vehicle's footprint; 0: a point */

@@ -59,11 +59,37 @@ Json box_json(const controller::Box& box) {
   return {{"lower", list_of(box.lower)}, {"upper", list_of(box.upper)}};
 }
 
+/// A shape under its name and with the keys that it has in a scenario.
+struct ShapeJson {
+  Json operator()(const controller::DiscShape& disc) const {
+    return {{"disc", {{"centre", list_of(disc.centre)}, {"radius", disc.radius}}}};
+  }
+  Json operator()(const controller::EllipseShape& ellipse) const {
+    return {{"ellipse",
+             {{"centre", list_of(ellipse.centre)},
+              {"semi_axes", list_of(ellipse.semi_axes)},
+              {"angle", ellipse.angle}}}};
+  }
+  Json operator()(const controller::TurnedBoxShape& box) const {
+    return {{"box",
+             {{"centre", list_of(box.centre)}, {"size", list_of(box.size)}, {"angle", box.angle}}}};
+  }
+  Json operator()(const controller::PolygonShape& polygon) const {
+    return {{"polygon", rows_of(polygon.corners.transpose())}};
+  }
+  Json operator()(const controller::HalfPlaneShape& half_plane) const {
+    return {
+        {"half_plane", {{"normal", list_of(half_plane.normal)}, {"offset", half_plane.offset}}}};
+  }
+};
+
 Json safe_set_json(const controller::SafeSet& safe_set) {
   Json json = box_json(safe_set.bounds);
   json["obstacles"] = Json::array();
   for (const controller::Obstacle& obstacle : safe_set.obstacles) {
-    if (const controller::Box* box = obstacle.box()) json["obstacles"].push_back(box_json(*box));
+    const controller::Box* box = obstacle.box();
+    json["obstacles"].push_back(box != nullptr ? box_json(*box)
+                                               : std::visit(ShapeJson{}, *obstacle.shape()));
   }
   return json;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -11,6 +10,7 @@
 #include <mujoco/mujoco.h>
 
 #include "harness/errors.hpp"
+#include "harness/mujoco/geom_support.hpp"
 #include "harness/mujoco/mujoco_errors.hpp"
 #include "harness/mujoco/named_model.hpp"
 #include "models/constants.hpp"
@@ -25,57 +25,10 @@ constexpr double kSweepMargin = 1e-4;
 constexpr double kMillimetres = 1e3;  // in a metre
 constexpr double kAligned = 1e-6;     // of an axis
 
-/// Of a convex set: max over its points p of direction · p, in the world's axes.
-using Support = std::function<double(const Eigen::Vector3d& direction)>;
-
-struct ReferencePose {
-  const mjModel& model;
-  const mjData& data;
-};
+using Support = GeomSupport;
 
 Eigen::Vector3d vector_at(const double* values, int element) {
   return Eigen::Map<const Eigen::Vector3d>(values + std::ptrdiff_t{3} * element);
-}
-
-/// Of a mesh, in its own axes.
-double mesh_support(const mjModel& model, int mesh, const Eigen::Vector3d& direction) {
-  double most = -kInfinity;
-  for (int v = 0; v < model.mesh_vertnum[mesh]; ++v) {
-    const float* vertex = model.mesh_vert + std::ptrdiff_t{3} * (model.mesh_vertadr[mesh] + v);
-    most = std::max(most, direction.dot(Eigen::Map<const Eigen::Vector3f>(vertex).cast<double>()));
-  }
-  return most;
-}
-
-/// Of a geom about its centre, in its own axes.
-double shape_support(const mjModel& model, int geom, const Eigen::Vector3d& direction) {
-  const Eigen::Vector3d size = vector_at(model.geom_size, geom);
-  const double across = direction.head<2>().norm();
-  const double along = std::abs(direction.z());
-  switch (model.geom_type[geom]) {
-    case mjGEOM_SPHERE:
-      return size[0] * direction.norm();
-    case mjGEOM_CAPSULE:
-      return size[1] * along + size[0] * direction.norm();
-    case mjGEOM_CYLINDER:
-      return size[1] * along + size[0] * across;
-    case mjGEOM_ELLIPSOID:
-      return size.cwiseProduct(direction).norm();
-    case mjGEOM_MESH:
-      return mesh_support(model, model.geom_dataid[geom], direction);
-    default:
-      return size.dot(direction.cwiseAbs());
-  }
-}
-
-Support geom_support(const ReferencePose& pose, int geom) {
-  using RowMajor = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;
-  const Eigen::Vector3d centre = vector_at(pose.data.geom_xpos, geom);
-  const Eigen::Matrix3d to_geom =
-      Eigen::Map<const RowMajor>(pose.data.geom_xmat + std::ptrdiff_t{9} * geom).transpose();
-  return [&model = pose.model, geom, centre, to_geom](const Eigen::Vector3d& direction) {
-    return direction.dot(centre) + shape_support(model, geom, to_geom * direction);
-  };
 }
 
 struct TurningAxis {
@@ -136,7 +89,7 @@ class Sweep {
   Sweep(const NamedModel& named, const mjData& data) : named_(named), data_(data) {}
 
   [[nodiscard]] Support operator()(int geom, int carrier) const {
-    Support support = geom_support({named_.model, data_}, geom);
+    Support support = geom_support(named_.model, data_, geom);
     const int outermost = outermost_limited(named_.model.geom_bodyid[geom], carrier);
     for (const int joint : joints(named_.model.geom_bodyid[geom], carrier)) {
       support = swept(support, joint, joint == outermost);

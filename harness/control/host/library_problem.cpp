@@ -98,7 +98,10 @@ void LibraryProblem::add_surroundings(const json& scenario) {
   const json& safe_set = scenario.at("safe_set");
   problem_.bounds_lower = keep(numbers_in(safe_set.at("lower"), -kNoLimit));
   problem_.bounds_upper = keep(numbers_in(safe_set.at("upper"), kNoLimit));
-  const json& obstacles = safe_set.at("obstacles");
+  json obstacles = json::array();
+  for (const json& obstacle : safe_set.at("obstacles")) {
+    if (obstacle.contains("lower")) obstacles.push_back(obstacle);  // shapes are in `json` alone
+  }
   problem_.obstacle_count = static_cast<std::int32_t>(obstacles.size());
   problem_.obstacle_lower = keep(column(obstacles, "lower", -kNoLimit));
   problem_.obstacle_upper = keep(column(obstacles, "upper", kNoLimit));

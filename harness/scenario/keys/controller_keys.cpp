@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include <fmt/format.h>
+
 #include "controller/control/controller.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
@@ -134,6 +136,17 @@ void read_input_bounds(ScenarioReading& reading, Section& section, const KeyDesc
           .box;
   reading.scenario.controller.input_lower = box.lower;
   reading.scenario.controller.input_upper = box.upper;
+}
+
+/// Algorithm 2 of the thesis knows boxes alone.
+void check_penalty_shape(const ScenarioReading& reading, Section& section) {
+  if (reading.scenario.controller.penalty.shape != "thesis") return;
+  const std::vector<controller::Obstacle>& obstacles = reading.scenario.safe_set.obstacles;
+  const auto shape = std::find_if(obstacles.begin(), obstacles.end(),
+                                  [](const auto& obstacle) { return obstacle.box() == nullptr; });
+  if (shape == obstacles.end()) return;
+  section.note("shape", fmt::format("smooth, as safe_set.obstacles.{} is no box of states",
+                                    shape - obstacles.begin()));
 }
 
 std::vector<ScenarioKey> kind_keys() {
@@ -290,10 +303,12 @@ ScenarioKey penalty_key() {
       .about = {.name = "penalty"},
       .keys = {{.about = {.name = "shape",
                           .values = {NameValue{penalty_shape_names()}},
-                          .words = "`smooth`, or `thesis`: Algorithm 2 of the reference thesis"},
+                          .words = "`smooth`, or `thesis`: Algorithm 2 of the reference thesis, "
+                                   "which knows boxes of states alone"},
                 .member = [](Scenario& scenario) -> std::string& {
                   return scenario.controller.penalty.shape;
-                }},
+                },
+                .check = check_penalty_shape},
                {.about = {.name = "box",
                           .values = {NumberValue{kNotNegative}},
                           .words = "weight of leaving the bounds, {range}; not used by `slsqp`",

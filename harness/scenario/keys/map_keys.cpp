@@ -1,5 +1,6 @@
 // The keys of the map: what is safe, and where to go.
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,8 +12,6 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr std::size_t kMostObstacles = 1000;  // every particle is held against each of them
-
 controller::Box unbounded_box(const ScenarioReading& reading) {
   return controller::unbounded_safe_set(std::ssize(reading.system().states)).bounds;
 }
@@ -21,34 +20,6 @@ void read_bounds(ScenarioReading& reading, Section& section, const KeyDescriptio
   Section bounds = section.section(about.name);
   reading.scenario.safe_set.bounds =
       read_intervals(bounds, reading.system().states, {.fallback = unbounded_box(reading)}).box;
-}
-
-void read_obstacles(ScenarioReading& reading, Section& section, const KeyDescription& about) {
-  const std::vector<models::Coordinate>& states = reading.system().states;
-  const std::size_t most = value_of<ListValue>(about).limits.most;
-  const std::size_t count = section.list_size(about.name);
-  if (count > most) section.note(about.name, fmt::format("at most {} obstacles", most));
-  for (std::size_t i = 0; i < std::min(count, most); ++i) {
-    Section item = section.item(about.name, i);
-    NamedIntervals obstacle = read_intervals(item, states, {.fallback = unbounded_box(reading)});
-    if (obstacle.any) {
-      reading.scenario.safe_set.obstacles.emplace_back(std::move(obstacle.box));
-    } else if (item.present() && item.keys().empty()) {
-      item.note_here(fmt::format("an interval of at least one of {}",
-                                 fmt::join(coordinate_names(states), ", ")),
-                     "an obstacle that fills the whole space");
-    }
-  }
-}
-
-std::optional<std::string> obstacles_text(const Scenario& scenario,
-                                          const models::SystemDescription& system) {
-  if (scenario.safe_set.obstacles.empty()) return "[]";
-  std::string out;
-  for (const controller::Obstacle& obstacle : scenario.safe_set.obstacles) {
-    out += "\n    - " + intervals_text(*obstacle.box(), system.states);
-  }
-  return out;
 }
 
 void read_angles(ScenarioReading& reading, Section& section, const KeyDescription& about) {
@@ -83,16 +54,6 @@ std::optional<std::string> angles_text(const Scenario& scenario,
   return fmt::format("[{}]", fmt::join(names, ", "));
 }
 
-/// An interval for some of the states.
-MappingValue state_intervals(const std::string& words) {
-  return {{{.name = "STATE",
-            .family = NameFamily::kStates,
-            .values = {IntervalValue{}},
-            .words = words,
-            .unit = words.empty() ? "" : "of the state",
-            .fallback_words = words.empty() ? "" : "no bound"}}};
-}
-
 ScenarioKey angles_key() {
   return {
       .about = {.name = "angles",
@@ -109,27 +70,24 @@ ScenarioKey angles_key() {
 }  // namespace
 
 ScenarioKey safe_set_key() {
-  return {
+  ScenarioKey key{
       .about = {.name = "safe_set"},
-      .keys = {{.about = {.name = "bounds", .values = {state_intervals("`[lower, upper]`")}},
+      .keys = {{.about = {.name = "bounds",
+                          .values = {MappingValue{{{.name = "STATE",
+                                                    .family = NameFamily::kStates,
+                                                    .values = {IntervalValue{}},
+                                                    .words = "`[lower, upper]`",
+                                                    .unit = "of the state",
+                                                    .fallback_words = "no bound"}}}}},
                 .read = read_bounds,
                 .write =
                     [](const Scenario& scenario, const models::SystemDescription& system) {
                       return std::optional(intervals_text(scenario.safe_set.bounds, system.states));
-                    }},
-               {.about = {.name = "obstacles",
-                          .values = {list_of_values(state_intervals(""), {.most = kMostObstacles})},
-                          .words = fmt::format("up to {} boxes, each a mapping of at least one "
-                                               "state to `[lower, upper]`; a state that is not "
-                                               "named is not restricted",
-                                               kMostObstacles),
-                          .unit = "of the state",
-                          .fallback = "[]",
-                          .fallback_words = "none"},
-                .read = read_obstacles,
-                .write = obstacles_text}},
+                    }}},
       .after = ReadAfter::kSystem,
       .table = "map"};
+  for (ScenarioKey& obstacles : obstacle_keys()) key.keys.push_back(std::move(obstacles));
+  return key;
 }
 
 ScenarioKey target_key() {

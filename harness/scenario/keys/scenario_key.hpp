@@ -76,6 +76,8 @@ struct ScenarioKey {
 [[nodiscard]] ScenarioKey model_error_key();
 [[nodiscard]] ScenarioKey vehicle_key();
 [[nodiscard]] ScenarioKey safe_set_key();
+/// Within it, the obstacles and where else they are from.
+[[nodiscard]] std::vector<ScenarioKey> obstacle_keys();
 [[nodiscard]] ScenarioKey target_key();
 [[nodiscard]] ScenarioKey risk_key();
 [[nodiscard]] ScenarioKey estimator_key();
