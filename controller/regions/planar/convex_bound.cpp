@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 
+#include "controller/measure/normal/normal_distribution.hpp"
 #include "controller/regions/box_part.hpp"
 #include "controller/regions/planar/convex_surface.hpp"
 #include "models/constants.hpp"
@@ -18,8 +19,6 @@ namespace {
 constexpr double kRegularShare = 1e-10;
 // Projections whose correlation is less count as independent only if it is rounding.
 constexpr double kNoCorrelation = 1e-12;
-// What a part may add without being worked out further.
-constexpr double kNegligiblePart = 1e-8;
 
 Eigen::Vector2d across(const Eigen::Vector2d& direction) { return {-direction.y(), direction.x()}; }
 
@@ -119,6 +118,29 @@ std::vector<DirectionPair> other_pairs(const ConvexPart& part, const Eigen::Vect
     pairs.push_back(pair_of(shortest, across(shortest)));
   }
   return pairs;
+}
+
+// With gap the distance of the mean from the circle along u: z + e is in the circle only if u·z is
+// at least gap/2 below its mean, or u·e below −gap/2.
+double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxes axes) {
+  const Eigen::Vector2d way =
+      Eigen::Vector2d(state.law.mean[axes.x], state.law.mean[axes.y]) - circle.centre;
+  const double distance = way.norm();
+  const double half = 0.5 * (distance - circle.radius);
+  if (!(half > 0.0)) return 1.0;
+  const Eigen::Vector2d u = way / distance;
+  const Eigen::MatrixXd& covariance = state.law.covariance;
+  const double variance = u.x() * u.x() * covariance(axes.x, axes.x) +
+                          2.0 * u.x() * u.y() * covariance(axes.x, axes.y) +
+                          u.y() * u.y() * covariance(axes.y, axes.y);
+  constexpr std::size_t kHighest = kHigherOrders.size() - 1;
+  const Eigen::VectorXd& norms = state.higher[kHighest];
+  const double norm = std::abs(u.x()) * norms[axes.x] + std::abs(u.y()) * norms[axes.y];
+  const double tail = norm > 0.0 ? std::pow(norm / half, kHigherOrders[kHighest]) : 0.0;
+  const double deviation = std::sqrt(std::max(0.0, variance));
+  const double beyond = deviation > 0.0 ? normal_cumulative(-half / deviation) : 0.0;
+  const double bound = tail + beyond;
+  return bound < 1.0 ? bound : 1.0;  // what is not a number is no bound
 }
 
 RegionProbability convex_probability(const SurrogateLaw& state, const ConvexPart& part,

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/regions/planar/convex_surface.hpp"
 #include "controller/regions/planar/planar_shape.hpp"
 #include "controller/regions/soft_part.hpp"
 #include "controller/regions/unsafe_region.hpp"
@@ -30,6 +31,14 @@ using DirectionPair = Eigen::Matrix2d;
 [[nodiscard]] std::vector<DirectionPair> other_pairs(const ConvexPart& part,
                                                      const Eigen::Vector2d& mean,
                                                      const Eigen::Matrix2d& covariance);
+
+/// What a part may add without being worked out further.
+inline constexpr double kNegligiblePart = 1e-8;
+
+/// A bound of P(z + e in the circle), good where that is far away: half of the way to it is left to
+/// z, the other half to e. 1 where the mean is not outside of it.
+[[nodiscard]] double far_probability(const SurrogateLaw& state, const Circle& circle,
+                                     PlaneAxes axes);
 
 /// Bounds C3 and C4 of P(z + e in the part): for each pair those of the rectangle in the
 /// projections (box_part.hpp), whose errors are bounded by the triangle inequality; of all pairs

@@ -1,6 +1,7 @@
 #include "controller/regions/planar/shape_region.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -24,6 +25,12 @@ struct BoundedPart {
   ConvexPart part;
   Circle circle;
 };
+
+/// Whether the point is at least `distance` away from the circle.
+bool is_beyond(const Circle& circle, const Eigen::Vector2d& point, double distance) {
+  const double reach = circle.radius + distance;
+  return reach <= 0.0 || (point - circle.centre).squaredNorm() >= reach * reach;
+}
 
 /// h of planning/cost/penalty.hpp, and its derivative by the ratio.
 struct Hinge {
@@ -125,7 +132,10 @@ class ShapeRegion final : public UnsafeRegion {
                        RegionProbability& sum) const override {
     RegionProbability total;
     for (const BoundedPart& one : parts_) {
-      const RegionProbability bound = convex_probability(state, one.part, axes_);
+      const double far = far_probability(state, one.circle, axes_);
+      const RegionProbability bound = far <= kNegligiblePart
+                                          ? RegionProbability{.markov = far, .smooth = far}
+                                          : convex_probability(state, one.part, axes_);
       total.markov += bound.markov;
       total.smooth += bound.smooth;
     }
@@ -141,21 +151,21 @@ class ShapeRegion final : public UnsafeRegion {
   }
 
   void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {
-    const std::vector<Eigen::Index> plane = {axes_.x, axes_.y};
-    const Eigen::Vector2d mean = law.mean(plane);
-    Eigen::Matrix2d covariance = law.covariance(plane, plane);
+    const Eigen::Vector2d mean(law.mean[axes_.x], law.mean[axes_.y]);
     const double floor =
         std::max(kCertainVariance, kCertainShare * law.covariance.diagonal().maxCoeff());
+    Eigen::Matrix2d covariance = covariance_in(law.covariance);
     covariance.diagonal() = covariance.diagonal().cwiseMax(floor);
     const double most = (1.0 - 1e-12) * std::sqrt(covariance(0, 0) * covariance(1, 1));
     covariance(0, 1) = covariance(1, 0) = std::clamp(covariance(0, 1), -most, most);
     // Beyond it the tail is 0 in doubles.
     constexpr double kNoTail = 39.0;
+    const double reach = kNoTail * std::sqrt(covariance.trace());
+    const std::array<Eigen::Index, 2> plane = {axes_.x, axes_.y};
     for (const BoundedPart& one : parts_) {
-      const double gap = (mean - one.circle.centre).norm() - one.circle.radius;
-      if (gap > kNoTail * std::sqrt(covariance.trace())) continue;
+      if (is_beyond(one.circle, mean, reach)) continue;
       const PlanarSeparation apart = separation(one.part, mean, covariance);
-      sum.add(apart.z, plane, std::vector<double>{apart.slope.x(), apart.slope.y()});
+      sum.add(apart.z, plane, std::array<double, 2>{apart.slope.x(), apart.slope.y()});
     }
   }
 
@@ -163,10 +173,10 @@ class ShapeRegion final : public UnsafeRegion {
                                         const Eigen::Ref<const Eigen::VectorXd>& mean,
                                         const Eigen::Ref<const Eigen::MatrixXd>& covariance,
                                         double t) const override {
-    const std::vector<Eigen::Index> plane = {axes_.x, axes_.y};
+    const Eigen::Vector2d centre(mean[axes_.x], mean[axes_.y]);
     double sum = 0.0;
     for (const BoundedPart& one : parts_) {
-      sum += soft_part_probability(soft_convex(one.part, mean(plane), covariance(plane, plane)), t);
+      sum += soft_part_probability(soft_convex(one.part, centre, covariance_in(covariance)), t);
     }
     return sum;
   }
@@ -197,12 +207,20 @@ class ShapeRegion final : public UnsafeRegion {
     return {points(axes_.x, i), points(axes_.y, i)};
   }
 
+  [[nodiscard]] Eigen::Matrix2d covariance_in(
+      const Eigen::Ref<const Eigen::MatrixXd>& covariance) const {
+    Eigen::Matrix2d plane;
+    plane << covariance(axes_.x, axes_.x), covariance(axes_.x, axes_.y),
+        covariance(axes_.y, axes_.x), covariance(axes_.y, axes_.y);
+    return plane;
+  }
+
   /// The surface of the nearest part of those that are nearer than `enough`; else at least as far.
   [[nodiscard]] SurfacePoint nearest(const Eigen::Vector2d& point, double enough) const {
     SurfacePoint least{.distance = kInfinity};
     for (const BoundedPart& one : parts_) {
       const double limit = std::min(enough, least.distance);
-      if ((point - one.circle.centre).norm() - one.circle.radius >= limit) continue;
+      if (is_beyond(one.circle, point, limit)) continue;
       const SurfacePoint surface = nearest_surface(one.part, point);
       if (surface.distance < least.distance) least = surface;
     }
