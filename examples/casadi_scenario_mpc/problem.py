@@ -224,6 +224,8 @@ class Problem:
                 if safe["upper"][i] is not None:
                     distances.append(safe["upper"][i] - value - radius)
         for box in safe["obstacles"]:
+            if "lower" not in box:
+                raise ValueError(f"obstacles must be boxes, not a shape ({next(iter(box))})")
             for centre, radius in bodies or [([], 0.0)]:
                 at = [state[i] for i in range(self.state_dim)]
                 for axis, value in enumerate(centre):

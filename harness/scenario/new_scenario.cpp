@@ -31,8 +31,9 @@ disturbance: {{covariance: [0.0004, 0.0004, 0.0001]}}
 vehicle: {{footprint: from_mjcf}}
 safe_set:
   bounds: {{x: [-1, 9], y: [-1, 7]}}
-  obstacles:
+  obstacles:          # boxes of states; in the plane also disc, ellipse, box, polygon, half_plane
     - {{x: [3, 5], y: [1, 4]}}
+    # - {{disc: {{centre: [6, 6], radius: 0.5}}}}
 target: {{state: [8, 5, 0], radius: 0.5}}
 
 # The certified probability of being unsafe at any stage of a plan is kept below this.

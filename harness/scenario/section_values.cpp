@@ -1,5 +1,6 @@
 #include "harness/scenario/section_values.hpp"
 
+#include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
@@ -18,6 +19,19 @@ Eigen::MatrixXd semidefinite(Section& section, const std::string& key,
     return fallback;
   }
   return *matrix;
+}
+
+std::optional<std::string> named_file(Section& section, const std::string& key,
+                                      const std::string& folder, const std::string& expected) {
+  namespace fs = std::filesystem;
+  const std::string name = section.text(key, "", kLongestPath);
+  if (!section.holds_text(key)) return std::nullopt;  // noted
+  std::error_code error;
+  fs::path path = fs::path(folder) / name;
+  if (section.is_override(key) && !fs::is_regular_file(path, error)) path = name;
+  if (!name.empty() && fs::is_regular_file(path, error)) return path.lexically_normal().string();
+  section.note(key, expected, "no file " + name);
+  return std::nullopt;
 }
 
 NamedIntervals read_intervals(Section& section, const std::vector<models::Coordinate>& coordinates,

@@ -1,6 +1,7 @@
 // Values that several sections of a scenario hold, read and checked.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,13 @@ namespace qsmpc::harness {
 /// where there is none, or another one, which is noted.
 [[nodiscard]] Eigen::MatrixXd semidefinite(Section& section, const std::string& key,
                                            const Eigen::MatrixXd& fallback);
+
+/// The path of the file that `key`, which is there, names: an absolute one, or relative to
+/// `folder`; of a value from --set else to the working folder. Nothing, and a noted problem with
+/// `expected`, where there is no such file.
+[[nodiscard]] std::optional<std::string> named_file(Section& section, const std::string& key,
+                                                    const std::string& folder,
+                                                    const std::string& expected);
 
 struct IntervalOptions {
   controller::Box fallback;  ///< of coordinates that are not named

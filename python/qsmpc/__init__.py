@@ -21,7 +21,7 @@ from qsmpc.episodes import Episode, read, run
 from qsmpc.exports import export_mcap, export_rerun
 from qsmpc.planning import Certifier, Plan, Planner
 from qsmpc.predictions import Prediction, predict
-from qsmpc.scenarios import Model, Scenario, controllers, load, parse, scenarios, systems
+from qsmpc.scenarios import Model, Scenario, Shape, controllers, load, parse, scenarios, systems
 from qsmpc.serving import serve
 
 __all__ = [
@@ -35,6 +35,7 @@ __all__ = [
     "Planner",
     "Prediction",
     "Scenario",
+    "Shape",
     "Situation",
     "Store",
     "__version__",

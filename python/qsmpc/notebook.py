@@ -40,6 +40,9 @@ def _map(episode: Episode) -> str:
             f'<rect x="{a[0]:.1f}" y="{a[1]:.1f}" width="{b[0] - a[0]:.1f}" '
             f'height="{b[1] - a[1]:.1f}" fill="#888"/>'
         )
+    for shape in scenario.shapes:
+        corners = " ".join("{:.1f},{:.1f}".format(*place(corner)) for corner in shape.outline)
+        shapes.append(f'<polygon points="{corners}" fill="#888"/>')
     target = place(scenario.target[[x, y]])
     shapes.append(
         f'<circle cx="{target[0]:.1f}" cy="{target[1]:.1f}" '

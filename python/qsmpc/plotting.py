@@ -16,7 +16,7 @@ def plot_episode(episode: Episode, axes: Any = None) -> Any:
     """The drive in the plane with obstacles, target and, where there are any, the particles of the
     last plan; of a system without a plane, its states over time."""
     import matplotlib.pyplot as pyplot
-    from matplotlib.patches import Circle, Rectangle
+    from matplotlib.patches import Circle, Polygon, Rectangle
 
     if axes is None:
         axes = pyplot.subplots(layout="constrained")[1]
@@ -33,6 +33,8 @@ def plot_episode(episode: Episode, axes: Any = None) -> Any:
     for lower, upper in scenario.obstacles:
         corner = (lower[x], lower[y])
         axes.add_patch(Rectangle(corner, upper[x] - lower[x], upper[y] - lower[y], color="0.6"))
+    for shape in scenario.shapes:
+        axes.add_patch(Polygon(shape.outline, color="0.6"))
     bounds = scenario.bounds
     for axis, i, (least, most) in zip("xy", (x, y), limits):
         low, high = bounds[0][i], bounds[1][i]

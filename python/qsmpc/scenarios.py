@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Optional, Union
 
 import numpy as np
@@ -28,6 +29,18 @@ def _text(value: Any) -> str:
 def overrides(settings: Settings) -> list[str]:
     """KEY=VALUE for each setting, as after ``--set``."""
     return [f"{key}={_text(value)}" for key, value in (settings or {}).items()]
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """An obstacle that is a shape of the plane of position."""
+
+    index: int  #: among all obstacles: of ``safe_set.obstacles.INDEX``
+    kind: str  #: ``disc``, ``ellipse``, ``box``, ``polygon`` or ``half_plane``
+    #: As in the scenario: the keys of the kind, of a polygon its corners.
+    values: Any
+    #: Corners × 2, counterclockwise, m; arcs as chords, a half-plane as a rectangle of 10 km.
+    outline: NDArray[np.float64]
 
 
 class Scenario:
@@ -121,8 +134,20 @@ class Scenario:
     @property
     def obstacles(self) -> list[tuple[NDArray[np.float64], NDArray[np.float64]]]:
         """Lower and upper corners of the boxes that are unsafe, n each; infinite in states that an
-        obstacle does not restrict."""
+        obstacle does not restrict. Obstacles that are no boxes of states are `shapes`."""
         return self.core.obstacles
+
+    @property
+    def shapes(self) -> list[Shape]:
+        """The obstacles that are shapes of the plane of position."""
+        outlines = self.core.shape_outlines
+        if not outlines:
+            return []
+        entries = self.to_dict()["safe_set"]["obstacles"]
+        return [
+            Shape(index, *next(iter(entries[index].items())), outline)
+            for index, outline in outlines
+        ]
 
     @property
     def footprint(self) -> NDArray[np.float64]:

@@ -31,6 +31,18 @@ namespace nb = nanobind;
 using nb::literals::operator""_a;
 using harness::Scenario;
 
+/// The obstacles that are shapes of the plane: their places among all, and their corners, N x 2.
+std::vector<std::pair<std::size_t, Eigen::MatrixXd>> shape_outlines(const Scenario& scenario) {
+  const std::vector<controller::Obstacle>& obstacles = scenario.safe_set.obstacles;
+  std::vector<std::pair<std::size_t, Eigen::MatrixXd>> outlines;
+  for (std::size_t k = 0; k < obstacles.size(); ++k) {
+    if (const controller::PlanarShape* shape = obstacles[k].shape()) {
+      outlines.emplace_back(k, controller::shape_outline(*shape).transpose());
+    }
+  }
+  return outlines;
+}
+
 /// `scenario` with `overrides` (KEY=VALUE) applied.
 Scenario changed(const Scenario& scenario, const std::vector<std::string>& overrides) {
   return harness::parse_scenario(harness::to_yaml(scenario),
@@ -131,6 +143,7 @@ void add_scenario_class(nb::module_& module) {
                      }
                      return boxes;
                    })
+      .def_prop_ro("shape_outlines", &shape_outlines)
       .def_prop_ro("footprint", &footprint_of)
       .def_prop_ro("no_bound", &harness::why_no_bound,
                    "Why certificates are no bounds here; empty where they are.")

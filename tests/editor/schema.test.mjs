@@ -96,6 +96,23 @@ for (const [right, wrong, says] of [
   });
 }
 
+const passage = readFileSync(join(source, "models/scenarios/narrow_passage.yaml"), "utf8");
+for (const [right, wrong, says] of [
+  ["{disc: {centre", "{disk: {centre", /Valid values: "x", "y", "heading", "disc", "ellipse"/],
+  ["radius: 0.4}", "radius: -1}", /minimum of/],
+  ["radius: 0.4}", "raduis: 0.4}", /raduis is not allowed/],
+  ["[[7.5, 7], [9.5, 7], ", "[[7.5, 7], ", /too few items/],
+]) {
+  test(`"${wrong.trim()}" of a shape is marked at its line`, async () => {
+    assert.equal(passage.split(right).length, 2, `"${right}" is in the scenario once`);
+    const text = passage.replace(right, wrong);
+    const found = await server.diagnose("scenario", text);
+    const line = text.split("\n").findIndex((one) => one.includes(wrong)) + 1;
+    assert.deepEqual([...new Set(found.map((one) => one.line))], [line]);
+    assert.match(found.map((one) => one.message).join("\n"), says);
+  });
+}
+
 test("a scenario without what it needs is marked", async () => {
   const found = await server.diagnose("scenario", corridor.replace(/^target: .*$/m, ""));
   assert.match(found.map((one) => one.message).join("\n"), /Missing property "target"/);

@@ -122,6 +122,25 @@ TEST(Run, the_resolved_scenario_runs_again_to_the_same_trace) {
   EXPECT_EQ(a.seed, b.seed);
 }
 
+TEST(Run, drives_past_shapes_within_its_limit_of_the_risk) {
+  const TemporaryFolder folder;
+  const ProcessResult result = run_qsmpc(
+      {"run", "dubins_obstacles", "--no-video", "--quiet", "--json", "--out", folder.path(),
+       "--set", "plant.kind=analytic", "--set",
+       "safe_set.obstacles=[{box: {centre: [3, 3], size: [2, 1.6], angle: 0.5}}, {disc: {centre: "
+       "[7, 6.5], radius: 1}}, {polygon: [[9, 2], [12, 2], [12, 5], [10.5, 3.5], [9, 5]]}, "
+       "{half_plane: {normal: [-1, 1], offset: 6}}]"});
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  const auto summary = nlohmann::json::parse(result.output);
+  EXPECT_EQ(summary["outcome"], "reached");
+  EXPECT_EQ(summary["collision"], false);
+  EXPECT_GT(summary["min_clearance"], 0.0);
+  EXPECT_LE(summary["risk"]["plan"]["certified_max"], 0.02);
+  EXPECT_GT(summary["certificate"]["next_step"]["max"], 0.0);
+  EXPECT_THAT(read_text(folder.path() + "/scenario.yaml"),
+              HasSubstr("- {box: {centre: [3, 3], size: [2, 1.6], angle: 0.5}}"));
+}
+
 TEST(Run, tells_an_outcome_that_it_was_asked_to_tell) {
   const TemporaryFolder folder;
   EXPECT_EQ(run_qsmpc(small_run(folder.path(), {"--no-video", "--fail-on", "timeout"})).exit_code,

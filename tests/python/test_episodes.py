@@ -200,6 +200,17 @@ def test_an_episode_shows_itself(small, tmp_path):
     assert len(axes.patches) == 3  # two obstacles and the target
 
 
+def test_an_episode_shows_shapes(small):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    shapes = [{"box": {"centre": [3, 3], "size": [2, 1], "angle": 0.4}}]
+    episode = qsmpc.run(small.set({"safe_set.obstacles": shapes}), seed=1)
+    assert "<polygon" in episode._repr_html_()
+    box, _ = episode.plot().patches
+    np.testing.assert_allclose(box.get_xy()[:4], episode.scenario.shapes[0].outline)
+
+
 def test_a_python_controller_serves_the_program(small, tmp_path):
     program = tmp_path / "straight.py"
     program.write_text(

@@ -206,6 +206,28 @@ def test_mcap_draws_the_trace(episode, mcap):
     np.testing.assert_allclose(gaps.min(axis=0), 0.0, atol=1e-12)
 
 
+def test_shapes_are_drawn_within_the_map(small, tmp_path):
+    shapes = [
+        {"polygon": [[2, 2], [4, 2], [4, 4]]},
+        {"half_plane": {"normal": [-1, 0], "offset": 0.75}},
+        {"disc": {"centre": [50, 50], "radius": 1}},
+    ]
+    episode = qsmpc.run(small.set({"safe_set.obstacles": shapes}), seed=3)
+    polygon = [[2, 2], [4, 2], [4, 4], [2, 2]]
+    (lower_x, lower_y, _), (_, upper_y, _) = episode.scenario.bounds
+    strip = {(lower_x, lower_y), (-0.75, lower_y), (-0.75, upper_y), (lower_x, upper_y)}
+    qsmpc.export_rerun(episode, tmp_path / "episode.rrd")
+    strips = read_rrd(tmp_path / "episode.rrd")["/world/map/shapes LineStrips3D:strips"][1][0]
+    qsmpc.export_mcap(episode, tmp_path / "episode.mcap")
+    (entity,) = read_mcap(tmp_path / "episode.mcap")["/map/obstacles"][0][1]["entities"]
+    lines = [[[point["x"], point["y"]] for point in line["points"]] for line in entity["lines"]]
+    for drawn in (np.array(strip)[:, :2].tolist() for strip in strips), lines:
+        drawn = list(drawn)
+        assert len(drawn) == 2, "the disc is far away"
+        assert drawn[0] == polygon
+        assert {tuple(corner) for corner in drawn[1]} == strip
+
+
 def test_outcome_and_status_are_said(episode, rrd, mcap):
     times, rows = rrd["/log TextLog:text"]
     assert rows[-1] == [f"outcome: {episode.outcome}"]

@@ -24,6 +24,29 @@ def test_settings_are_applied_to_a_copy(small):
     assert (small.horizon, small.seed) == (5, 0)
 
 
+def test_shapes_are_told_beside_boxes_with_their_values_and_outlines(small):
+    scenario = small.set(
+        {
+            "safe_set.obstacles": [
+                {"x": [2, 4]},
+                {"disc": {"centre": [8, 3], "radius": 0.5}},
+                {"polygon": [[5, 9], [6, 9], [6, 10]]},
+                {"half_plane": {"normal": [0, -1], "offset": 0.75}},
+            ]
+        }
+    )
+    assert len(scenario.obstacles) == 1
+    disc, polygon, half_plane = scenario.shapes
+    assert (disc.index, disc.kind) == (1, "disc")
+    assert disc.values == {"centre": [8, 3], "radius": 0.5}
+    distances = np.hypot(*(disc.outline - [8, 3]).T)
+    np.testing.assert_allclose(distances, 0.5, rtol=2e-3)
+    assert polygon.outline.tolist() == [[5, 9], [6, 9], [6, 10]]
+    assert (half_plane.index, half_plane.outline.shape) == (3, (4, 2))
+    assert half_plane.outline[:, 1].max() == pytest.approx(-0.75)
+    assert small.shapes == []
+
+
 def test_an_error_says_where_and_what_is_expected():
     with pytest.raises(qsmpc.InputError) as caught:
         qsmpc.load("dubins_obstacles", {"controller.horizon": 0})

@@ -1,16 +1,62 @@
-// The keys of obstacles, which are in the scenario itself.
+// The keys of obstacles: in the scenario itself, in a file of their own, and in the plant's model.
+#include <iterator>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/keys/shape_keys.hpp"
+#include "harness/scenario/mjcf_obstacles.hpp"
+#include "harness/scenario/obstacle_file.hpp"
 #include "harness/scenario/obstacle_reader.hpp"
+#include "harness/scenario/section_values.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
+/// What may still be added to the obstacles of `reading`.
+ObstacleReading reading_of_more(ScenarioReading& reading) {
+  return {.system = reading.system(),
+          .problems = reading.problems,
+          .most = kMostObstacles - reading.scenario.safe_set.obstacles.size()};
+}
+
+void append_obstacles(ScenarioReading& reading, std::vector<controller::Obstacle> more) {
+  std::vector<controller::Obstacle>& obstacles = reading.scenario.safe_set.obstacles;
+  obstacles.insert(obstacles.end(), std::make_move_iterator(more.begin()),
+                   std::make_move_iterator(more.end()));
+}
+
 void read_listed(ScenarioReading& reading, Section& section, const KeyDescription& about) {
-  reading.scenario.safe_set.obstacles = read_obstacles(
-      section, about.name, {.system = reading.system(), .problems = reading.problems});
+  append_obstacles(reading, read_obstacles(section, about.name, reading_of_more(reading)));
+}
+
+void read_from_file(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  if (!section.has(about.name)) return (void)section.tree(about.name);
+  const std::optional<std::string> path = named_file(
+      section, about.name, reading.lookup.folder,
+      "the path of a file with obstacles from the scenario's folder, or with --set from the "
+      "working one");
+  if (path) append_obstacles(reading, read_obstacle_file(*path, reading_of_more(reading)));
+}
+
+void read_from_model(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  Section choice = section.section(about.name);
+  if (!choice.present()) return;
+  const std::string& mjcf = reading.scenario.plant.mjcf;
+  if (!has_plane(reading.system())) {
+    section.note(about.name, "none, as the system has no position in the plane");
+  } else if (mjcf.empty()) {
+    section.note(about.name, "none, as there is no plant.mjcf");
+  } else {
+    append_obstacles(reading, read_mjcf_obstacles(choice, mjcf, reading_of_more(reading)));
+  }
+}
+
+/// The resolved scenario holds what was read.
+std::optional<std::string> not_written(const Scenario& /*scenario*/,
+                                       const models::SystemDescription& /*system*/) {
+  return std::nullopt;
 }
 
 std::optional<std::string> listed_text(const Scenario& scenario,
@@ -47,7 +93,24 @@ std::vector<ScenarioKey> obstacle_keys() {
                      .fallback = "[]",
                      .fallback_words = "none"},
            .read = read_listed,
-           .write = listed_text}};
+           .write = listed_text},
+          {.about = {.name = "obstacles_from_file",
+                     .values = {TextValue{.what = "a path"}},
+                     .words = "path of a YAML or JSON file with more of them, absolute or relative "
+                              "to the scenario's folder (with `--set` else to the working folder): "
+                              "a list as above, or GeoJSON in m",
+                     .see = "[below](#obstacles-from-a-file)",
+                     .fallback_words = "none"},
+           .read = read_from_file,
+           .write = not_written},
+          {.about = {.name = "obstacles_from_mjcf",
+                     .values = {MappingValue{mjcf_obstacle_keys()}},
+                     .words = "a mapping with `geoms` or `group`: more of them, what these geoms "
+                              "of `plant.mjcf` cover on the ground",
+                     .see = "[below](#obstacles-from-the-plants-model)",
+                     .fallback_words = "none"},
+           .read = read_from_model,
+           .write = not_written}};
 }
 
 }  // namespace qsmpc::harness

@@ -75,6 +75,23 @@ def _circle(radius: float, points: int) -> Floats:
     return radius * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
+def _within(corners: Floats, lower: Floats, upper: Floats) -> Floats:
+    """The part of a polygon within a rectangle, corners × 2 (Sutherland and Hodgman)."""
+    for axis in (0, 1):
+        for sign, bound in ((1.0, lower[axis]), (-1.0, -upper[axis])):
+            inside = sign * corners[:, axis] - bound
+            kept: list[Floats] = []
+            for k in range(len(corners)):
+                before = k - 1
+                if (inside[before] < 0.0) != (inside[k] < 0.0):
+                    share = inside[before] / (inside[before] - inside[k])
+                    kept.append(corners[before] + share * (corners[k] - corners[before]))
+                if inside[k] >= 0.0:
+                    kept.append(corners[k])
+            corners = np.array(kept).reshape(-1, 2)
+    return corners
+
+
 class DriveMap:
     """An episode on the map of two of its states; where there is one, the plane of its position."""
 
@@ -117,6 +134,17 @@ class DriveMap:
             )
             boxes.append(Box(low, high, is_partial=bool(others.any())))
         return boxes
+
+    def shapes(self) -> list[Floats]:
+        """Closed lines (points × 2) about the obstacles that are shapes of the plane, within what
+        is shown."""
+        if not self.is_plane:
+            return []
+        outlines = [
+            _within(shape.outline, self.lower, self.upper)
+            for shape in self.episode.scenario.shapes
+        ]
+        return [np.vstack([outline, outline[:1]]) for outline in outlines if len(outline)]
 
     def walls(self) -> list[Floats]:
         """Lines (2 × 2) where the safe set ends."""

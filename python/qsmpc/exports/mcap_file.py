@@ -70,12 +70,13 @@ def _once(area: DriveMap, path: Floats) -> Iterator[Sent]:
         for box in area.obstacles()
     ]
     walls = [foxglove.line(wall, shown.SOLID, _BOLD * size) for wall in area.walls()]
+    shapes = [foxglove.line(shape, shown.SOLID, _BOLD * size) for shape in area.shapes()]
     target = [foxglove.line(area.target(), shown.GREEN, _BOLD * size)]
     body = [foxglove.line(part, shown.SKY, _BOLD * size) for part in area.body()]
     arrows = [foxglove.arrow(_ARROW * size, shown.SKY)] if area.heading >= 0 else []
     ways = [foxglove.line(path, shown.SKY, _LINE * size)]
     scenes = {
-        "/map/obstacles": foxglove.scene(0, _WORLD, "obstacles", cubes=cubes),
+        "/map/obstacles": foxglove.scene(0, _WORLD, "obstacles", cubes=cubes, lines=shapes),
         "/map/walls": foxglove.scene(0, _WORLD, "walls", lines=walls),
         "/map/target": foxglove.scene(0, _WORLD, "target", lines=target),
         "/path": foxglove.scene(0, _WORLD, "path", lines=ways),

@@ -112,7 +112,11 @@ class _Recording:
                     mins=lower, sizes=upper - lower, colors=np.array(colours), fill_mode="solid"
                 ),
             )
-        lines = {"walls": (area.walls(), shown.SOLID), "target": ([area.target()], shown.GREEN)}
+        lines = {
+            "shapes": (area.shapes(), shown.SOLID),
+            "walls": (area.walls(), shown.SOLID),
+            "target": ([area.target()], shown.GREEN),
+        }
         for name, (strips, colour) in lines.items():
             if strips:
                 self.static(f"world/map/{name}", self.lines(strips, colour, _BOLD))

@@ -46,6 +46,24 @@ TEST(ControllerProtocol, tells_the_resolved_scenario) {
             nlohmann::json::parse(R"({"lookahead": 0.8, "names": ["a", "1", 1, true, null]})"));
 }
 
+TEST(ControllerProtocol, tells_shapes_as_the_scenario_has_them) {
+  const Scenario scenario = outside_scenario(
+      OutsideKind::kExternal,
+      {"safe_set.obstacles=[{disc: {centre: [8, 3], radius: 0.5}}, {y: [10, 11]}, {ellipse: "
+       "{centre: [8, 6], semi_axes: [1, 0.5]}}, {box: {centre: [3, 6], size: [1, 2], angle: 0.4}}, "
+       "{polygon: [[5, 9], [6, 9], [6, 10]]}, {half_plane: {normal: [0, -1], offset: 0.75}}]"});
+  const nlohmann::json obstacles = message_of(scenario)["safe_set"]["obstacles"];
+  ASSERT_EQ(obstacles.size(), 6U);
+  EXPECT_EQ(obstacles[0],
+            nlohmann::json::parse(R"({"disc": {"centre": [8.0, 3.0], "radius": 0.5}})"));
+  EXPECT_EQ(obstacles[1]["lower"][1], 10.0);
+  EXPECT_EQ(obstacles[2]["ellipse"]["angle"], 0.0);
+  EXPECT_EQ(obstacles[3]["box"]["size"][1], 2.0);
+  EXPECT_EQ(obstacles[4],
+            nlohmann::json::parse(R"({"polygon": [[5.0, 9.0], [6.0, 9.0], [6.0, 10.0]]})"));
+  EXPECT_EQ(obstacles[5]["half_plane"]["normal"][1], -1.0);
+}
+
 TEST(ControllerProtocol, tells_a_situation_with_numbers_that_read_back_as_the_same) {
   const controller::Gaussian belief{.mean = Eigen::Vector3d(0.1, 1.0 / 3.0, -2e-17),
                                     .covariance = Eigen::Matrix3d::Identity() / 7.0};
