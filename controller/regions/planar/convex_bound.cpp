@@ -138,7 +138,8 @@ double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxe
   const double norm = std::abs(u.x()) * norms[axes.x] + std::abs(u.y()) * norms[axes.y];
   const double tail = norm > 0.0 ? std::pow(norm / half, kHigherOrders[kHighest]) : 0.0;
   const double deviation = std::sqrt(std::max(0.0, variance));
-  const double beyond = deviation > 0.0 ? normal_cumulative(-half / deviation) : 0.0;
+  const double beyond =
+      half > kTail * deviation ? kTailAllowance : normal_cumulative(-half / deviation);
   const double bound = tail + beyond;
   return bound < 1.0 ? bound : 1.0;  // what is not a number is no bound
 }

@@ -51,10 +51,22 @@ class SoftShape final : public SoftRegion {
     const std::vector<Eigen::Index> plane = {axes.x, axes.y};
     covariance_ = centres.covariance(plane, plane);
     deviation_ = std::sqrt(std::max(0.0, covariance_.trace()));
+    const Eigen::Vector2d lowest = centres.lowest(plane);
+    const Eigen::Vector2d highest = centres.highest(plane);
+    for (const BoundedPart& one : parts) {
+      const Eigen::Vector2d& centre = one.circle.centre;
+      const Eigen::Vector2d nearest = centre.cwiseMax(lowest).cwiseMin(highest);
+      gaps_.push_back((nearest - centre).norm() - one.circle.radius);
+    }
   }
 
   void add(double t, Eigen::Index begin, Eigen::Index count, double* totals) const override {
-    for (const BoundedPart& one : parts_) {
+    for (std::size_t k = 0; k < parts_.size(); ++k) {
+      const BoundedPart& one = parts_[k];
+      if (gaps_[k] - t > kTail * deviation_) {
+        for (Eigen::Index i = 0; i < count; ++i) totals[i] += 2.0 * kTailAllowance;
+        continue;
+      }
       for (Eigen::Index i = 0; i < count; ++i) {
         const Eigen::Vector2d centre(centres_(axes_.x, begin + i), centres_(axes_.y, begin + i));
         const double gap = (centre - one.circle.centre).norm() - one.circle.radius;
@@ -72,6 +84,7 @@ class SoftShape final : public SoftRegion {
   const Points& centres_;
   Eigen::Matrix2d covariance_;
   double deviation_;
+  std::vector<double> gaps_;  ///< least distances of a centre from each part's circle
 };
 
 class ShapeRegion final : public UnsafeRegion {
