@@ -49,9 +49,19 @@ install_packages() {
 remember_objects() {
   command -v ccache >/dev/null || return 0
   export CMAKE_C_COMPILER_LAUNCHER=ccache CMAKE_CXX_COMPILER_LAUNCHER=ccache
-  # Paths as seen from the build's folder; precompiled headers by their content.
-  export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
-  export CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+  # Paths as seen from the build's folder. What counts is the preprocessed source, which holds the
+  # precompiled headers' text: batches name their sources by whole paths, and the same header is never
+  # precompiled to the same bytes.
+  export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_NODIRECT=1 CCACHE_PCH_EXTSUM=1
+  export CCACHE_SLOPPINESS=pch_defines,time_macros
+}
+
+# name_precompiled PRESET: the names by which ccache knows the precompiled headers of a build.
+name_precompiled() {
+  local header
+  while read -r header; do
+    echo "$1" >"$header.gch.sum"
+  done < <(find "build/$1" -name cmake_pch.hxx)
 }
 
 # build PRESET [options of cmake --build]: configures and builds a preset of CMakePresets.json.
@@ -63,6 +73,7 @@ build() {
     tail -n 25 "build/$1.log" >&2
     fail "cmake could not configure; see build/$1.log, or remove build/$1 and try again"
   }
+  name_precompiled "$1"
   cmake --build --preset "$1" "${@:2}" -- --quiet ||
     fail "the build failed; the compiler's first error is above"
 }

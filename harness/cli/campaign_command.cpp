@@ -85,7 +85,7 @@ void check_launch(const CampaignArguments& arguments) {
     if (arguments.lease_seeds == 0 && arguments.launch == LaunchOptions{}) return;
     throw InputError({.key = "--on",
                       .found = "nothing, and options of tasks",
-                      .expected = "local, ssh:HOSTS or slurm"});
+                      .expected = "local, ssh:HOSTS, ssh:@FILE or slurm"});
   }
   check_launch_options(arguments.launch);
   const auto refuse = [](const char* option, bool given) {
@@ -158,7 +158,7 @@ int campaign_command(CampaignArguments& arguments) {
 void add_tasks_options(CLI::App& command, CampaignArguments& arguments) {
   constexpr std::int64_t kLongest = 86'400;
   command.add_option("--on", arguments.launch.on,
-                     "drive with tasks that share the output folder: local, ssh:HOSTS or slurm");
+                     "drive with tasks that share the output folder: local, ssh:HOSTS, ssh:@FILE or slurm");
   command.add_option("--tasks", arguments.launch.tasks, "with --on: how many; default: 1")
       ->check(CLI::Range(1, kMostTasks));
   command
