@@ -29,12 +29,26 @@ struct PlanarPose {
   double heading = 0.0;  ///< rad
 };
 
+/// The points p with normal · p ≥ offset; the normal is of any length but 0.
+struct PlanarHalfPlane {
+  PlanarPoint normal;
+  double offset = 0.0;
+};
+
+/// An upright obstacle of any outline.
+struct Prism {
+  std::vector<PlanarPoint> outline;              ///< corners of a polygon, counterclockwise
+  std::vector<std::vector<PlanarPoint>> pieces;  ///< convex polygons that make it up
+};
+
 /// What stands still during an episode.
 struct World {
-  PlanarRectangle bounds;  ///< the safe set's box; infinite sides are not drawn
-  std::vector<PlanarRectangle> obstacles;
+  PlanarRectangle bounds;                  ///< the safe set's box; infinite sides are not drawn
+  std::vector<PlanarRectangle> obstacles;  ///< boxes; sides may be infinite
   PlanarPoint target;
   double target_radius = 0.5;
+  std::vector<Prism> prisms;                 ///< obstacles, as are the next
+  std::vector<PlanarHalfPlane> half_planes;  ///< drawn as far as the ground reaches
 };
 
 /// The weighted points of one stage of the horizon.

@@ -1,8 +1,11 @@
 #include "harness/figures/ground_map.hpp"
 
 #include <algorithm>
+#include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "controller/regions/unsafe_set.hpp"
@@ -15,6 +18,40 @@ MapRectangle rectangle_of(const controller::Outline& outline) {
   const Eigen::Vector2d lower = outline.corners.rowwise().minCoeff();
   const Eigen::Vector2d upper = outline.corners.rowwise().maxCoeff();
   return {.x_lower = lower.x(), .x_upper = upper.x(), .y_lower = lower.y(), .y_upper = upper.y()};
+}
+
+/// The rectangle along the axes that a polygon is, if it is one.
+std::optional<MapRectangle> as_rectangle(const controller::Outline& outline) {
+  const MapRectangle sides = rectangle_of(outline);
+  if (outline.corners.cols() != 4) return std::nullopt;
+  for (const auto& corner : outline.corners.colwise()) {
+    const bool on_side = (corner.x() == sides.x_lower || corner.x() == sides.x_upper) &&
+                         (corner.y() == sides.y_lower || corner.y() == sides.y_upper);
+    if (!on_side) return std::nullopt;
+  }
+  return sides;
+}
+
+MapPolygon polygon_of(const controller::Outline& outline) {
+  MapPolygon polygon;
+  for (const auto& corner : outline.corners.colwise()) {
+    polygon.corners.push_back({.x = corner.x(), .y = corner.y()});
+  }
+  return polygon;
+}
+
+void add_obstacle(const controller::Outline& outline, PlaneMap& map) {
+  if (const std::optional<MapRectangle> box = as_rectangle(outline)) {
+    (outline.depends_on_others ? map.partial_obstacles : map.obstacles).push_back(*box);
+  } else {
+    map.polygons.push_back(polygon_of(outline));
+  }
+}
+
+/// The half-plane that the obstacle is, if it is one: its outline would end somewhere.
+const controller::HalfPlaneShape* half_plane_of(const controller::Obstacle& obstacle) {
+  const controller::PlanarShape* shape = obstacle.shape();
+  return shape == nullptr ? nullptr : std::get_if<controller::HalfPlaneShape>(shape);
 }
 
 std::string label(const models::Coordinate& state) {
@@ -43,10 +80,15 @@ PlaneMap ground_map(const Scenario& scenario, const models::SystemDescription& s
                .bounds = rectangle_of(outline_of(unsafe.walls())),
                .targets = {{.centre = map_point(scenario.target.state, system),
                             .radius = scenario.target.radius}}};
-  for (const controller::RegionPointer& obstacle : unsafe.obstacles()) {
-    const controller::Outline outline = outline_of(*obstacle);
-    auto& boxes = outline.depends_on_others ? map.partial_obstacles : map.obstacles;
-    boxes.push_back(rectangle_of(outline));
+  // Shapes are in the plane of position, which the axes are wherever there is one.
+  for (std::size_t k = 0; k < scenario.safe_set.obstacles.size(); ++k) {
+    if (const auto* half_plane = half_plane_of(scenario.safe_set.obstacles[k])) {
+      map.half_planes.push_back(
+          {.normal = {.x = half_plane->normal.x(), .y = half_plane->normal.y()},
+           .offset = half_plane->offset});
+    } else {
+      add_obstacle(outline_of(*unsafe.obstacles()[k]), map);
+    }
   }
   return map;
 }

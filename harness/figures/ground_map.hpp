@@ -15,7 +15,8 @@ namespace qsmpc::harness {
                                  const models::SystemDescription& system);
 
 /// Bounds, obstacles, target and the axes' names, for a system with a position. Obstacles that
-/// restrict other states too are partial.
+/// restrict other states too are partial. Rectangles along the axes are boxes, whatever they are
+/// called in the scenario.
 [[nodiscard]] PlaneMap ground_map(const Scenario& scenario,
                                   const models::SystemDescription& system);
 

@@ -58,9 +58,10 @@ MapPoint MapCanvas::place(const MapPoint& point) const {
           .y = std::clamp(y, -kFarOutside, kFarOutside)};
 }
 
-std::string MapCanvas::coordinates(const MapPoint& point) const {
-  const MapPoint at = place(point);
-  return fmt::format("{:.1f} {:.1f}", at.x, at.y);
+std::string MapCanvas::coordinates(const MapPoint& point) const { return written(place(point)); }
+
+std::string MapCanvas::written(const MapPoint& place) {
+  return fmt::format("{:.1f} {:.1f}", place.x, place.y);
 }
 
 std::string MapCanvas::rectangle(const std::string& classes, const MapRectangle& rectangle) const {

@@ -52,11 +52,15 @@ class MapCanvas {
   /// Where a drawable point of the plane is in the view box, from the left and from the top.
   [[nodiscard]] MapPoint place(const MapPoint& point) const;
   [[nodiscard]] MapView view() const { return {x_.lower, y_.upper, scale_}; }
+  /// The part of the plane that is shown.
+  [[nodiscard]] MapRectangle area() const { return {x_.lower, x_.upper, y_.lower, y_.upper}; }
   /// Lengths in the view box, of a length in the plane.
   [[nodiscard]] double length(double metres) const { return metres * scale_; }
 
   /// "3.2 7.1", for path data.
   [[nodiscard]] std::string coordinates(const MapPoint& point) const;
+  /// The same of what `place` has returned.
+  [[nodiscard]] static std::string written(const MapPoint& place);
   /// The part of `rectangle` that is shown, its sides may be infinite; empty if none is.
   [[nodiscard]] std::string rectangle(const std::string& classes,
                                       const MapRectangle& rectangle) const;

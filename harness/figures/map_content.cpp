@@ -17,6 +17,9 @@ using Eigen::Index;
 // Of a whole map; more would not be seen, and would make a file large.
 constexpr std::size_t kMostDots = 4000;
 
+// Lengths of all else on a map from its middle, as far as edges of half-planes count.
+constexpr double kNearEdge = 1.5;
+
 MapPoint point_of(const Eigen::Ref<const Eigen::Matrix2Xd>& points, Index i) {
   return {.x = points(0, i), .y = points(1, i)};
 }
@@ -101,6 +104,18 @@ void include_uncertainty(Extent& extent, const PlaneMap& map) {
     for (const MapContour& line : contours.lines) {
       for (const MapPoint& point : points_of(line.points)) extent.include(point);
     }
+  }
+}
+
+/// Of each half-plane the point of its edge that is nearest to the middle of `area`, if it is near.
+void include_edges(Extent& extent, const PlaneMap& map, const MapRectangle& area) {
+  const MapPoint middle{.x = 0.5 * (area.x_lower + area.x_upper),
+                        .y = 0.5 * (area.y_lower + area.y_upper)};
+  const double near =
+      kNearEdge * std::max(area.x_upper - area.x_lower, area.y_upper - area.y_lower);
+  for (const MapHalfPlane& half_plane : map.half_planes) {
+    const MapPoint point = nearest_on_edge(half_plane, middle);
+    if (std::hypot(point.x - middle.x, point.y - middle.y) <= near) extent.include(point);
   }
 }
 
@@ -226,6 +241,9 @@ MapRectangle map_area(const PlaneMap& map) {
   for (const auto* boxes : {&map.obstacles, &map.partial_obstacles}) {
     for (const MapRectangle& box : *boxes) extent.include(box);
   }
+  for (const MapPolygon& polygon : map.polygons) {
+    for (const MapPoint& corner : polygon.corners) extent.include(corner);
+  }
   for (const MapCircle& target : map.targets) {
     if (is_shown(target)) extent.include(target.centre, target.radius, target.radius);
   }
@@ -234,6 +252,7 @@ MapRectangle map_area(const PlaneMap& map) {
   }
   for (const MapLabel& label : map.labels) extent.include(label.at);
   include_uncertainty(extent, map);
+  include_edges(extent, map, extent.within(map.bounds));
   return extent.within(map.bounds);
 }
 
@@ -244,7 +263,8 @@ bool has_content(const PlaneMap& map) {
                        [](const MapPoint& point) { return is_drawable(point); });
   };
   const auto contours_show = [](const MapContours& contours) { return !contours.lines.empty(); };
-  return !map.obstacles.empty() || !map.partial_obstacles.empty() || is_finite(map.bounds) ||
+  return !map.obstacles.empty() || !map.partial_obstacles.empty() || !map.polygons.empty() ||
+         !map.half_planes.empty() || is_finite(map.bounds) ||
          std::any_of(map.targets.begin(), map.targets.end(),
                      [](const MapCircle& target) { return is_shown(target); }) ||
          std::any_of(map.paths.begin(), map.paths.end(), path_shows) ||

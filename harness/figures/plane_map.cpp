@@ -32,6 +32,12 @@ std::string ground_svg(const PlaneMap& map, const MapCanvas& canvas) {
   svg += canvas.rectangle("free", map.bounds);
   for (const MapRectangle& box : map.obstacles) svg += canvas.rectangle("obstacle", box);
   for (const MapRectangle& box : map.partial_obstacles) svg += canvas.rectangle("partial", box);
+  for (const MapPolygon& polygon : map.polygons) {
+    svg += polygon_svg(canvas, polygon.corners, "obstacle");
+  }
+  for (const MapHalfPlane& half_plane : map.half_planes) {
+    svg += half_plane_svg(canvas, half_plane, "obstacle");
+  }
   for (const MapCircle& target : map.targets) {
     if (!is_shown(target)) continue;
     const MapPoint at = canvas.place(target.centre);

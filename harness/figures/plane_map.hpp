@@ -17,6 +17,7 @@
 #include "controller/regions/body_outline.hpp"
 #include "harness/figures/legend.hpp"
 #include "harness/figures/map_canvas.hpp"
+#include "harness/figures/map_regions.hpp"
 
 namespace qsmpc::harness {
 
@@ -97,6 +98,8 @@ struct PlaneMap {
   MapRectangle bounds = unbounded_plane();        ///< what is outside of them is shaded
   std::vector<MapRectangle> obstacles{};          ///< sides may be infinite
   std::vector<MapRectangle> partial_obstacles{};  ///< for some of the other states only
+  std::vector<MapPolygon> polygons{};             ///< obstacles, as are the next
+  std::vector<MapHalfPlane> half_planes{};
   std::vector<MapCircle> targets{};
   std::vector<MapContours> contours{};
   std::vector<MapCloud> clouds{};
@@ -107,7 +110,8 @@ struct PlaneMap {
 };
 
 /// The part of the plane about all that `map` holds, its `area` aside. Where the bounds are finite,
-/// what is farther away from them than their own length is left outside.
+/// what is farther away from them than their own length is left outside. Of a half-plane it holds
+/// what of its edge is nearest, unless that is farther away than all else is long.
 [[nodiscard]] MapRectangle map_area(const PlaneMap& map);
 
 /// The map as a <figure>. Its size does not grow with the number of points beyond some thousands:

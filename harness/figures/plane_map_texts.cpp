@@ -76,7 +76,9 @@ void add_ground_entries(std::vector<LegendEntry>& entries, const PlaneMap& map) 
     add_entry(entries, {.drawing = "<circle class=\"target\" cx=\"14\" cy=\"6\" r=\"5\"/>",
                         .name = "target"});
   }
-  if (!map.obstacles.empty()) add_entry(entries, area_entry("obstacle", "obstacle"));
+  if (!map.obstacles.empty() || !map.polygons.empty() || !map.half_planes.empty()) {
+    add_entry(entries, area_entry("obstacle", "obstacle"));
+  }
   if (!map.partial_obstacles.empty()) {
     add_entry(entries, area_entry("partial", "obstacle for some of the other states"));
   }

@@ -198,10 +198,22 @@ class SceneData {
                  {"bounds", of_rectangle(map.bounds)},
                  {"obstacles", Json::array()},
                  {"partial", Json::array()},
+                 {"polygons", Json::array()},
+                 {"halfPlanes", Json::array()},
                  {"targets", Json::array()}};
     for (const MapRectangle& box : map.obstacles) json["obstacles"].push_back(of_rectangle(box));
     for (const MapRectangle& box : map.partial_obstacles) {
       json["partial"].push_back(of_rectangle(box));
+    }
+    for (const MapPolygon& polygon : map.polygons) {
+      std::vector<double> corners;
+      for (const MapPoint& corner : polygon.corners) {
+        corners.insert(corners.end(), {corner.x, corner.y});
+      }
+      json["polygons"].push_back(packed_floats(corners));
+    }
+    for (const MapHalfPlane& half_plane : map.half_planes) {
+      json["halfPlanes"].push_back({half_plane.normal.x, half_plane.normal.y, half_plane.offset});
     }
     for (const MapCircle& target : map.targets) {
       json["targets"].push_back({target.centre.x, target.centre.y, target.radius});

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <limits>
 #include <string>
+#include <utility>
+#include <variant>
 
 #include <fmt/format.h>
 
@@ -64,15 +66,44 @@ void add_banner(const EpisodeView& view, double time, render::Frame& frame) {
   }
 }
 
-// The safe set in the plane of position.
-controller::SafeSet planar_safe_set(const render::World& world) {
+std::vector<render::PlanarPoint> points_of(const Eigen::Matrix2Xd& corners) {
+  std::vector<render::PlanarPoint> points;
+  for (const auto& corner : corners.colwise()) points.push_back({corner.x(), corner.y()});
+  return points;
+}
+
+// Adds a shape of the plane of position.
+void add_shape(const controller::PlanarShape& shape, render::World& world) {
+  if (const auto* half_plane = std::get_if<controller::HalfPlaneShape>(&shape)) {
+    world.half_planes.push_back(
+        {{half_plane->normal.x(), half_plane->normal.y()}, half_plane->offset});
+    return;
+  }
+  render::Prism prism{.outline = points_of(controller::shape_outline(shape)), .pieces = {}};
+  if (std::holds_alternative<controller::PolygonShape>(shape)) {
+    for (const controller::ConvexPart& part : controller::convex_parts(shape)) {
+      prism.pieces.push_back(points_of(part.corners));
+    }
+  } else {
+    prism.pieces.push_back(prism.outline);
+  }
+  world.prisms.push_back(std::move(prism));
+}
+
+// The safe set in the plane of position: bounds and boxes as they are drawn, shapes as they are.
+controller::SafeSet planar_safe_set(const render::World& world,
+                                    const std::vector<controller::Obstacle>& obstacles) {
   const auto box = [](const render::PlanarRectangle& area) {
     return controller::Box{Eigen::Vector2d(area.x_lower, area.y_lower),
                            Eigen::Vector2d(area.x_upper, area.y_upper)};
   };
-  controller::SafeSet safe_set{.bounds = box(world.bounds), .obstacles = {}};
+  controller::SafeSet safe_set{
+      .bounds = box(world.bounds), .obstacles = {}, .body = {.discs = {}, .x = 0, .y = 1}};
   for (const render::PlanarRectangle& obstacle : world.obstacles) {
     safe_set.obstacles.emplace_back(box(obstacle));
+  }
+  for (const controller::Obstacle& obstacle : obstacles) {
+    if (obstacle.shape() != nullptr) safe_set.obstacles.push_back(obstacle);
   }
   return safe_set;
 }
@@ -90,7 +121,7 @@ EpisodeFrames::EpisodeFrames(const EpisodeView& view, const Overlays& overlays)
       track_(view),
       on_rail_(is_on_rail(view.system())),
       vehicle_(drawn_vehicle(view)),
-      planar_unsafe_(planar_safe_set(world())),
+      planar_unsafe_(planar_safe_set(world(), view.scenario().safe_set.obstacles)),
       ranges_(chart_ranges(view)) {
   if (overlays_.raw) raw_.emplace(view.scenario());
   if (on_rail_) joints_ = JointPose::of(view.scenario(), view.system(), vehicle_);
@@ -113,8 +144,12 @@ render::World EpisodeFrames::world() const {
   const controller::UnsafeSet unsafe(scenario.safe_set);
   world.bounds = planar_sides(system, unsafe.walls(), std::numeric_limits<double>::infinity());
   const double missing = on_rail_ ? std::numeric_limits<double>::infinity() : kFlatHalfWidth;
-  for (const controller::RegionPointer& obstacle : unsafe.obstacles()) {
-    world.obstacles.push_back(planar_sides(system, *obstacle, missing));
+  for (std::size_t k = 0; k < scenario.safe_set.obstacles.size(); ++k) {
+    if (const controller::PlanarShape* shape = scenario.safe_set.obstacles[k].shape()) {
+      add_shape(*shape, world);
+    } else {
+      world.obstacles.push_back(planar_sides(system, *unsafe.obstacles()[k], missing));
+    }
   }
   const render::PlanarPose target = planar_pose(system, scenario.target.state);
   world.target = {target.x, target.y};

@@ -31,6 +31,13 @@ Colour lit(const Colour& colour, float light) {
   return {colour.red * light, colour.green * light, colour.blue * light, colour.alpha};
 }
 
+// Of an upright face that looks along (x, y): between those of a box by the share of each.
+float side_light(double x, double y) {
+  const auto east = static_cast<float>(x * x / (x * x + y * y));
+  return east * (x > 0.0 ? kEastLight : kWestLight) +
+         (1.0F - east) * (y > 0.0 ? kNorthLight : kSouthLight);
+}
+
 PlanarPoint on_circle(const PlanarPoint& centre, double radius, int side) {
   const double angle = 2.0 * std::numbers::pi * side / kCircleSides;
   return {centre.x + radius * std::cos(angle), centre.y + radius * std::sin(angle)};
@@ -70,6 +77,17 @@ void draw_rectangle(const PlanarRectangle& area, double height, const Colour& co
   glVertex3d(area.x_upper, area.y_lower, height);
   glVertex3d(area.x_upper, area.y_upper, height);
   glVertex3d(area.x_lower, area.y_upper, height);
+  glEnd();
+}
+
+// A convex polygon lying at `height` metres.
+void draw_level_polygon(const std::vector<PlanarPoint>& corners, double height,
+                        const Colour& colour) {
+  set_colour(colour);
+  glBegin(GL_POLYGON);
+  for (const PlanarPoint& corner : corners) {
+    glVertex3d(corner.x, corner.y, height);
+  }
   glEnd();
 }
 
@@ -152,13 +170,22 @@ void draw_box(const PlanarRectangle& area, double height, const Colour& colour) 
   glEnd();
 }
 
-void draw_polygon(const std::vector<PlanarPoint>& corners, const Colour& colour) {
-  set_colour(colour);
-  glBegin(GL_POLYGON);
-  for (const PlanarPoint& corner : corners) {
-    glVertex3d(corner.x, corner.y, 0.0);
+void draw_prism(const Prism& prism, double height, const Colour& colour) {
+  for (const std::vector<PlanarPoint>& piece : prism.pieces) {
+    draw_level_polygon(piece, height, lit(colour, kTopLight));
+  }
+  glBegin(GL_QUADS);
+  for (std::size_t i = 0; i < prism.outline.size(); ++i) {
+    const PlanarPoint& from = prism.outline[i];
+    const PlanarPoint& to = prism.outline[(i + 1) % prism.outline.size()];
+    if (from.x == to.x && from.y == to.y) continue;
+    upright_face(from, to, height, lit(colour, side_light(to.y - from.y, from.x - to.x)));
   }
   glEnd();
+}
+
+void draw_polygon(const std::vector<PlanarPoint>& corners, const Colour& colour) {
+  draw_level_polygon(corners, 0.0, colour);
 }
 
 void draw_ring(const PlanarPoint& centre, double inner, double outer, const Colour& colour) {

@@ -63,4 +63,13 @@ std::vector<PlanarPoint> box_shadow(const PlanarRectangle& area, double height) 
   return cast_shadow(corners);
 }
 
+std::vector<PlanarPoint> prism_shadow(const std::vector<PlanarPoint>& outline, double height) {
+  std::vector<SpacePoint> corners;
+  for (const PlanarPoint& corner : outline) {
+    corners.push_back({corner.x, corner.y, 0.0});
+    corners.push_back({corner.x, corner.y, height});
+  }
+  return cast_shadow(corners);
+}
+
 }  // namespace qsmpc::render

@@ -11,12 +11,14 @@
 #include "render/palette.hpp"
 #include "render/scene/belief_painter.hpp"
 #include "render/scene/ground_shapes.hpp"
+#include "render/scene/outlines.hpp"
 
 namespace qsmpc::render {
 namespace {
 
 constexpr double kObstacleHeight = 0.40;  // m
 constexpr double kEdgeClearance = 0.004;  // m, or lines are half hidden by their own box
+constexpr double kEdgeWidth = 1.5;        // pixels, of edges and stripes
 constexpr double kWallHeight = 0.10;      // m
 constexpr double kWallThickness = 0.06;   // m
 constexpr double kStripeSpacing = 0.35;   // m, of the unsafe set's stripes
@@ -26,6 +28,7 @@ constexpr double kPostSide = 0.018;       // m
 constexpr double kTubeHeight = 0.35;      // m
 constexpr double kGroundReach = 500.0;    // m beyond the region
 constexpr double kGridReach = 40.0;       // cells beyond the region
+constexpr double kNearEdge = 1.5;         // lengths of all else from its middle
 constexpr double kFogBegin = 2.2;         // of the camera's distance
 constexpr double kFogEnd = 9.0;           // of the camera's distance
 constexpr double kPathWidth = 4.0;        // pixels
@@ -162,8 +165,20 @@ PlanarRectangle world_region(const World& world) {
     include(obstacle.x_lower, obstacle.y_lower);
     include(obstacle.x_upper, obstacle.y_upper);
   }
+  for (const Prism& prism : world.prisms) {
+    for (const PlanarPoint& corner : prism.outline) include(corner.x, corner.y);
+  }
   include(world.target.x - world.target_radius, world.target.y - world.target_radius);
   include(world.target.x + world.target_radius, world.target.y + world.target_radius);
+  // Of a half-plane what of its edge is nearest, unless that is farther away than all else is long.
+  const PlanarPoint middle{0.5 * (region.x_lower + region.x_upper),
+                           0.5 * (region.y_lower + region.y_upper)};
+  const double near =
+      kNearEdge * std::max(region.x_upper - region.x_lower, region.y_upper - region.y_lower);
+  for (const PlanarHalfPlane& half_plane : world.half_planes) {
+    const PlanarPoint edge = nearest_on_edge(half_plane, middle);
+    if (std::hypot(edge.x - middle.x, edge.y - middle.y) <= near) include(edge.x, edge.y);
+  }
   constexpr double kLeastHalf = 1.0;  // m
   const double x = 0.5 * (region.x_lower + region.x_upper);
   const double y = 0.5 * (region.y_lower + region.y_upper);
@@ -174,14 +189,21 @@ PlanarRectangle world_region(const World& world) {
 ScenePainter::ScenePainter(World world, const PlanarRectangle& region)
     : world_(std::move(world)), region_(region), walls_(boundary_walls(world_.bounds, region)) {
   // A side may be infinite: a drawn box ends where the ground does.
-  for (PlanarRectangle& obstacle : world_.obstacles) {
-    obstacle = clipped_to(obstacle, grown(region, kGroundReach));
+  const PlanarRectangle ground = grown(region, kGroundReach);
+  for (PlanarRectangle& obstacle : world_.obstacles) obstacle = clipped_to(obstacle, ground);
+  for (const PlanarHalfPlane& half_plane : world_.half_planes) {
+    const PlanarOutline part = clipped_to(corners_of(ground), half_plane);
+    world_.prisms.push_back({.outline = part, .pieces = {part}});
   }
+  for (Prism& prism : world_.prisms) prism = clipped_to(prism, ground);
 }
 
 void ScenePainter::paint_solids() const {
   for (const PlanarRectangle& o : world_.obstacles) {
     draw_box(o, kObstacleHeight, palette::kObstacle);
+  }
+  for (const Prism& prism : world_.prisms) {
+    draw_prism(prism, kObstacleHeight, palette::kObstacle);
   }
   for (const PlanarRectangle& wall : walls_) {
     draw_box(wall, kWallHeight, palette::kWall);
@@ -196,7 +218,12 @@ void ScenePainter::paint_edges(double scale) const {
     const SpacePoint b{o.x_upper, o.y_lower, z};
     const SpacePoint c{o.x_upper, o.y_upper, z};
     const SpacePoint d{o.x_lower, o.y_upper, z};
-    draw_segments({a, b, b, c, c, d, d, a}, 1.5 * scale, palette::kUnsafeEdge);
+    draw_segments({a, b, b, c, c, d, d, a}, kEdgeWidth * scale, palette::kUnsafeEdge);
+  }
+  for (const Prism& prism : world_.prisms) {
+    PlanarOutline edge = prism.outline;
+    if (!edge.empty()) edge.push_back(edge.front());
+    draw_path(edge, kObstacleHeight + kEdgeClearance, kEdgeWidth * scale, palette::kUnsafeEdge);
   }
 }
 
@@ -207,7 +234,11 @@ void ScenePainter::paint_stripes(double scale) const {
     const PlanarRectangle top = clipped_to(obstacle, grown(region_, kGridReach));
     append_stripes(top, kObstacleHeight + kEdgeClearance, stripe_spacing(region_), ends);
   }
-  draw_segments(ends, 1.5 * scale, palette::kUnsafeStripe);
+  for (const Prism& prism : world_.prisms) {
+    append_stripes(clipped_to(prism.outline, grown(region_, kGridReach)),
+                   kObstacleHeight + kEdgeClearance, stripe_spacing(region_), ends);
+  }
+  draw_segments(ends, kEdgeWidth * scale, palette::kUnsafeStripe);
 }
 
 void ScenePainter::paint_ground(const View& view) const {
@@ -229,6 +260,11 @@ void ScenePainter::paint_shadows(
   begin_single_coverage();
   for (const PlanarRectangle& obstacle : world_.obstacles) {
     draw_polygon(box_shadow(obstacle, kObstacleHeight), palette::kShadow);
+  }
+  for (const Prism& prism : world_.prisms) {
+    for (const PlanarOutline& piece : prism.pieces) {
+      draw_polygon(prism_shadow(piece, kObstacleHeight), palette::kShadow);
+    }
   }
   for (const PlanarRectangle& wall : walls_) {
     draw_polygon(box_shadow(wall, kWallHeight), palette::kShadow);

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <string>
+#include <variant>
 
 #include <fmt/format.h>
 
+#include "controller/regions/planar/planar_shape.hpp"
 #include "harness/errors.hpp"
 
 namespace qsmpc::harness {
@@ -44,8 +47,9 @@ bool is_in_plane(const controller::Box& box, const models::SystemDescription& sy
   });
 }
 
-class GeomWriter {
+class SolidWriter {
  public:
+  /// `normal` leads out of what is solid.
   void plane(const Eigen::Vector2d& point, const Eigen::Vector2d& normal) {
     add(fmt::format(R"(type="plane" size="1 1 1" pos="{} {} 0" zaxis="{} {} 0")", point.x(),
                     point.y(), normal.x(), normal.y()));
@@ -55,15 +59,53 @@ class GeomWriter {
                     0.5 * (x.upper - x.lower), 0.5 * (y.upper - y.lower), kHalfHeight,
                     0.5 * (x.lower + x.upper), 0.5 * (y.lower + y.upper)));
   }
-  [[nodiscard]] const std::string& text() const { return text_; }
+
+  void operator()(const controller::DiscShape& disc) {
+    add(fmt::format(R"(type="cylinder" size="{} {}" pos="{} {} 0" quat="1 0 0 0")", disc.radius,
+                    kHalfHeight, disc.centre.x(), disc.centre.y()));
+  }
+  void operator()(const controller::TurnedBoxShape& box) {
+    add(fmt::format(R"(type="box" size="{} {} {}" pos="{} {} 0" quat="{} 0 0 {}")",
+                    0.5 * box.size.x(), 0.5 * box.size.y(), kHalfHeight, box.centre.x(),
+                    box.centre.y(), std::cos(0.5 * box.angle), std::sin(0.5 * box.angle)));
+  }
+  void operator()(const controller::HalfPlaneShape& half_plane) {
+    const Eigen::Vector2d into = half_plane.normal.normalized();
+    plane(half_plane.offset / half_plane.normal.norm() * into, -into);
+  }
+  void operator()(const controller::EllipseShape& ellipse) { prisms(ellipse); }
+  void operator()(const controller::PolygonShape& polygon) { prisms(polygon); }
+
+  [[nodiscard]] Solids solids() const { return solids_; }
 
  private:
+  void prisms(const controller::PlanarShape& shape) {
+    for (const controller::ConvexPart& part : controller::convex_parts(shape)) prism(part.corners);
+  }
+
+  /// MuJoCo takes the convex hull of a mesh's vertices, of which it has 32-bit numbers: they are
+  /// about the middle.
+  void prism(const Eigen::Matrix2Xd& corners) {
+    const Eigen::Vector2d middle = corners.rowwise().mean();
+    std::string vertices;
+    for (const auto& corner : corners.colwise()) {
+      const Eigen::Vector2d at = corner - middle;
+      vertices +=
+          fmt::format("{0} {1} {2}  {0} {1} {3}  ", at.x(), at.y(), -kHalfHeight, kHalfHeight);
+    }
+    const std::string name = fmt::format("{}{}", kSolidName, count_);
+    solids_.assets +=
+        fmt::format("<mesh name=\"{}\" scale=\"1 1 1\" vertex=\"{}\"/>\n", name, vertices);
+    add(fmt::format(R"(type="mesh" mesh="{}" pos="{} {} 0" quat="1 0 0 0")", name, middle.x(),
+                    middle.y()));
+  }
+
   void add(const std::string& shape) {
-    text_ +=
+    solids_.geoms +=
         fmt::format("<geom name=\"{}{}\" {} {}/>\n", kSolidName, count_++, shape, kSolidContact);
   }
 
-  std::string text_;
+  Solids solids_;
   int count_ = 0;
 };
 
@@ -86,9 +128,8 @@ int spare_bit(const NamedModel& named) {
 
 }  // namespace
 
-std::string solid_geoms(const controller::SafeSet& safe_set,
-                        const models::SystemDescription& system) {
-  GeomWriter writer;
+Solids solids_of(const controller::SafeSet& safe_set, const models::SystemDescription& system) {
+  SolidWriter writer;
   const auto wall = [&](int axis, double place, double inward) {
     if (!std::isfinite(place)) return;
     const Eigen::Vector2d along =
@@ -100,11 +141,13 @@ std::string solid_geoms(const controller::SafeSet& safe_set,
     wall(axis, safe_set.bounds.upper[axis], -1.0);
   }
   for (const controller::Obstacle& obstacle : safe_set.obstacles) {
-    const controller::Box* box = obstacle.box();
-    if (box == nullptr || !is_in_plane(*box, system)) continue;
-    writer.box(finite_interval(*box, system.position_x), finite_interval(*box, system.position_y));
+    if (const controller::PlanarShape* shape = obstacle.shape()) {
+      std::visit(writer, *shape);
+    } else if (const controller::Box& box = *obstacle.box(); is_in_plane(box, system)) {
+      writer.box(finite_interval(box, system.position_x), finite_interval(box, system.position_y));
+    }
   }
-  return writer.text();
+  return writer.solids();
 }
 
 MujocoModelPtr load_with_solids(const std::string& mjcf, const controller::SafeSet& safe_set,
@@ -116,11 +159,13 @@ MujocoModelPtr load_with_solids(const std::string& mjcf, const controller::SafeS
                       .found = "predefined",
                       .expected = "all, or plant.solid: false"});
   }
+  const Solids solids = solids_of(safe_set, system);
   MujocoModelPtr model = load_mujoco_model_with(
       mjcf,
-      fmt::format("<size nconmax=\"{}\" njmax=\"{}\"/>\n<worldbody>\n{}</worldbody>\n",
+      fmt::format("<size nconmax=\"{}\" njmax=\"{}\"/>\n<asset>\n{}</asset>\n"
+                  "<worldbody>\n{}</worldbody>\n",
                   plain->nconmax + kSolidContacts, plain->njmax + kRowsPerContact * kSolidContacts,
-                  solid_geoms(safe_set, system)));
+                  solids.assets, solids.geoms));
   if ((model->opt.disableflags & mjDSBL_CONTACT) != 0) {
     std::fill_n(model->geom_contype, model->ngeom, 0);
     std::fill_n(model->geom_conaffinity, model->ngeom, 0);

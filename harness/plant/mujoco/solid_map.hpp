@@ -15,11 +15,18 @@
 
 namespace qsmpc::harness {
 
-/// The geoms, as the inside of an XML's worldbody: a plane for each bound of x and y, and a box as
-/// high as a house for each obstacle that restricts these two alone; what is not bounded on a side
-/// ends 1 km away. They collide with nothing yet.
-[[nodiscard]] std::string solid_geoms(const controller::SafeSet& safe_set,
-                                      const models::SystemDescription& system);
+/// The insides of an XML's sections.
+struct Solids {
+  std::string assets;  ///< meshes
+  std::string geoms;   ///< of the worldbody
+};
+
+/// A plane for each bound of x and y and each half-plane, and a solid as high as a house for each
+/// other obstacle that restricts these two alone: boxes, cylinders, and a prism for each convex
+/// part of ellipses and polygons. A box that is not bounded on a side ends 1 km away. They collide
+/// with nothing yet.
+[[nodiscard]] Solids solids_of(const controller::SafeSet& safe_set,
+                               const models::SystemDescription& system);
 
 /// The model of the file `mjcf` with the geoms of `safe_set` in it, and room for their contacts.
 /// Contacts of a model that has them disabled are enabled, for these geoms only. Throws InputError

@@ -17,7 +17,9 @@
 //   places      packed floats: of each sample and part; without samples of each part of a vehicle at
 //               the origin
 //   ground      area, bounds, obstacles, partial: x from, to, y from, to, null for no end;
-//               targets: x, y, radius; no ground for systems without a place in the plane
+//               polygons: obstacles as packed floats, x and y of the corners in turn; halfPlanes:
+//               those of all (x, y) with a x + b y >= c, as a, b, c; targets: x, y, radius; no
+//               ground for systems without a place in the plane
 //
 // A place has seven numbers: x, y, z in m, and the quaternion x, y, z, w.
 import {Color, DirectionalLight, Group, HemisphereLight, Mesh, PerspectiveCamera, PlaneGeometry,

@@ -1,7 +1,11 @@
 // What stands still: the plane with its bounds, obstacles and target.
-import {Box3, BoxGeometry, BufferGeometry, CircleGeometry, CylinderGeometry, EdgesGeometry, Group,
-        LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial, MeshLambertMaterial, PlaneGeometry,
-        Ray, RingGeometry, Shape, ShapeGeometry, Vector3} from "three";
+import {Box3, BoxGeometry, BufferGeometry, CircleGeometry, CylinderGeometry, EdgesGeometry,
+        ExtrudeGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
+        MeshLambertMaterial, PlaneGeometry, Ray, RingGeometry, Shape, ShapeGeometry, Vector2, Vector3}
+  from "three";
+
+import {floatsOf} from "./scene_data.js";
+import {cornersOf, cut, isBetween, pairsOf, within} from "./scene_polygon.js";
 
 const kObstacleHeight = 0.4;   // m, at least; higher than the vehicle
 const kWallHeight = 0.1;       // m
@@ -10,6 +14,7 @@ const kPostHeight = 0.75;      // m, of the target's flag, at least
 const kMargin = 0.12;          // of the area, that is shown about it
 const kMostGridLines = 40;
 const kSeenThrough = 0.35;     // opacity
+const kLeastCorner = 15;       // degrees; less is part of an arc, and has no edge
 
 const gridStep = (length) => {
   const least = length / kMostGridLines;
@@ -62,6 +67,8 @@ export class Ground {
     this.walls(data.bounds, bounds);
     for (const box of data.obstacles) this.obstacle(this.clipped(box), false);
     for (const box of data.partial) this.obstacle(this.clipped(box), true);
+    for (const polygon of data.polygons) this.prism(within(pairsOf(floatsOf(polygon)), this.shown));
+    for (const halfPlane of data.halfPlanes) this.prism(cut(cornersOf(this.shown), halfPlane));
     for (const target of data.targets) this.target(...target);
   }
 
@@ -98,26 +105,50 @@ export class Ground {
     });
   }
 
+  obstacleMaterial(partial) {
+    return new MeshLambertMaterial({color: this.colours.of("var(--obstacle)"), transparent: partial,
+                                    opacity: partial ? kSeenThrough : 1, depthWrite: !partial});
+  }
+
+  edges(geometry, position) {
+    const edges = new LineSegments(geometry, new LineBasicMaterial({color: this.colours.of("var(--soft)")}));
+    edges.position.copy(position);
+    this.group.add(edges);
+  }
+
   // `partial`: one that is there for some of the other states only.
   obstacle(sides, partial) {
     if (sides[1] <= sides[0] || sides[3] <= sides[2]) return;
-    const material = new MeshLambertMaterial({color: this.colours.of("var(--obstacle)"), transparent: partial,
-                                              opacity: partial ? kSeenThrough : 1, depthWrite: !partial});
+    const material = this.obstacleMaterial(partial);
     const box = this.box(sides, this.obstacleHeight, material);
-    if (!partial) this.obstacles.push({material, box: new Box3().setFromObject(box)});
-    const edges = new LineSegments(new EdgesGeometry(box.geometry),
-                                   new LineBasicMaterial({color: this.colours.of("var(--soft)")}));
-    edges.position.copy(box.position);
-    this.group.add(edges);
+    const outer = new Box3().setFromObject(box);
+    const met = new Vector3();
+    const hides = (from, to) => {
+      const way = to.clone().sub(from);
+      const ray = new Ray(from, way.clone().normalize());
+      return ray.intersectBox(outer, met) !== null && met.distanceTo(from) < way.length();
+    };
+    if (!partial) this.obstacles.push({material, hides});
+    this.edges(new EdgesGeometry(box.geometry), box.position);
+  }
+
+  // An obstacle of any outline.
+  prism(corners) {
+    if (corners.length < 3) return;
+    const height = this.obstacleHeight;
+    const outline = new Shape(corners.map(([x, y]) => new Vector2(x, y)));
+    const geometry = new ExtrudeGeometry(outline, {depth: height, bevelEnabled: false, steps: 1});
+    const material = this.obstacleMaterial(false);
+    const mesh = new Mesh(geometry, material);
+    this.group.add(mesh);
+    this.obstacles.push({material, hides: (from, to) => isBetween(corners, height, from, to)});
+    this.edges(new EdgesGeometry(geometry, kLeastCorner), mesh.position);
   }
 
   // Makes translucent what stands between two places: the eye and the vehicle.
   clear(from, to) {
-    const way = to.clone().sub(from);
-    const ray = new Ray(from, way.clone().normalize());
-    const met = new Vector3();
-    for (const {material, box} of this.obstacles) {
-      const hides = ray.intersectBox(box, met) !== null && met.distanceTo(from) < way.length();
+    for (const {material, hides: hidesBetween} of this.obstacles) {
+      const hides = hidesBetween(from, to);
       if (material.transparent === hides) continue;
       material.transparent = hides;
       material.opacity = hides ? kSeenThrough : 1;

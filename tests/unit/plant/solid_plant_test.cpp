@@ -1,16 +1,20 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
 
+#include "controller/regions/unsafe_set.hpp"
 #include "harness/errors.hpp"
 #include "harness/mujoco/mujoco_model.hpp"
 #include "harness/plant/mujoco/mujoco_plant.hpp"
+#include "harness/plant/mujoco/solid_map.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/vehicle_footprint.hpp"
@@ -150,6 +154,142 @@ INSTANTIATE_TEST_SUITE_P(
                       DrivenVehicle{"bicycle_car", "bicycle", "bicycle_car.xml", 5.0, true},
                       DrivenVehicle{"bicycle_planar", "bicycle", "bicycle_planar.xml", 5.0, true}),
     [](const auto& tested) { return tested.param.name; });
+
+/// A shape whose nearest point to the origin is at (`ahead`, 0) or, where the car meets it aslant,
+/// near that.
+struct MetShape {
+  std::string name;
+  controller::PlanarShape (*at)(double ahead);
+};
+
+std::ostream& operator<<(std::ostream& out, const MetShape& shape) { return out << shape.name; }
+
+controller::PlanarShape disc_at(double ahead) {
+  return controller::DiscShape{.centre = {ahead + 0.5, 0.0}, .radius = 0.5};
+}
+
+controller::PlanarShape ellipse_at(double ahead) {
+  return controller::EllipseShape{
+      .centre = {ahead + 0.4, 0.0}, .semi_axes = {1.2, 0.4}, .angle = 0.5 * std::numbers::pi};
+}
+
+/// On its corner, but for 3°: hit exactly, a corner turns the car away.
+controller::PlanarShape turned_box_at(double ahead) {
+  return controller::TurnedBoxShape{
+      .centre = {ahead + 1.0, 0.0}, .size = {2.0, 2.0}, .angle = 0.05};
+}
+
+controller::PlanarShape half_plane_at(double ahead) {
+  return controller::HalfPlaneShape{.normal = {2.0, 0.2}, .offset = 2.0 * ahead};
+}
+
+/// An L whose inner corner the car drives into, with its back to the origin of the plane far away.
+controller::PlanarShape corner_at(double ahead) {
+  Eigen::Matrix2Xd corners(2, 6);
+  corners << -1.0, 1.0, 1.0, 0.0, 0.0, -1.0,  //
+      -1.5, -1.5, 1.5, 1.5, -0.6, -0.6;
+  corners.row(0).array() += ahead;
+  return controller::PolygonShape{corners};
+}
+
+controller::PlanarShape triangle_at(double ahead) {
+  Eigen::Matrix2Xd corners(2, 3);
+  corners << 0.0, 0.1, 1.0, 0.6, -0.6, 0.1;
+  corners.row(0).array() += ahead;
+  return controller::PolygonShape{corners};
+}
+
+class SolidShape : public ::testing::TestWithParam<MetShape> {};
+
+// The clearance of the footprint, whose discs reach beyond the hull, is near 0 at the first
+// contact.
+TEST_P(SolidShape, stops_a_car_that_is_driven_against_it) {
+  MujocoPlantSetup setup = car_setup();
+  controller::SafeSet map = controller::unbounded_safe_set(3);
+  map.obstacles.emplace_back(GetParam().at(1.6));
+  map.body = {.discs = vehicle_footprint(
+                  setup.mjcf, {}, {.description = setup.system, .parameters = setup.parameters}),
+              .x = 0,
+              .y = 1,
+              .heading = 2};
+  const controller::UnsafeSet unsafe(map);
+  setup.solid = map;
+  const auto car = make_mujoco_plant(setup);
+  car->reset(pose(0.0, 0.0, 0.0));
+  double clearance_then = kNotANumber;
+  double least = 1.0;
+  for (int k = 0; k < 30; ++k) {
+    const PlantStep step = car->advance(yaw_rate(0.0), no_disturbance());
+    ASSERT_FALSE(step.fault.has_value()) << *step.fault;
+    for (const auto& state : step.between.colwise()) {
+      least = std::min(least, controller::clearance(state, unsafe));
+    }
+    if (!std::isnan(clearance_then) || !(step.contact.force > 0.0)) continue;
+    const double share = (step.contact.time - kControlPeriod * k) / kControlPeriod;
+    const auto steps = static_cast<double>(step.between.cols());
+    const Eigen::Index at = std::min(std::lround(share * steps), step.between.cols() - 1);
+    clearance_then = controller::clearance(step.between.col(at), unsafe);
+  }
+  ASSERT_FALSE(std::isnan(clearance_then)) << "no contact";
+  EXPECT_LT(clearance_then, 0.01);
+  EXPECT_GT(clearance_then, -0.08);  // m; the discs reach that far beyond the hull's corners
+  EXPECT_GT(least, -0.2);            // it does not drive through
+}
+
+TEST_P(SolidShape, leaves_a_car_alone_that_drives_past) {
+  MujocoPlantSetup setup = car_setup();
+  controller::SafeSet map = controller::unbounded_safe_set(3);
+  map.body = {.discs = {}, .x = 0, .y = 1};
+  map.obstacles.emplace_back(GetParam().at(1.6));
+  setup.solid = map;
+  const auto car = make_mujoco_plant(setup);
+  car->reset(pose(0.0, -5.0, -0.5 * std::numbers::pi));
+  for (int k = 0; k < 10; ++k) {
+    const PlantStep step = car->advance(yaw_rate(0.0), no_disturbance());
+    ASSERT_FALSE(step.fault.has_value()) << *step.fault;
+    EXPECT_EQ(step.contact.force, 0.0);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, SolidShape,
+    ::testing::Values(MetShape{"disc", disc_at}, MetShape{"ellipse", ellipse_at},
+                      MetShape{"turned_box", turned_box_at}, MetShape{"half_plane", half_plane_at},
+                      MetShape{"corner", corner_at}, MetShape{"triangle", triangle_at}),
+    [](const auto& tested) { return tested.param.name; });
+
+TEST(SolidPlant, has_a_prism_for_each_convex_part_where_the_coordinates_are_large) {
+  constexpr double kEast = 500'000.0;  // m, as in maps of the surveyor
+  controller::SafeSet map = controller::unbounded_safe_set(3);
+  map.body = {.discs = {}, .x = 0, .y = 1};
+  map.obstacles.emplace_back(corner_at(kEast));
+  const MujocoModelPtr plain = load_mujoco_model(kCarFile);
+  const MujocoModelPtr model = load_with_solids(kCarFile, map, car_setup().system);
+  ASSERT_EQ(model->ngeom, plain->ngeom + 2);
+  ASSERT_EQ(model->nmesh, plain->nmesh + 2);
+  // Where the corners of both are: mesh, geom and what MuJoCo has turned and moved the mesh by.
+  Eigen::Vector2d lowest = Eigen::Vector2d::Constant(1e9);
+  Eigen::Vector2d highest = -lowest;
+  for (int geom = 0; geom < model->ngeom; ++geom) {
+    if (!std::string(model->names + model->name_geomadr[geom]).starts_with("qsmpc_solid_"))
+      continue;
+    const int mesh = model->geom_dataid[geom];
+    for (int i = 0; i < model->mesh_vertnum[mesh]; ++i) {
+      const float* vertex = model->mesh_vert + 3 * (model->mesh_vertadr[mesh] + i);
+      const double from[3] = {vertex[0], vertex[1], vertex[2]};
+      double to[3] = {0.0, 0.0, 0.0};
+      mju_rotVecQuat(to, from, model->geom_quat + 4 * geom);
+      const Eigen::Vector2d at(to[0] + model->geom_pos[3 * geom],
+                               to[1] + model->geom_pos[3 * geom + 1]);
+      lowest = lowest.cwiseMin(at);
+      highest = highest.cwiseMax(at);
+    }
+  }
+  EXPECT_NEAR(lowest.x(), kEast - 1.0, 1e-4);
+  EXPECT_NEAR(lowest.y(), -1.5, 1e-4);
+  EXPECT_NEAR(highest.x(), kEast + 1.0, 1e-4);
+  EXPECT_NEAR(highest.y(), 1.5, 1e-4);
+}
 
 TEST(SolidPlant, finds_what_a_model_includes_beside_it) {
   const testing::TemporaryFolder folder;

@@ -114,6 +114,28 @@ TEST(EpisodeScene, holds_the_shapes_and_the_ground) {
   EXPECT_EQ(ground["targets"], nlohmann::json({{11.0, 9.0, 0.5}}));
 }
 
+TEST(EpisodeScene, holds_polygons_and_half_planes) {
+  const testing::TemporaryFolder folder;
+  Trace trace = driven_trace(folder.file("vehicle.xml", kVehicle));
+  using controller::PlanarShape;
+  std::vector<controller::Obstacle>& obstacles = trace.scenario.safe_set.obstacles;
+  obstacles.emplace_back(PlanarShape(controller::PolygonShape{
+      (Eigen::Matrix2Xd(2, 3) << 9.0, 10.0, 9.0, 1.0, 1.0, 2.5).finished()}));
+  obstacles.emplace_back(PlanarShape(controller::DiscShape{.centre = {5, 9}, .radius = 0.75}));
+  obstacles.emplace_back(PlanarShape(controller::HalfPlaneShape{.normal = {0, 1}, .offset = 11}));
+  const nlohmann::json ground = nlohmann::json::parse(scene_of(trace).data)["ground"];
+  EXPECT_EQ(ground["obstacles"].size(), 2U);
+  ASSERT_EQ(ground["polygons"].size(), 2U);
+  const std::vector<float> triangle{9.0F, 1.0F, 10.0F, 1.0F, 9.0F, 2.5F};
+  EXPECT_EQ(numbers_of<float>(ground["polygons"][0]), triangle);
+  const auto disc = numbers_of<float>(ground["polygons"][1]);
+  ASSERT_GE(disc.size(), 64U);
+  for (std::size_t i = 0; i < disc.size(); i += 2) {
+    EXPECT_NEAR(std::hypot(disc[i] - 5.0F, disc[i + 1] - 9.0F), 0.75, 0.002);
+  }
+  EXPECT_EQ(ground["halfPlanes"], nlohmann::json({{0.0, 1.0, 11.0}}));
+}
+
 /// A cart that rolls and a pole that falls, by the model alone.
 Trace cart_trace() {
   Trace trace;

@@ -106,6 +106,46 @@ TEST(episode_frames, world_is_the_safe_set_in_the_plane) {
   EXPECT_EQ(world.target.x, 2.0);
 }
 
+TEST(episode_frames, shapes_stand_in_the_world_with_their_convex_pieces) {
+  Trace trace = straight_trace();
+  Eigen::Matrix2Xd corner(2, 6);
+  corner << 0.0, 2.0, 2.0, 1.0, 1.0, 0.0, 1.0, 1.0, 1.5, 1.5, 2.0, 2.0;
+  using controller::PlanarShape;
+  std::vector<controller::Obstacle>& obstacles = trace.scenario.safe_set.obstacles;
+  trace.scenario.safe_set.body = {.discs = {}, .x = 0, .y = 1};
+  obstacles.emplace_back(PlanarShape(controller::PolygonShape{corner}));
+  obstacles.emplace_back(PlanarShape(controller::DiscShape{.centre = {1.5, -0.5}, .radius = 0.2}));
+  obstacles.emplace_back(PlanarShape(controller::HalfPlaneShape{.normal = {2, 0}, .offset = 5}));
+  const render::World world = EpisodeFrames(EpisodeView(trace)).world();
+  EXPECT_TRUE(world.obstacles.empty());
+  ASSERT_EQ(world.prisms.size(), 2U);
+  EXPECT_EQ(world.prisms[0].outline.size(), 6U);
+  EXPECT_EQ(world.prisms[0].pieces.size(), 2U);
+  EXPECT_EQ(world.prisms[1].pieces.size(), 1U);
+  for (const render::PlanarPoint& point : world.prisms[1].outline) {
+    EXPECT_NEAR(std::hypot(point.x - 1.5, point.y + 0.5), 0.2, 0.001);
+  }
+  ASSERT_EQ(world.half_planes.size(), 1U);
+  EXPECT_EQ(world.half_planes[0].normal.x, 2.0);
+  EXPECT_EQ(world.half_planes[0].offset, 5.0);
+}
+
+TEST(episode_frames, the_ways_colours_are_of_the_distance_to_the_shapes_themselves) {
+  Trace trace = straight_trace();
+  trace.scenario.safe_set.body = {.discs = {}, .x = 0, .y = 1};
+  trace.scenario.safe_set.obstacles.emplace_back(
+      controller::PlanarShape(controller::DiscShape{.centre = {0.0, -0.6}, .radius = 0.25}));
+  const EpisodeView view(trace);
+  const render::Frame frame = EpisodeFrames(view).at(0.3);
+  ASSERT_EQ(frame.clearances.size(), frame.driven_path.size());
+  ASSERT_GT(frame.clearances.size(), 2U);
+  for (std::size_t i = 0; i < frame.clearances.size(); ++i) {
+    const render::PlanarPoint& point = frame.driven_path[i];
+    const double to_disc = std::hypot(point.x, point.y + 0.6) - 0.25;
+    EXPECT_NEAR(frame.clearances[i], std::min({to_disc, point.x + 1.0, point.y + 1.0}), 1e-9);
+  }
+}
+
 TEST(episode_frames, trace_without_steps_still_has_a_frame) {
   Trace trace = straight_trace();
   trace.steps.clear();
