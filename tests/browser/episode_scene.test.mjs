@@ -4,8 +4,8 @@ import {readFileSync, statSync} from "node:fs";
 import {join} from "node:path";
 import {after, before, test} from "node:test";
 
-import {artefacts, openPage, qsmpc, sidewaysScroll, softwareGl, startBrowser, temporaryFolder, until}
-  from "./pages.mjs";
+import {artefacts, openPage, qsmpc, sidewaysScroll, softwareGl, source, startBrowser, temporaryFolder,
+        until} from "./pages.mjs";
 
 let browser;
 let folder;
@@ -97,6 +97,75 @@ test("an obstacle before the vehicle is seen through", async () => {
     const {warm} = await seenAt(page, time);
     assert.ok(warm > 300, `${time} s: ${warm} pixels of the vehicle`);
   }
+  await page.close();
+});
+
+// The view's geometry of polygons, as a module without others.
+const polygons = () => import("data:text/javascript," +
+  encodeURIComponent(readFileSync(join(source, "harness/report/web/scene_polygon.js"), "utf8")));
+
+test("polygons are cut to what is shown", async () => {
+  const {cornersOf, cut, within} = await polygons();
+  const corner = [[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]];
+  assert.deepEqual(within(corner, [1, 3, 1, 3]), [[3, 1], [3, 2], [2, 2], [2, 3], [1, 3], [1, 1]]);
+  assert.deepEqual(cut(cornersOf([0, 10, 0, 10]), [1, 1, 15]), [[10, 5], [10, 10], [5, 10]]);
+  assert.equal(within(corner, [5, 6, 5, 6]).length, 0);
+});
+
+test("a prism stands between what it stands between", async () => {
+  const {isBetween} = await polygons();
+  const corner = [[0, 0], [4, 0], [4, 2], [2, 2], [2, 4], [0, 4]];
+  const between = (...ends) =>
+    isBetween(corner, 1, ...ends.map(([x, y, z]) => ({x, y, z})));
+  assert.ok(between([-3, 1, 0.5], [6, 1, 0.5]), "through it");
+  assert.ok(between([-3, 1, 2], [3, 3, 0.2]), "from above, down into the corner behind it");
+  assert.ok(!between([-3, 1, 50], [3, 3, 0.2]), "over it");
+  assert.ok(!between([5, 5, 2], [3, 3, 0.2]), "into the corner from its open side");
+  assert.ok(between([5, 5, 0.5], [1, 1, 0.2]), "to what is in it");
+  assert.ok(!between([-3, 1, 2], [6, 1, 1.5]), "above it");
+});
+
+test("obstacles of any outline are drawn, and leave the vehicle visible", async () => {
+  const out = temporaryFolder();
+  const shapes = "[{disc: {centre: [3.5, 0.9], radius: 0.6}}, " +
+    "{polygon: [[6, -1.5], [8, -1.5], [8, -1.1], [6.5, -1.1], [6.5, -0.6], [6, -0.6]]}, " +
+    "{half_plane: {normal: [1, 1], offset: 15}}]";
+  const drive = ["run", "dubins_alley", "--quiet", "--no-video", "--set", "limit.steps=25"];
+  qsmpc(...drive, "--out", out, "--set", `safe_set.obstacles=${shapes}`);
+  const {page, seen} = await openPage(browser, join(out, "report.html"));
+  await page.locator("#scene").scrollIntoViewIfNeeded();
+  await page.locator("#scene canvas").waitFor();
+  for (const layer of ["particles", "plan", "way", "ghost"]) {
+    await page.locator(`[data-scene="${layer}"]`).uncheck();
+  }
+  for (const time of [1, 1.8, 2.4]) {  // before, beside and past the disc
+    const drawn = await seenAt(page, time);
+    assert.ok(drawn.paint > 300, `${time} s: ${drawn.paint} pixels of the car`);
+  }
+  await whole(page);
+  await page.waitForTimeout(100);
+  // Tops are the only large areas of their colour.
+  const tops = await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => {
+    document.getElementById("time").dispatchEvent(new Event("input"));
+    requestAnimationFrame(() => {
+      const canvas = document.querySelector("#scene canvas");
+      const copy = document.createElement("canvas");
+      copy.width = canvas.width;
+      copy.height = canvas.height;
+      const context = copy.getContext("2d");
+      context.drawImage(canvas, 0, 0);
+      const {data} = context.getImageData(0, 0, copy.width, copy.height);
+      let count = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        const [r, g, b] = data.subarray(i, i + 3);
+        if (r > 130 && r < 160 && b - r > 8 && b - r < 30 && g > r && g < b) ++count;
+      }
+      resolve(count);
+    });
+  })));
+  assert.ok(tops > 2000, `${tops} pixels of the obstacles' tops`);
+  await page.locator("#scene").screenshot({path: join(artefacts, "scene-shapes.png")});
+  assert.deepEqual(seen.errors, []);
   await page.close();
 });
 

@@ -3,6 +3,7 @@ import {Box3, BoxGeometry, BufferGeometry, CircleGeometry, CylinderGeometry, Edg
         ExtrudeGeometry, Group, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
         MeshLambertMaterial, PlaneGeometry, Ray, RingGeometry, Shape, ShapeGeometry, Vector2, Vector3}
   from "three";
+import {toCreasedNormals} from "three/addons/utils/BufferGeometryUtils.js";
 
 import {floatsOf} from "./scene_data.js";
 import {cornersOf, cut, isBetween, pairsOf, within} from "./scene_polygon.js";
@@ -139,7 +140,7 @@ export class Ground {
     const outline = new Shape(corners.map(([x, y]) => new Vector2(x, y)));
     const geometry = new ExtrudeGeometry(outline, {depth: height, bevelEnabled: false, steps: 1});
     const material = this.obstacleMaterial(false);
-    const mesh = new Mesh(geometry, material);
+    const mesh = new Mesh(toCreasedNormals(geometry, kLeastCorner * Math.PI / 180), material);
     this.group.add(mesh);
     this.obstacles.push({material, hides: (from, to) => isBetween(corners, height, from, to)});
     this.edges(new EdgesGeometry(geometry, kLeastCorner), mesh.position);
