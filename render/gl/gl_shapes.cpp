@@ -13,6 +13,9 @@ namespace {
 constexpr int kCircleSides = 64;
 constexpr float kSlopeOffset = 2.0F;
 constexpr float kDepthOffset = 400.0F;  // smallest depth differences: some millimetres
+// Of prisms, some of which stand where the vehicle's file has a shape of its own.
+constexpr float kBehindSlope = 1.0F;
+constexpr float kBehindDepth = 16.0F;
 // m. The rasteriser may draw anything for a smooth line that has no direction.
 constexpr double kLeastSegment = 1e-6;
 
@@ -171,6 +174,8 @@ void draw_box(const PlanarRectangle& area, double height, const Colour& colour) 
 }
 
 void draw_prism(const Prism& prism, double height, const Colour& colour) {
+  glEnable(GL_POLYGON_OFFSET_FILL);
+  glPolygonOffset(kBehindSlope, kBehindDepth);
   for (const std::vector<PlanarPoint>& piece : prism.pieces) {
     draw_level_polygon(piece, height, lit(colour, kTopLight));
   }
@@ -182,6 +187,7 @@ void draw_prism(const Prism& prism, double height, const Colour& colour) {
     upright_face(from, to, height, lit(colour, side_light(to.y - from.y, from.x - to.x)));
   }
   glEnd();
+  glDisable(GL_POLYGON_OFFSET_FILL);
 }
 
 void draw_polygon(const std::vector<PlanarPoint>& corners, const Colour& colour) {

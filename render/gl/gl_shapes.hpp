@@ -29,7 +29,8 @@ void end_single_coverage();
 /// An upright box from the ground, its sides shaded as if the sun stood in the south-west.
 void draw_box(const PlanarRectangle& area, double height, const Colour& colour);
 
-/// An upright prism from the ground, shaded likewise.
+/// An upright prism from the ground, shaded likewise. Where its surface is that of something drawn
+/// before, that is in front.
 void draw_prism(const Prism& prism, double height, const Colour& colour);
 
 /// A convex polygon lying on the ground.

@@ -140,6 +140,8 @@ export class Ground {
     const outline = new Shape(corners.map(([x, y]) => new Vector2(x, y)));
     const geometry = new ExtrudeGeometry(outline, {depth: height, bevelEnabled: false, steps: 1});
     const material = this.obstacleMaterial(false);
+    // Some stand where the vehicle's file has a shape of its own, which is in front.
+    Object.assign(material, {polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1});
     const mesh = new Mesh(toCreasedNormals(geometry, kLeastCorner * Math.PI / 180), material);
     this.group.add(mesh);
     this.obstacles.push({material, hides: (from, to) => isBetween(corners, height, from, to)});

@@ -18,6 +18,7 @@
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/scenario/vehicle_footprint.hpp"
+#include "models/constants.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/plant/plant_fixture.hpp"
 #include "tests/unit/plant/shipped_plants.hpp"
@@ -155,8 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
                       DrivenVehicle{"bicycle_planar", "bicycle", "bicycle_planar.xml", 5.0, true}),
     [](const auto& tested) { return tested.param.name; });
 
-/// A shape whose nearest point to the origin is at (`ahead`, 0) or, where the car meets it aslant,
-/// near that.
+/// A shape whose surface is met at (`ahead`, 0), or less than 1 cm from there, along the x axis.
 struct MetShape {
   std::string name;
   controller::PlanarShape (*at)(double ahead);
@@ -173,7 +173,6 @@ controller::PlanarShape ellipse_at(double ahead) {
       .centre = {ahead + 0.4, 0.0}, .semi_axes = {1.2, 0.4}, .angle = 0.5 * std::numbers::pi};
 }
 
-/// On its corner, but for 3°: hit exactly, a corner turns the car away.
 controller::PlanarShape turned_box_at(double ahead) {
   return controller::TurnedBoxShape{
       .centre = {ahead + 1.0, 0.0}, .size = {2.0, 2.0}, .angle = 0.05};
@@ -183,7 +182,7 @@ controller::PlanarShape half_plane_at(double ahead) {
   return controller::HalfPlaneShape{.normal = {2.0, 0.2}, .offset = 2.0 * ahead};
 }
 
-/// An L whose inner corner the car drives into, with its back to the origin of the plane far away.
+/// An L into whose inner corner the car drives.
 controller::PlanarShape corner_at(double ahead) {
   Eigen::Matrix2Xd corners(2, 6);
   corners << -1.0, 1.0, 1.0, 0.0, 0.0, -1.0,  //
@@ -194,55 +193,75 @@ controller::PlanarShape corner_at(double ahead) {
 
 controller::PlanarShape triangle_at(double ahead) {
   Eigen::Matrix2Xd corners(2, 3);
-  corners << 0.0, 0.1, 1.0, 0.6, -0.6, 0.1;
+  corners << -0.05, 0.05, 1.0, 0.6, -0.6, 0.1;
   corners.row(0).array() += ahead;
   return controller::PolygonShape{corners};
 }
 
-class SolidShape : public ::testing::TestWithParam<MetShape> {};
+class SolidShape : public ::testing::TestWithParam<MetShape> {
+ protected:
+  /// Where the car was when it first touched the obstacle, and the least clearance of its footprint
+  /// in 3 s.
+  struct Meeting {
+    Eigen::VectorXd state;
+    double least = kInfinity;
+  };
 
-// The clearance of the footprint, whose discs reach beyond the hull, is near 0 at the first
-// contact.
-TEST_P(SolidShape, stops_a_car_that_is_driven_against_it) {
-  MujocoPlantSetup setup = car_setup();
-  controller::SafeSet map = controller::unbounded_safe_set(3);
-  map.obstacles.emplace_back(GetParam().at(1.6));
-  map.body = {.discs = vehicle_footprint(
-                  setup.mjcf, {}, {.description = setup.system, .parameters = setup.parameters}),
-              .x = 0,
-              .y = 1,
-              .heading = 2};
-  const controller::UnsafeSet unsafe(map);
-  setup.solid = map;
-  const auto car = make_mujoco_plant(setup);
-  car->reset(pose(0.0, 0.0, 0.0));
-  double clearance_then = kNotANumber;
-  double least = 1.0;
-  for (int k = 0; k < 30; ++k) {
-    const PlantStep step = car->advance(yaw_rate(0.0), no_disturbance());
-    ASSERT_FALSE(step.fault.has_value()) << *step.fault;
-    for (const auto& state : step.between.colwise()) {
-      least = std::min(least, controller::clearance(state, unsafe));
-    }
-    if (!std::isnan(clearance_then) || !(step.contact.force > 0.0)) continue;
-    const double share = (step.contact.time - kControlPeriod * k) / kControlPeriod;
-    const auto steps = static_cast<double>(step.between.cols());
-    const Eigen::Index at = std::min(std::lround(share * steps), step.between.cols() - 1);
-    clearance_then = controller::clearance(step.between.col(at), unsafe);
+  controller::SafeSet map_of(const controller::Obstacle& obstacle) const {
+    controller::SafeSet map = controller::unbounded_safe_set(3);
+    map.obstacles.push_back(obstacle);
+    map.body = {
+        .discs = vehicle_footprint(setup_.mjcf, {},
+                                   {.description = setup_.system, .parameters = setup_.parameters}),
+        .x = 0,
+        .y = 1,
+        .heading = 2};
+    return map;
   }
-  ASSERT_FALSE(std::isnan(clearance_then)) << "no contact";
-  EXPECT_LT(clearance_then, 0.01);
-  EXPECT_GT(clearance_then, -0.08);  // m; the discs reach that far beyond the hull's corners
-  EXPECT_GT(least, -0.2);            // it does not drive through
+
+  /// Drives straight on from the origin.
+  Meeting meet(const controller::Obstacle& obstacle) {
+    Meeting meeting;
+    setup_.solid = map_of(obstacle);
+    const controller::UnsafeSet unsafe(*setup_.solid);
+    const auto car = make_mujoco_plant(setup_);
+    car->reset(pose(0.0, 0.0, 0.0));
+    for (int k = 0; k < 30; ++k) {
+      const PlantStep step = car->advance(yaw_rate(0.0), no_disturbance());
+      EXPECT_FALSE(step.fault.has_value()) << *step.fault;
+      for (const auto& state : step.between.colwise()) {
+        meeting.least = std::min(meeting.least, controller::clearance(state, unsafe));
+      }
+      if (meeting.state.size() > 0 || !(step.contact.force > 0.0)) continue;
+      const double share = (step.contact.time - kControlPeriod * k) / kControlPeriod;
+      const auto steps = static_cast<double>(step.between.cols());
+      meeting.state =
+          step.between.col(std::min(std::lround(share * steps), step.between.cols() - 1));
+    }
+    return meeting;
+  }
+
+  MujocoPlantSetup setup_ = car_setup();
+};
+
+// The discs of the footprint, which lie over the hull, reach 0.086 m beyond its nose.
+TEST_P(SolidShape, stops_a_car_where_a_block_would) {
+  constexpr double kAhead = 1.6;  // m
+  const Meeting block = meet(map_with(3, {{kAhead, kAhead + 1.0, -2.0, 2.0}}).obstacles[0]);
+  const controller::Obstacle shape = GetParam().at(kAhead);
+  const Meeting met = meet(shape);
+  ASSERT_EQ(block.state.size(), 3);
+  ASSERT_EQ(met.state.size(), 3) << "no contact";
+  const double clearance = controller::clearance(met.state, map_of(shape));
+  EXPECT_LT(clearance, 0.0);
+  EXPECT_GT(clearance, -0.1);
+  EXPECT_NEAR(met.state[0], block.state[0], 0.02);  // the shapes' faces are not all across
+  EXPECT_GT(met.least, -0.2) << "it drives through";
 }
 
 TEST_P(SolidShape, leaves_a_car_alone_that_drives_past) {
-  MujocoPlantSetup setup = car_setup();
-  controller::SafeSet map = controller::unbounded_safe_set(3);
-  map.body = {.discs = {}, .x = 0, .y = 1};
-  map.obstacles.emplace_back(GetParam().at(1.6));
-  setup.solid = map;
-  const auto car = make_mujoco_plant(setup);
+  setup_.solid = map_of(GetParam().at(1.6));
+  const auto car = make_mujoco_plant(setup_);
   car->reset(pose(0.0, -5.0, -0.5 * std::numbers::pi));
   for (int k = 0; k < 10; ++k) {
     const PlantStep step = car->advance(yaw_rate(0.0), no_disturbance());

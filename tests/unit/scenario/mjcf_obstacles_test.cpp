@@ -226,7 +226,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenChoice{"neither", "{height: 2}", "", "neither", "geoms, a list of names", 8},
         BrokenChoice{"unknown_key", "{geom: [crate], group: 3}", ".geom", "an unknown key",
                      "geoms (known"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(MjcfObstacles, need_a_file) {
   const InputError::Where where =
