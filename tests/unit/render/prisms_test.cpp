@@ -95,8 +95,9 @@ TEST(prisms, look_like_a_box_of_the_same_outline) {
     for (std::size_t i = 0; i < box.image.rgb.size(); ++i) {
       different += std::abs(box.image.rgb[i] - prism.image.rgb[i]) > 8 ? 1 : 0;
     }
-    // Lines are smoothed otherwise where their ends meet.
-    EXPECT_LT(different, box.image.rgb.size() / 1000) << camera;
+    // A prism is a little behind, so that its foot differs by a pixel, and its lines are smoothed
+    // otherwise where their ends meet: 0.2 %.
+    EXPECT_LT(different, box.image.rgb.size() / 300) << camera;
   }
 }
 
