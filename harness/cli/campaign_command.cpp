@@ -157,8 +157,9 @@ int campaign_command(CampaignArguments& arguments) {
 
 void add_tasks_options(CLI::App& command, CampaignArguments& arguments) {
   constexpr std::int64_t kLongest = 86'400;
-  command.add_option("--on", arguments.launch.on,
-                     "drive with tasks that share the output folder: local, ssh:HOSTS, ssh:@FILE or slurm");
+  command.add_option(
+      "--on", arguments.launch.on,
+      "drive with tasks that share the output folder: local, ssh:HOSTS, ssh:@FILE or slurm");
   command.add_option("--tasks", arguments.launch.tasks, "with --on: how many; default: 1")
       ->check(CLI::Range(1, kMostTasks));
   command
