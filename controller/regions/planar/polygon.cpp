@@ -252,6 +252,7 @@ std::vector<Eigen::Matrix2Xd> convex_pieces(const Eigen::Matrix2Xd& corners) {
     }
   }
   std::vector<Eigen::Matrix2Xd> pieces;
+  pieces.reserve(loops.size());
   for (const Loop& loop : loops) pieces.emplace_back(turned(Eigen::all, loop));
   return pieces;
 }
