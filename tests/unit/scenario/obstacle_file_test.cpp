@@ -172,7 +172,7 @@ INSTANTIATE_TEST_SUITE_P(
                    "{type: Feature, properties: {radius: 0}, geometry: {type: Point,\n"
                    "coordinates: [8, 8]}}",
                    1, "geometry.coordinates", "the radius 0", "a number from 1e-6"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(ObstacleFile, that_does_not_exist_is_refused_at_the_key) {
   const TemporaryFolder folder;

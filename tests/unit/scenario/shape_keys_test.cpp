@@ -136,7 +136,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "a list of 2 numbers"},
         BrokenShape{"box_without_size", "{box: {centre: [9, 9]}}", ".box.size", "nothing",
                     "two numbers"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Polygons, BrokenShapes,
@@ -162,7 +162,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BrokenShape{"closed", "{polygon: [[8, 8], [9, 8], [9, 9], [8, 8]]}",
                                   ".polygon", "a list of 4",
                                   "corners that differ; 3 and 0 are the same"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     HalfPlanes, BrokenShapes,
@@ -173,7 +173,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BrokenShape{"offset_too_far",
                                   "{half_plane: {normal: [0, 1e-3], offset: 1e5}}",
                                   ".half_plane.offset", "1e5", "times the length of the normal"}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(
     Places, BrokenShapes,
@@ -184,7 +184,7 @@ INSTANTIATE_TEST_SUITE_P(
                     "target.state", "inside safe_set.obstacles.0", "the safe set", 5},
         BrokenShape{"target_in_a_polygon", "{polygon: [[4, -1], [6, -1], [5, 0.5], [9, 9]]}",
                     "target.state", "inside safe_set.obstacles.0", "the safe set", 5}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(Shapes, of_which_the_body_reaches_into_one_are_told) {
   const InputError::Where where =
