@@ -222,6 +222,7 @@ std::vector<GroundGeom> ground_geoms(const mjModel_& model) {
   const std::unique_ptr<mjData, decltype(deleter)> data(mj_makeData(&model), deleter);
   mj_kinematics(&model, data.get());
   std::vector<GroundGeom> geoms;
+  geoms.reserve(static_cast<std::size_t>(model.ngeom));
   for (int geom = 0; geom < model.ngeom; ++geom) {
     geoms.push_back(ground_geom(model, *data, geom));
   }

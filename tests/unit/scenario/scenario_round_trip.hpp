@@ -27,8 +27,16 @@ inline void expect_equal(const Scenario& a, const Scenario& b) {
   EXPECT_EQ(a.safe_set.bounds.upper, b.safe_set.bounds.upper);
   ASSERT_EQ(a.safe_set.obstacles.size(), b.safe_set.obstacles.size());
   for (std::size_t i = 0; i < a.safe_set.obstacles.size(); ++i) {
-    EXPECT_EQ(a.safe_set.obstacles[i].box()->lower, b.safe_set.obstacles[i].box()->lower);
-    EXPECT_EQ(a.safe_set.obstacles[i].box()->upper, b.safe_set.obstacles[i].box()->upper);
+    const controller::Obstacle& one = a.safe_set.obstacles[i];
+    const controller::Obstacle& other = b.safe_set.obstacles[i];
+    ASSERT_EQ(one.form.index(), other.form.index());
+    if (one.box() != nullptr) {
+      EXPECT_EQ(one.box()->lower, other.box()->lower);
+      EXPECT_EQ(one.box()->upper, other.box()->upper);
+    } else {
+      EXPECT_EQ(one.shape()->index(), other.shape()->index());
+      EXPECT_EQ(controller::shape_outline(*one.shape()), controller::shape_outline(*other.shape()));
+    }
   }
   EXPECT_EQ(a.target.state, b.target.state);
   EXPECT_EQ(a.target.radius, b.target.radius);
