@@ -94,8 +94,10 @@ std::vector<const GroundGeom*> chosen_by_name(const GeomChoice& choice) {
 
 /// Those of the group that stand still; the ground, and what is above or below, is passed over.
 std::vector<const GroundGeom*> chosen_by_group(const GeomChoice& choice) {
-  const int group = choice.section.whole(kGroup, 0, {0, kLastGroup});
+  constexpr int kNone = -1;  // what is no group's number has been noted
+  const int group = choice.section.whole(kGroup, kNone, {0, kLastGroup});
   std::vector<const GroundGeom*> chosen;
+  if (group == kNone) return chosen;
   std::vector<int> others;
   for (const GroundGeom& geom : choice.geoms) {
     const bool is_passed = !geom.is_static || geom.is_ground || !stands_below(geom, choice.height);

@@ -201,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(
     Choices, BrokenMjcfObstacles,
     ::testing::Values(
         BrokenChoice{"unknown_name", "geoms: [crate, piller]", ".geoms.1", "piller",
-                     "pillar (known: north, crate, leaning"},
+                     "pillar or pill (known: north, leaning, pillar"},
         BrokenChoice{"vehicle", "geoms: [hull]", ".geoms.0", "hull, which moves",
                      "fixed to the world"},
         BrokenChoice{"part_of_the_vehicle", "geoms: [mast]", ".geoms.0", "mast, which moves",
