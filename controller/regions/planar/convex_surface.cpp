@@ -150,7 +150,9 @@ double support(const ConvexPart& part, const Eigen::Vector2d& direction) {
   // A half-plane ends in the direction of its normal alone.
   const Eigen::Vector2d normal = part.normals.col(0);
   const double along = direction.dot(normal);
-  const bool is_normal = along > 0.0 && (direction - along * normal).isZero(0.0);
+  // Exactly 0 for the normal itself, whose length is 1 but for rounding.
+  const double across = direction.x() * normal.y() - direction.y() * normal.x();
+  const bool is_normal = along > 0.0 && across == 0.0;
   return is_normal ? along * (part.offsets[0] + part.radius) : kInfinity;
 }
 

@@ -3,6 +3,7 @@
 #include "controller/regions/planar/planar_shape.hpp"
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <vector>
@@ -139,6 +140,18 @@ TEST(PlanarShape, is_entered_where_a_plain_search_says) {
       }
       EXPECT_GT(inside, 50);
     }
+  }
+}
+
+TEST(PlanarShape, that_is_a_half_plane_ends_along_its_normal_whatever_that_rounds_to) {
+  Generator generator(8);
+  for (int repetition = 0; repetition < 1000; ++repetition) {
+    const HalfPlaneShape shape{.normal = random_matrix(generator, 2, 1, 3.0), .offset = 0.7};
+    const ConvexPart part = convex_parts(shape).front();
+    const Eigen::Vector2d normal = part.normals.col(0);
+    EXPECT_NEAR(support(part, normal), part.offsets[0], 1e-12);
+    EXPECT_EQ(support(part, -normal), std::numeric_limits<double>::infinity());
+    EXPECT_EQ(support(part, {-normal.y(), normal.x()}), std::numeric_limits<double>::infinity());
   }
 }
 
