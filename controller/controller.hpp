@@ -18,4 +18,5 @@
 #include "controller/prediction/prediction.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "controller/regions/unsafe_set.hpp"
+#include "controller/surroundings/motion_filter.hpp"
 #include "models/models.hpp"

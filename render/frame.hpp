@@ -41,6 +41,12 @@ struct Prism {
   std::vector<std::vector<PlanarPoint>> pieces;  ///< convex polygons that make it up
 };
 
+/// A line on the ground: the edge of a road, or its middle.
+struct RoadLine {
+  std::vector<PlanarPoint> points;
+  bool is_edge = true;
+};
+
 /// What stands still during an episode.
 struct World {
   PlanarRectangle bounds;                  ///< the safe set's box; infinite sides are not drawn
@@ -49,6 +55,9 @@ struct World {
   double target_radius = 0.5;
   std::vector<Prism> prisms;                 ///< obstacles, as are the next
   std::vector<PlanarHalfPlane> half_planes;  ///< drawn as far as the ground reaches
+  std::vector<RoadLine> road{};
+  std::vector<PlanarPoint> waypoints{};  ///< that are passed on the way to the target, in order
+  double waypoint_radius = 0.5;
 };
 
 /// The weighted points of one stage of the horizon.
@@ -75,6 +84,13 @@ struct TubeSection {
   PlanarPoint left;
   PlanarPoint right;
   double bound = 1.0;  ///< of the probability, in [0, 1]
+};
+
+/// One of the ways in which an obstacle may move on, as far as a plan looks ahead.
+struct ForecastWay {
+  double weight = 1.0;                  ///< probability that it goes this way
+  std::vector<PlanarPoint> way;         ///< of its middle, from now to the plan's end
+  std::vector<PlanarEllipse> ellipses;  ///< about its middle, at some times from now to the end
 };
 
 /// A horizontal line in a strip chart, e.g. a deadline.
@@ -110,6 +126,7 @@ struct Frame {
   std::vector<double> qpos;  ///< pose of every joint of the vehicle model; empty: use `pose`
   PlanarPose pose;           ///< where the vehicle stands if `qpos` is empty
   std::optional<PlanarPose> followed;     ///< what the chase camera follows; without it `pose`
+  std::size_t waypoints_passed = 0;       ///< of the world's; these are drawn faintly
   std::vector<PlanarPoint> driven_path;   ///< oldest first
   std::vector<double> clearances;         ///< m, of driven_path's points; none: one colour
   std::vector<PlanarPoint> planned_path;  ///< stage 0 first
@@ -118,6 +135,8 @@ struct Frame {
   std::vector<BeliefEllipses> ellipses;   ///< stage 0 first; coloured by stage
   std::vector<TubeSection> tube;          ///< from the plan's start to its end; coloured by bound
   std::vector<std::vector<PlanarPoint>> body;  ///< its outline on the ground, line by line
+  std::vector<Prism> moving;                   ///< obstacles that move, where they are
+  std::vector<ForecastWay> forecasts;          ///< where they will be, as the plan has it
   std::optional<PlanarPose> ghost;             ///< where the vehicle was predicted to be now
   std::vector<double> ghost_qpos;  ///< of every joint then; empty: as `qpos`, but at `ghost`
   std::string title;

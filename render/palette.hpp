@@ -12,6 +12,8 @@ inline constexpr Colour kOuterGround{0.775F, 0.785F, 0.80F};
 inline constexpr Colour kGridLine{0.58F, 0.61F, 0.65F, 0.42F};
 inline constexpr Colour kShadow{0.10F, 0.12F, 0.18F, 0.26F};
 inline constexpr Colour kObstacle{0.46F, 0.53F, 0.62F};
+inline constexpr Colour kMovingObstacle{0.20F, 0.46F, 0.78F};
+inline constexpr Colour kForecast{0.03F, 0.33F, 0.72F};
 inline constexpr Colour kUnsafeEdge{0.80F, 0.22F, 0.10F};
 inline constexpr Colour kUnsafeStripe{0.80F, 0.22F, 0.10F, 0.55F};
 inline constexpr Colour kOuterStripe{0.80F, 0.22F, 0.10F, 0.22F};

@@ -6,6 +6,7 @@
 
 #include "controller/certification/error_truncation.hpp"
 #include "controller/certification/statistical_linearisation.hpp"
+#include "controller/certification/tilted_covariance.hpp"
 #include "controller/certification/unicycle_residual.hpp"
 #include "models/constants.hpp"
 
@@ -98,10 +99,11 @@ class CarriedErrors {
 /// whose known offset m_j moves z, too.
 class SurrogateRecursion {
  public:
-  SurrogateRecursion(const PredictedMotion& motion, double core)
+  SurrogateRecursion(const PredictedMotion& motion, double core, const PathTilt& tilt)
       : motion_(motion),
         core_{.affine = affine_coordinates(motion.dynamics), .reach = core},
         law_(motion.belief),
+        tilted_(tilt),
         error_(StageError::none(law_.mean.size())),
         past_(law_.mean.size(), motion.policy.horizon() + 1) {
     // Then a residual is known on the whole space, and only its changes need the core.
@@ -112,6 +114,7 @@ class SurrogateRecursion {
       fits_everywhere_ = true;
     }
     if (motion.belief_error != nullptr) start_from(*motion.belief_error);
+    tilted_.start(law_);
   }
 
   /// The surrogate of the present stage, with `region` as far as the next step tells.
@@ -152,7 +155,7 @@ class SurrogateRecursion {
       leaving_ = std::min(1.0, outside_);
       before.region = fit.region;
     }
-    if (residual_) residual_->add_stage(law_, fit.transition);
+    if (residual_) residual_->add_stage(law_, fit.transition, &tilted_);
     StageError own = fit.residual;
     const ModelError* error = motion_.error_at(stage);
     TruncatedError cut;
@@ -167,10 +170,8 @@ class SurrogateRecursion {
       slopes.mean_square() += fit.closed_form;
       error_ = lesser(error_, added(slopes, own));
     }
-    law_.covariance =
-        fit.transition * law_.covariance * fit.transition.transpose() + motion_.noise_covariance;
-    law_.covariance = 0.5 * (law_.covariance + law_.covariance.transpose()).eval();
     law_.mean = fit.next_mean;
+    tilted_.step(stage, fit.transition, motion_.noise_covariance, law_);
     if (error != nullptr) move_mean(*error);
     outside_ += cut.outside;
     return law_.mean.allFinite() && law_.covariance.allFinite() &&
@@ -225,6 +226,7 @@ class SurrogateRecursion {
   const PredictedMotion& motion_;
   CoreShape core_;
   Gaussian law_;
+  TiltedCovariance tilted_;
   StageError error_;
   bool fits_everywhere_ = false;
   double outside_ = 0.0;  ///< Σ P(z_j not in its core) + P(an error beyond its cut)
@@ -262,8 +264,9 @@ Eigen::Matrix2d beside_heading(const models::UnicycleStructure& unicycle,
 
 }  // namespace
 
-std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion, double core) {
-  SurrogateRecursion recursion(motion, core);
+std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion, double core,
+                                              const PathTilt& tilt) {
+  SurrogateRecursion recursion(motion, core, tilt);
   std::vector<SurrogateStage> stages = {recursion.stage()};
   bool known = true;
   for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
@@ -280,7 +283,7 @@ std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion, dou
 }
 
 Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index stage,
-                                     const std::vector<Eigen::Index>& axes) {
+                                     const std::vector<Eigen::Index>& axes, const PathTilt& tilt) {
   // What a model error does of the past is not known.
   if (motion.model_error != nullptr || motion.belief_error != nullptr) {
     return motion.noise_covariance;
@@ -289,20 +292,25 @@ Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion, Eigen::Index
   const bool always_open = open_loop(motion.policy);
   const bool heading =
       unicycle && std::find(axes.begin(), axes.end(), unicycle->heading) != axes.end();
-  // The last noise is independent of all that was before it.
-  if (!unicycle || (heading && !always_open)) return motion.noise_covariance;
+  // The last noise is independent of all that was before it; tilted, a part of it is.
+  Eigen::MatrixXd last = independent_part(motion.noise_covariance, tilt, stage);
+  if (!unicycle || (heading && !always_open)) return last;
   // The position's error is made of the headings before the last step. Open loop nothing but their
   // own noise moves them; with feedback the position of stage k − 2 is the last that can, so that
   // the noise which came into that of k − 1 still is independent. Where the heading itself is
   // restricted, what moves it with the position must not count either.
-  const Eigen::Matrix2d noise = beside_heading(*unicycle, motion.noise_covariance);
-  const Eigen::Matrix2d belief = beside_heading(*unicycle, motion.belief.covariance);
-  Eigen::Matrix2d sum = heading ? noise : of_position(*unicycle, motion.noise_covariance);
-  if (always_open) {
-    sum += static_cast<double>(stage - 1) * noise + belief;
-  } else {
-    sum += stage == 1 ? belief : noise;
+  // A tilt that concerns headings alone leaves what is beside them as it was.
+  Eigen::Matrix2d sum = heading ? beside_heading(*unicycle, last) : of_position(*unicycle, last);
+  double noises = 0.0;
+  for (Eigen::Index block = always_open ? 1 : std::max<Eigen::Index>(1, stage - 1); block < stage;
+       ++block) {
+    if (concerns_only(tilt, block, unicycle->heading)) noises += 1.0;
   }
+  Eigen::Matrix2d before = noises * beside_heading(*unicycle, motion.noise_covariance);
+  if ((always_open || stage == 1) && concerns_only(tilt, 0, unicycle->heading)) {
+    before += beside_heading(*unicycle, motion.belief.covariance);
+  }
+  sum += before;
   Eigen::MatrixXd smoothing =
       Eigen::MatrixXd::Zero(motion.noise_covariance.rows(), motion.noise_covariance.cols());
   smoothing(unicycle->x, unicycle->x) = sum(0, 0);

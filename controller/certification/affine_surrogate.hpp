@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "controller/certification/higher_order_norms.hpp"
+#include "controller/certification/path_tilt.hpp"
 #include "controller/certification/statistical_linearisation.hpp"
 #include "controller/measure/measures.hpp"
 #include "controller/prediction/prediction.hpp"
@@ -32,16 +33,19 @@ struct SurrogateStage {
 /// The surrogates of stages 0 … horizon of `motion`. Norms of higher order are infinite where those
 /// of the model error are unknown. Where nothing finite is known (a pole in
 /// reach, a system without derivative bounds, entries that are not finite) `error` is infinite,
-/// `leaving` is 1 and `region` everything, from there on.
+/// `leaving` is 1 and `region` everything, from there on. tilt: all of this under the tilted law of
+/// the noise; for motions without a model error.
 [[nodiscard]] std::vector<SurrogateStage> affine_surrogates(const PredictedMotion& motion,
-                                                            double core = kWideCore);
+                                                            double core = kWideCore,
+                                                            const PathTilt& tilt = {});
 
 /// Covariance of a part n of z_stage, as wide as is known, that is independent both of z − n and of
 /// (x − z)_axes · 1{inside}: what smooths bounds on the coordinates `axes`. stage ≥ 1;
 /// state_dim x state_dim, zero in coordinates that n leaves alone. With a model error it is that of
-/// the last noise, the only one of which x − z is independent then.
+/// the last noise, the only one of which x − z is independent then. tilt: as above.
 [[nodiscard]] Eigen::MatrixXd smoothing_covariance(const PredictedMotion& motion,
                                                    Eigen::Index stage,
-                                                   const std::vector<Eigen::Index>& axes);
+                                                   const std::vector<Eigen::Index>& axes,
+                                                   const PathTilt& tilt = {});
 
 }  // namespace qsmpc::controller

@@ -27,6 +27,11 @@ const std::vector<CertificateEntry>& certificate_entries() {
        .dataset = "smoothed",
        .meaning = "c4: the surrogate smoothed by the noise, 1 where it does not apply; sound",
        .prepare = smoothed_surrogate_bound},
+      {.key = "c5",
+       .dataset = "conditioned",
+       .meaning = "c5: the same given what bends the motion most, summed; 1 where no need; sound",
+       .in_control = false,
+       .prepare = conditioned_bound},
       {.key = "thesis",
        .dataset = "thesis",
        .meaning = "the reference algorithm as printed; not sound",
@@ -72,13 +77,16 @@ std::vector<StageCertificate> certify(const PredictedMotion& motion, const Unsaf
   const std::vector<CertificateEntry>& table = certificate_entries();
   std::vector<StageFigure> prepared;
   prepared.reserve(table.size());
-  for (const CertificateEntry& entry : table) prepared.push_back(entry.prepare(problem));
+  for (const CertificateEntry& entry : table) {
+    const bool asked = entry.in_control || effort == CertificateEffort::kEvery;
+    prepared.push_back(asked ? entry.prepare(problem) : StageFigure());
+  }
   std::vector<StageCertificate> certificates(motion.policy.horizon(), blank_certificate());
   const auto stage = [&](int k) {
     StageCertificate& certificate = certificates[k];
     for (const bool last : {false, true}) {
       for (std::size_t i = 0; i < table.size(); ++i) {
-        if (table[i].is_last != last) continue;
+        if (table[i].is_last != last || !prepared[i]) continue;
         const double figure = prepared[i](static_cast<std::size_t>(k), certificate.value);
         certificate.figures[i] = figure;
         if (table[i].is_bound) certificate.value = std::min(certificate.value, figure);

@@ -22,8 +22,8 @@ namespace qsmpc::controller {
 
 /// How far each bound is worked out.
 enum class CertificateEffort {
-  kLeast,  ///< for control: C2 only where it can be the least (else it is 1), C3 and C4 without the
-           ///< searches that could save no more than 1e-4 for a part of the unsafe set
+  kLeast,  ///< for control: no C5, C2 only where it can be the least (else it is 1), C3 and C4
+           ///< without the searches that could save no more than 1e-4 for a part of the unsafe set
   kEvery,  ///< each as good as it gets, for comparisons
 };
 
@@ -39,9 +39,10 @@ struct CertificateEntry {
   std::string key;      ///< "c1"; what StageCertificate::kind and JSON call it
   std::string dataset;  ///< "particles"; in a trace's group /certificate
   std::string meaning;
-  bool is_bound = true;  ///< whether it counts: NOT an upper bound otherwise
-  bool is_last = false;  ///< whether it comes after all others, as it is told the least
-  double without = 1.0;  ///< where it is not known, as in traces from before it was there
+  bool is_bound = true;    ///< whether it counts: NOT an upper bound otherwise
+  bool is_last = false;    ///< whether it comes after all others, as it is told the least
+  bool in_control = true;  ///< whether it is worked out with the effort for control, too
+  double without = 1.0;    ///< where it is not known, as in traces from before it was there
   StageFigure (*prepare)(const CertificateProblem& problem) = nullptr;
 };
 

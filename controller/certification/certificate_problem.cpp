@@ -1,7 +1,5 @@
 #include "controller/certification/certificate_problem.hpp"
 
-#include "controller/certification/surrogate_bounds.hpp"
-
 namespace qsmpc::controller {
 CertificateProblem::CertificateProblem(const PredictedMotion& motion, const UnsafeSet& unsafe,
                                        const std::vector<StageBudget>& budgets,
@@ -18,9 +16,9 @@ CertificateProblem::CertificateProblem(const PredictedMotion& motion, const Unsa
   run(static_cast<int>(clearances_.size()), stage);
 }
 
-const std::vector<RegionProbability>& CertificateProblem::surrogate_bounds() const {
+const SurrogateBounds& CertificateProblem::surrogate_bounds() const {
   if (!surrogate_bounds_) {
-    surrogate_bounds_ = controller::surrogate_bounds(motion_, unsafe_, effort_, run_).bounds;
+    surrogate_bounds_ = controller::surrogate_bounds(motion_, unsafe_, effort_, run_);
   }
   return *surrogate_bounds_;
 }

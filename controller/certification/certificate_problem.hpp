@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "controller/certification/certificate.hpp"
+#include "controller/certification/surrogate_bounds.hpp"
 
 namespace qsmpc::controller {
 
@@ -28,7 +29,7 @@ class CertificateProblem {
   [[nodiscard]] const Eigen::VectorXd& clearance(std::size_t k) const { return clearances_[k]; }
   /// C3 and C4 of stages 1 … horizon, which come from one search. Worked out by the first who asks;
   /// not to be asked side by side.
-  [[nodiscard]] const std::vector<RegionProbability>& surrogate_bounds() const;
+  [[nodiscard]] const SurrogateBounds& surrogate_bounds() const;
 
  private:
   const PredictedMotion& motion_;
@@ -37,7 +38,7 @@ class CertificateProblem {
   CertificateEffort effort_;
   const Executor& run_;
   std::vector<Eigen::VectorXd> clearances_;
-  mutable std::optional<std::vector<RegionProbability>> surrogate_bounds_;
+  mutable std::optional<SurrogateBounds> surrogate_bounds_;
 };
 
 }  // namespace qsmpc::controller

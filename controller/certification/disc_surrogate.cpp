@@ -67,12 +67,12 @@ Eigen::MatrixXd given_heading(Eigen::MatrixXd covariance, Eigen::Index heading) 
 
 Eigen::MatrixXd disc_smoothing(const PredictedMotion& motion, Eigen::Index stage,
                                const std::vector<Eigen::Index>& axes,
-                               const DiscPlacement& placement) {
-  if (placement.at_position()) return smoothing_covariance(motion, stage, axes);
+                               const DiscPlacement& placement, const PathTilt& tilt) {
+  if (placement.at_position()) return smoothing_covariance(motion, stage, axes, tilt);
   const Eigen::Index heading = placement.heading();
   std::vector<Eigen::Index> with_heading = axes;
   if (std::find(axes.begin(), axes.end(), heading) == axes.end()) with_heading.push_back(heading);
-  Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, with_heading);
+  Eigen::MatrixXd smoothing = smoothing_covariance(motion, stage, with_heading, tilt);
   // The turn's residual depends on the surrogate's heading, of which the part must be independent:
   // what of it is not explained by its own heading is.
   return given_heading(std::move(smoothing), heading);

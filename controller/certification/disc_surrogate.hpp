@@ -32,6 +32,7 @@ struct DiscSurrogate {
 /// As `smoothing_covariance`, for the Gaussian and the difference above. stage ≥ 1.
 [[nodiscard]] Eigen::MatrixXd disc_smoothing(const PredictedMotion& motion, Eigen::Index stage,
                                              const std::vector<Eigen::Index>& axes,
-                                             const DiscPlacement& placement);
+                                             const DiscPlacement& placement,
+                                             const PathTilt& tilt = {});
 
 }  // namespace qsmpc::controller

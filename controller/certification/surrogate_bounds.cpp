@@ -19,14 +19,14 @@ constexpr double kTryNarrow = 0.03;
 /// C3 and C4 of one stage. C4 takes the better of the two for every part of the unsafe set.
 RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const UnsafeSet& unsafe,
                                       CertificateEffort effort, Eigen::Index stage,
-                                      const SurrogateStage& surrogate) {
+                                      const SurrogateStage& surrogate, const PathTilt& tilt) {
   if (surrogate.leaving >= 1.0) return {.markov = 1.0, .smooth = 1.0};
   const bool every = effort == CertificateEffort::kEvery;
   RegionProbability sum{.markov = surrogate.leaving, .smooth = surrogate.leaving};
   for (const DiscView& disc : unsafe.discs()) {
     const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
         [&](const std::vector<Eigen::Index>& axes) {
-          return disc_smoothing(motion, stage, axes, disc.placement);
+          return disc_smoothing(motion, stage, axes, disc.placement, tilt);
         };
     const DiscSurrogate centre = disc_surrogate(surrogate, disc.placement);
     const SurrogateLaw state{.law = centre.law,
@@ -43,18 +43,42 @@ RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const Unsaf
 
 }  // namespace
 
+double surrogate_law_bound(const UnsafeSet& unsafe, Eigen::Index stage,
+                           const SurrogateStage& surrogate) {
+  const Eigen::Index dim = surrogate.law.mean.size();
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(dim);
+  HigherNorms higher;
+  for (Eigen::VectorXd& norms : higher) norms = none;
+  const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
+      [dim](const std::vector<Eigen::Index>&) -> Eigen::MatrixXd {
+    return Eigen::MatrixXd::Zero(dim, dim);
+  };
+  RegionProbability sum;
+  for (const DiscView& disc : unsafe.discs()) {
+    const DiscSurrogate centre = disc_surrogate(surrogate, disc.placement);
+    const SurrogateLaw state{.law = centre.law,
+                             .error = none,
+                             .higher = higher,
+                             .smoothing = smoothing,
+                             .worthwhile = kNegligible};
+    for (const RegionPointer& region : disc.regions) region->add_probability(stage, state, sum);
+  }
+  return std::min(1.0, sum.smooth);
+}
+
 SurrogateBounds surrogate_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
-                                 CertificateEffort effort, const Executor& run) {
-  SurrogateBounds result;
+                                 CertificateEffort effort, const Executor& run,
+                                 const PathTilt& tilt, std::vector<RegionProbability> known) {
+  SurrogateBounds result{.surrogates = {}, .bounds = std::move(known)};
   std::vector<RegionProbability>& least = result.bounds;
-  least.assign(motion.policy.horizon(), {.markov = 1.0, .smooth = 1.0});
+  if (least.empty()) least.assign(motion.policy.horizon(), {.markov = 1.0, .smooth = 1.0});
   for (const double core : {kWideCore, kNarrowCore}) {
-    std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core);
+    std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core, tilt);
     const auto stage = [&](int k) {
       // Neither bound can be less than the probability of leaving, nor C3 less than C4.
       if (least[k].markov <= surrogates[k + 1].leaving) return;
       const RegionProbability bounds = bounds_of_surrogate(
-          motion, unsafe, effort, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1]);
+          motion, unsafe, effort, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1], tilt);
       least[k] = {.markov = std::min(least[k].markov, bounds.markov),
                   .smooth = std::min(least[k].smooth, bounds.smooth)};
     };

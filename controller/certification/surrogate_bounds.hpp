@@ -18,9 +18,17 @@ struct SurrogateBounds {
 
 /// Needs neither particles nor their distances: of the motion its prediction may be empty. Where
 /// the bounds are large, the surrogate with the narrow core is tried, too: it is left more often,
-/// and its residuals are smaller.
+/// and its residuals are smaller. tilt: all of this under the tilted law of the noise; for motions
+/// without a model error. known: bounds that there are already (else 1 each); of a stage nothing is
+/// worked out that can't be less than these.
 [[nodiscard]] SurrogateBounds surrogate_bounds(const PredictedMotion& motion,
                                                const UnsafeSet& unsafe, CertificateEffort effort,
-                                               const Executor& run);
+                                               const Executor& run, const PathTilt& tilt = {},
+                                               std::vector<RegionProbability> known = {});
+
+/// A bound of P(z ∈ U), z the surrogate itself, at `stage`: what the bounds above come to where
+/// nothing separates it from the state, and so no bound of the state.
+[[nodiscard]] double surrogate_law_bound(const UnsafeSet& unsafe, Eigen::Index stage,
+                                         const SurrogateStage& surrogate);
 
 }  // namespace qsmpc::controller

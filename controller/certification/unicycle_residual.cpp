@@ -63,16 +63,20 @@ UnicycleResidual::UnicycleResidual(const models::UnicycleStructure& unicycle, Ei
       shifted_(dim, 3 * stages),
       second_moment_(Eigen::MatrixXd::Zero(dim, dim)) {}
 
-void UnicycleResidual::add_stage(const Gaussian& law, const Eigen::MatrixXd& transition) {
+void UnicycleResidual::add_stage(const Gaussian& law, const Eigen::MatrixXd& transition,
+                                 const TiltedCovariance* tilted) {
   const int heading = unicycle_.heading;
   const double mean = law.mean[heading];
   const double variance = law.covariance(heading, heading);
   const auto before = static_cast<Eigen::Index>(means_.size());
   Eigen::Matrix<double, Eigen::Dynamic, 2> cross =
       Eigen::MatrixXd::Zero(transition.rows(), 2);  // E[A κ ρ_kᵀ]
+  const bool is_tilted = tilted != nullptr && tilted->is_tilted();
+  const Eigen::VectorXd tilt = is_tilted ? tilted->with_functionals(heading) : Eigen::VectorXd();
   shifted_.leftCols(3 * before) = transition.lazyProduct(past_.leftCols(3 * before));
   for (Eigen::Index j = 0; j < before; ++j) {
-    const double covariance = past_(heading, 3 * j);
+    double covariance = past_(heading, 3 * j);
+    if (is_tilted) covariance -= tilt.dot(tilts_[static_cast<std::size_t>(j)]);
     cross += shifted_.middleCols<2>(3 * j + 1).lazyProduct(
         residual_moments(means_[j], variances_[j], mean, variance, covariance));
   }
@@ -87,7 +91,9 @@ void UnicycleResidual::add_stage(const Gaussian& law, const Eigen::MatrixXd& tra
                    mixed.transpose() + entry * own * entry.transpose();
   means_.push_back(mean);
   variances_.push_back(variance);
-  past_.col(3 * before) = transition * law.covariance.col(heading);
+  tilts_.push_back(tilt);
+  past_.col(3 * before) =
+      transition * (is_tilted ? tilted->covariance() : law.covariance).col(heading);
   past_.middleCols<2>(3 * before + 1) = entry;
 }
 

@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "controller/certification/tilted_covariance.hpp"
 #include "controller/measure/measures.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -39,16 +40,20 @@ class UnicycleResidual {
 
   /// Adds the residual of a stage with the surrogate's law `law` and its affine map's `transition`.
   /// Takes O(stages) time.
-  void add_stage(const Gaussian& law, const Eigen::MatrixXd& transition);
+  /// tilted: where given, the covariance of which `law` has what a tilt of the path leaves.
+  void add_stage(const Gaussian& law, const Eigen::MatrixXd& transition,
+                 const TiltedCovariance* tilted = nullptr);
 
   /// √E κ_i² of the last stage added, coordinate by coordinate.
   [[nodiscard]] Eigen::VectorXd root_mean_squares() const;
 
  private:
   models::UnicycleStructure unicycle_;
-  std::vector<double> means_;      ///< of the heading at every stage
-  std::vector<double> variances_;  ///< of the same
-  /// Three columns a stage: Cov(state now, heading then) and the residual of then, as it is now.
+  std::vector<double> means_;           ///< of the heading at every stage
+  std::vector<double> variances_;       ///< of the same
+  std::vector<Eigen::VectorXd> tilts_;  ///< Cov(heading, functionals of the tilt) at every stage
+  /// Three columns a stage: Cov(state now, heading then) without the tilt, and the residual of
+  /// then, as it is now.
   Eigen::MatrixXd past_;
   Eigen::MatrixXd shifted_;        ///< of the same size, for the step from stage to stage
   Eigen::MatrixXd second_moment_;  ///< E[κ κᵀ]

@@ -9,6 +9,7 @@
 
 #include "controller/chance/scenario.hpp"
 #include "controller/planning/cost/angular_target.hpp"
+#include "controller/planning/cost/placed_target.hpp"
 #include "controller/planning/plan_in_progress.hpp"
 #include "controller/planning/start/first_guess.hpp"
 #include "models/constants.hpp"
@@ -182,15 +183,20 @@ void ChancePlanner::draw(const Gaussian& belief, Eigen::Index period) {
 }
 
 void ChancePlanner::place_target(const Gaussian& belief) {
-  const QuadraticCost& cost = settings_.problem.cost;
-  const Eigen::VectorXd& target = guide_ ? guide_->aim(belief.mean).state : cost.target;
-  nearest_target(target, cost.angles, belief.mean, weights_.target);
+  const PlannerSettings& problem = settings_.problem;
+  if (guide_) {
+    const Eigen::VectorXd& aim = guide_->aim(belief.mean).state;
+    nearest_target(aim, problem.cost.angles, belief.mean, weights_.target);
+    return;
+  }
+  qsmpc::controller::place_target(problem, dynamics_.description(), belief.mean, progress_,
+                                  weights_);
 }
 
 /// The inputs of a plan for the mean alone, with penalties, which finds the way round obstacles.
 bool ChancePlanner::first_guess(const Gaussian& belief, Clock::time_point deadline) {
   nominal_->reset();
-  const Plan& plan = nominal_->plan(belief, {.deadline = deadline});
+  const Plan& plan = nominal_->plan(belief, {.deadline = deadline, .progress = progress_});
   if (!std::isfinite(plan.cost.total())) return false;
   z_.setZero();
   z_.head(sampled_.inputs_in_decision()) = plan.policy.inputs.reshaped();
@@ -286,7 +292,8 @@ void ChancePlanner::search(const Gaussian& belief, bool warm, Clock::time_point 
 }
 
 const ChancePlan& ChancePlanner::plan(const Gaussian& belief, Eigen::Index period,
-                                      Clock::time_point deadline) {
+                                      Clock::time_point deadline, std::optional<double> progress) {
+  progress_ = progress;
   draw(belief, period);
   return make(belief, deadline);
 }
@@ -301,6 +308,7 @@ const ChancePlan& ChancePlanner::plan(const Gaussian& belief, PathDraw draw,
     throw std::invalid_argument("chance constraint: the paths are not those that were asked for");
   }
   draw_ = std::move(draw);
+  progress_.reset();
   return make(belief, deadline);
 }
 

@@ -64,10 +64,11 @@ class ChancePlanner {
   ChancePlanner& operator=(ChancePlanner&&) = delete;
 
   /// A plan from `belief` in period `period` of a drive, going on from the last one. Time that is
-  /// up is a status: the best so far then.
-  const ChancePlan& plan(const Gaussian& belief, Eigen::Index period,
-                         std::chrono::steady_clock::time_point deadline =
-                             std::chrono::steady_clock::time_point::max());
+  /// up is a status: the best so far then. progress: as in PlanRequest.
+  const ChancePlan& plan(
+      const Gaussian& belief, Eigen::Index period,
+      std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max(),
+      std::optional<double> progress = {});
   /// The same for these paths instead of such as are drawn. Throws std::invalid_argument unless
   /// there are paths() of them, over the horizon.
   const ChancePlan& plan(const Gaussian& belief, PathDraw draw,
@@ -125,6 +126,7 @@ class ChancePlanner {
   Policy held_;  // whose gains are held
   std::uint64_t seed_ = 0;
   bool under_way_ = false;
+  std::optional<double> progress_;  // of the plan at hand
   ChancePlan plan_;
 };
 

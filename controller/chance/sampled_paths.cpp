@@ -113,7 +113,7 @@ CostParts SampledPaths::add_cost(const QuadraticCost& cost) {
     Stage& stage = stages_[k];
     auto away = away_.leftCols(n);
     auto weighted = weighted_.leftCols(n);
-    away = stage.states.leftCols(n).colwise() - cost.target;
+    away = stage.states.leftCols(n).colwise() - cost.target_at(k);
     const bool last = k == horizon_;
     weighted.noalias() = (last ? cost.terminal : cost.state) * away;
     const double value = away.cwiseProduct(weighted).sum();

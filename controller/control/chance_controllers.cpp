@@ -7,6 +7,7 @@
 
 #include "controller/chance/chance_planner.hpp"
 #include "controller/control/controller.hpp"
+#include "controller/control/controller_entries.hpp"
 
 namespace qsmpc::controller {
 namespace {
@@ -38,7 +39,8 @@ class ChanceController final : public Controller {
 
   const Decision& decide(const Situation& situation) override {
     check_situation(situation, dynamics_.state_dim());
-    const ChancePlan& plan = planner_.plan(situation.belief, situation.period, situation.deadline);
+    const ChancePlan& plan =
+        planner_.plan(situation.belief, situation.period, situation.deadline, situation.progress);
     policy_.bounds = plan.policy.bounds;
     policy_.inputs = plan.policy.inputs.leftCols(stages_);
     policy_.states = plan.policy.states.leftCols(stages_ + 1);

@@ -27,6 +27,7 @@
 #include "controller/planning/planner_settings.hpp"
 #include "controller/prediction/policy.hpp"
 #include "controller/prediction/prediction.hpp"
+#include "controller/surroundings/obstacle_forecast.hpp"
 #include "models/dynamics/dynamics.hpp"
 
 #pragma GCC visibility push(default)
@@ -43,6 +44,13 @@ struct Situation {
   Eigen::Index periods_left = 1'000'000;
   /// When the input should be there; the best so far is wanted then.
   std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
+  /// What is known of where obstacles that move will be; null where none does. It is also what the
+  /// regions of the drive's safe set move by.
+  const ObstacleForecast* obstacles = nullptr;
+  /// Arc length of the path that is followed, m, that the belief's mean is at; without it
+  /// controllers take the place of the path that is nearest. Of waypoints, how many the mean has
+  /// passed; without it none.
+  std::optional<double> progress{};
 };
 
 /// Throws std::invalid_argument unless belief and observation are of `state_dim` and finite.

@@ -1,24 +1,10 @@
 #include <stdexcept>
 
 #include "controller/control/controller.hpp"
+#include "controller/control/controller_entries.hpp"
 #include "controller/named_entry.hpp"
 
 namespace qsmpc::controller {
-
-// Each is defined in the file of its name.
-ControllerEntry quantised_controller();
-ControllerEntry nominal_controller();
-ControllerEntry lqr_controller();
-// Those of one engine are in chance_controllers.cpp.
-ControllerEntry tube_controller();
-ControllerEntry cone_controller();
-ControllerEntry cantelli_controller();
-ControllerEntry scenario_controller();
-ControllerEntry cvar_controller();
-ControllerEntry drcc_controller();
-ControllerEntry shield_controller();
-ControllerEntry mppi_controller();
-ControllerEntry risk_mppi_controller();
 
 void check_situation(const Situation& situation, Eigen::Index state_dim) {
   const auto require = [](bool holds, const char* message) {

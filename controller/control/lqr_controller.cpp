@@ -10,8 +10,10 @@
 #include <stdexcept>
 
 #include "controller/control/controller.hpp"
+#include "controller/control/controller_entries.hpp"
 #include "controller/control/path_cost.hpp"
 #include "controller/planning/cost/angular_target.hpp"
+#include "controller/planning/cost/placed_target.hpp"
 #include "controller/planning/start/first_guess.hpp"
 #include "models/constants.hpp"
 
@@ -37,6 +39,7 @@ class TargetRegulator final : public Controller {
  public:
   TargetRegulator(const models::Dynamics& dynamics, const PlannerSettings& problem)
       : problem_(problem), rest_(resting_input(problem.bounds)), gain_(settled_gain(dynamics)) {
+    if (problem.path) throw std::invalid_argument("lqr: about the target it follows no path");
     if (!gain_.allFinite()) {
       throw std::invalid_argument("lqr: the model has no finite linearisation at the target");
     }
@@ -84,7 +87,7 @@ class PathRegulator final : public Controller {
       : dynamics_(dynamics),
         problem_(problem),
         weights_(curvature_of(problem.cost)),
-        target_(problem.cost.target) {
+        cost_about_(problem.cost) {
     policy_.bounds = problem.bounds;
     trial_.bounds = problem.bounds;
     reset(0);
@@ -100,7 +103,7 @@ class PathRegulator final : public Controller {
 
  private:
   [[nodiscard]] CostParts cost_of(const Policy& path) {
-    return path_cost(path, problem_.cost, target_, cost_scratch_);
+    return path_cost(path, cost_about_, cost_scratch_);
   }
   /// Scratch of the sweeps, so that no period but the first allocates.
   struct Sweep {
@@ -127,8 +130,8 @@ class PathRegulator final : public Controller {
   const models::Dynamics& dynamics_;
   PlannerSettings problem_;
   LqrWeights weights_;
-  Eigen::VectorXd target_;  // what means the target, nearest to the belief
-  bool under_way_ = false;  // whether the inputs are those of the period before
+  QuadraticCost cost_about_;  // about the target that is nearest to the belief
+  bool under_way_ = false;    // whether the inputs are those of the period before
   Policy policy_;
   CostParts cost_;
   Policy trial_;
@@ -147,7 +150,7 @@ void PathRegulator::linearise() {
   s.a.resize(dim, dim);
   s.b.resize(dim, inputs);
   s.value = weights_.terminal;
-  s.away = policy_.states.rightCols<1>() - target_;
+  s.away = policy_.states.rightCols<1>() - cost_about_.target_at(policy_.horizon());
   s.slope.noalias() = weights_.terminal * s.away;
   policy_.gains.resize(static_cast<std::size_t>(policy_.horizon()));
   steps_.resize(inputs, policy_.horizon());
@@ -166,7 +169,7 @@ void PathRegulator::linearise() {
     s.step = s.by_input;
     s.ldlt.solveInPlace(s.step);
     steps_.col(k) = -s.step;
-    s.away = policy_.states.col(k) - target_;
+    s.away = policy_.states.col(k) - cost_about_.target_at(k);
     s.next_slope.noalias() = weights_.state * s.away;
     s.next_slope.noalias() += s.a.transpose() * s.slope;
     s.next_slope.noalias() += gain.transpose() * s.by_input;
@@ -216,8 +219,9 @@ bool PathRegulator::improve(int& evaluations) {
 const Decision& PathRegulator::decide(const Situation& situation) {
   using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
-  check_situation(situation, target_.size());
-  nearest_target(problem_.cost.target, problem_.cost.angles, situation.belief.mean, target_);
+  check_situation(situation, dynamics_.state_dim());
+  place_target(problem_, dynamics_.description(), situation.belief.mean, situation.progress,
+               cost_about_);
   if (under_way_) {
     shift_inputs(policy_.inputs, trial_.inputs);
     std::swap(policy_.inputs, trial_.inputs);

@@ -2,6 +2,7 @@
 // the same policy about what comes out. Certainty equivalence, the rival that knows no risk.
 #include <limits>
 
+#include "controller/control/controller_entries.hpp"
 #include "controller/control/planning_controller.hpp"
 
 namespace qsmpc::controller {

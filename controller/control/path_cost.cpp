@@ -2,13 +2,12 @@
 
 namespace qsmpc::controller {
 
-CostParts path_cost(const Policy& path, const QuadraticCost& cost, const Eigen::VectorXd& target,
-                    PathCostScratch& scratch) {
+CostParts path_cost(const Policy& path, const QuadraticCost& cost, PathCostScratch& scratch) {
   double state = 0.0;
   double input = 0.0;
   double terminal = 0.0;
   for (Eigen::Index k = 0; k <= path.horizon(); ++k) {
-    scratch.away = path.states.col(k) - target;
+    scratch.away = path.states.col(k) - cost.target_at(k);
     if (k == path.horizon()) {
       scratch.weighted_state.noalias() = cost.terminal * scratch.away;
       terminal = scratch.away.dot(scratch.weighted_state);

@@ -16,9 +16,8 @@ struct PathCostScratch {
   Eigen::VectorXd weighted_input;
 };
 
-/// The parts "state", "input" and "terminal" of the cost of a policy's nominal states and inputs,
-/// about `target` (state_dim).
+/// The parts "state", "input" and "terminal" of the cost of a policy's nominal states and inputs.
 [[nodiscard]] CostParts path_cost(const Policy& path, const QuadraticCost& cost,
-                                  const Eigen::VectorXd& target, PathCostScratch& scratch);
+                                  PathCostScratch& scratch);
 
 }  // namespace qsmpc::controller

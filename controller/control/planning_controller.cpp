@@ -6,10 +6,11 @@ const Decision& PlanningController::decide(const Situation& situation) {
   check_situation(situation, planner_.dynamics().state_dim());
   const RiskLimits limits =
       mission_.limits(situation.belief.mean, planner_.settings().horizon, situation.periods_left,
-                      planner_.way_to_target(situation.belief.mean));
-  const Plan& plan =
-      planner_.plan(situation.belief,
-                    {.deadline = situation.deadline, .period = situation.period, .limits = limits});
+                      planner_.way_to_target(situation.belief.mean, situation.progress));
+  const Plan& plan = planner_.plan(situation.belief, {.deadline = situation.deadline,
+                                                      .period = situation.period,
+                                                      .limits = limits,
+                                                      .progress = situation.progress});
   mission_.spend(plan);
   policy_input(plan.policy, 0, situation.observation, offset_, decision_.input);
   decision_.policy = &plan.policy;

@@ -1,4 +1,5 @@
 // The receding-horizon planner on the quantised belief (Algorithm 5).
+#include "controller/control/controller_entries.hpp"
 #include "controller/control/planning_controller.hpp"
 
 namespace qsmpc::controller {

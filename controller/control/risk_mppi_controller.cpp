@@ -2,6 +2,7 @@
 // same M realisations of the noise, and costs the mean of its quadratic cost and the conditional
 // value at risk of what being unsafe costs it. After Yin, Zhang, Tsiotras: "Risk-aware model
 // predictive path integral control using conditional value-at-risk", ICRA 2023.
+#include "controller/control/controller_entries.hpp"
 #include "controller/control/mppi/sampling_controller.hpp"
 
 namespace qsmpc::controller {

@@ -9,8 +9,9 @@
 #include <stdexcept>
 
 #include "controller/control/controller.hpp"
+#include "controller/control/controller_entries.hpp"
 #include "controller/control/path_cost.hpp"
-#include "controller/planning/cost/angular_target.hpp"
+#include "controller/planning/cost/placed_target.hpp"
 #include "controller/planning/planner.hpp"
 #include "controller/planning/risk/risk_constraint.hpp"
 
@@ -50,8 +51,9 @@ class Shield final : public Controller {
     decision_.risk_exceeded = false;
     take_policy(inner, situation);
     if (certified_risk(situation) > limit_) overrule(situation);
-    nearest_target(cost_.target, cost_.angles, situation.belief.mean, about_);
-    decision_.cost = path_cost(policy_, cost_, about_, cost_scratch_);
+    place_target(evasion_, dynamics_.description(), situation.belief.mean, situation.progress,
+                 cost_);
+    decision_.cost = path_cost(policy_, cost_, cost_scratch_);
     decision_.policy = &policy_;
     return decision_;
   }
@@ -92,8 +94,9 @@ class Shield final : public Controller {
 
   /// The plan that is certified to less takes the other's place, unless there is none.
   void overrule(const Situation& situation) {
-    const Plan& plan = evader_.plan(situation.belief,
-                                    {.deadline = situation.deadline, .period = situation.period});
+    const Plan& plan = evader_.plan(situation.belief, {.deadline = situation.deadline,
+                                                       .period = situation.period,
+                                                       .progress = situation.progress});
     decision_.evaluations += plan.evaluations;
     decision_.timing.optimise += plan.timing.optimise;
     decision_.timing.propagate += plan.timing.propagate;
@@ -111,7 +114,7 @@ class Shield final : public Controller {
 
   const models::Dynamics& dynamics_;
   double limit_;
-  QuadraticCost cost_;
+  QuadraticCost cost_;  // about what the inner controller's plan is to
   InputBounds bounds_;
   PlannerSettings evasion_;
   std::unique_ptr<Controller> inner_;
@@ -121,7 +124,6 @@ class Shield final : public Controller {
   Policy ahead_;
   PlanRisk certified_;
   PathCostScratch cost_scratch_;
-  Eigen::VectorXd about_;
   Eigen::VectorXd offset_;
   Decision decision_;
 };

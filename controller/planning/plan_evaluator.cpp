@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "controller/planning/cost/angular_target.hpp"
+#include "controller/planning/cost/placed_target.hpp"
 #include "controller/planning/planner_propagator.hpp"
 
 namespace qsmpc::controller {
@@ -79,6 +80,7 @@ void PlanEvaluator::set_braking(bool braking) {
   }
   weights_.state.setZero();
   weights_.target.setZero();
+  weights_.stage_targets.resize(weights_.target.size(), 0);
   weights_.angles.clear();
   for (const int speed : speeds_of(dynamics_)) weights_.state(speed, speed) = 1.0;
   weights_.terminal = weights_.state;
@@ -94,17 +96,22 @@ double PlanEvaluator::excess_of(const Plan& plan, Policy& policy) {
   return risk_->excess(gaussian_, policy);
 }
 
-void PlanEvaluator::take_belief(const Gaussian& belief) {
+void PlanEvaluator::take_belief(const Gaussian& belief, std::optional<double> progress) {
   quantiser_.quantise(belief, belief_);
   gaussian_ = belief;
+  progress_ = progress;
   within_ = belief_.within_covariance;
   place_target();
 }
 
 void PlanEvaluator::place_target() {
-  const Eigen::VectorXd& target =
-      guide_ ? guide_->aim(gaussian_.mean).state : settings_.cost.target;
-  nearest_target(target, settings_.cost.angles, gaussian_.mean, weights_.target);
+  if (guide_) {
+    const Eigen::VectorXd& aim = guide_->aim(gaussian_.mean).state;
+    nearest_target(aim, settings_.cost.angles, gaussian_.mean, weights_.target);
+    return;
+  }
+  qsmpc::controller::place_target(settings_, dynamics_.description(), gaussian_.mean, progress_,
+                                  weights_);
 }
 
 void PlanEvaluator::set_policy(const Eigen::Ref<const Eigen::MatrixXd>& inputs,

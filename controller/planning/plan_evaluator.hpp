@@ -33,10 +33,11 @@ class PlanEvaluator {
   PlanEvaluator& operator=(PlanEvaluator&&) = delete;
   ~PlanEvaluator() = default;
 
-  /// Everything that follows is for this belief. Places the target that the cost is about: the same
-  /// one for the whole plan, so that there is no kink between particles. Throws
+  /// Everything that follows is for this belief, at arc length `progress` of the settings' path
+  /// where there is one (without it, where the mean is nearest). Places the targets that the cost
+  /// is about: the same ones for all particles, so that there is no kink between them. Throws
   /// std::invalid_argument as BeliefQuantiser.
-  void take_belief(const Gaussian& belief);
+  void take_belief(const Gaussian& belief, std::optional<double> progress = {});
 
   /// Makes the plan's policy the one about `inputs` (input_dim x horizon), with the gains that
   /// belong to them, changed by `gain_change` (input_dim x state_dim).
@@ -110,6 +111,7 @@ class PlanEvaluator {
   Eigen::VectorXd constraint_values_;
   Eigen::VectorXd z_;  // input_dim * horizon
   Gaussian gaussian_;  // the belief at hand
+  std::optional<double> progress_;
   GaussianQuantisation belief_;
   std::optional<RiskConstraint> risk_;
   std::optional<Guide> guide_;

@@ -64,7 +64,7 @@ const Plan& Planner::plan(const Gaussian& belief, const PlanRequest& request) {
   plan.candidate = spare[1];
   PlanStopwatch stopwatch;
   set_limits(request);
-  evaluator_.take_belief(belief);
+  evaluator_.take_belief(belief, request.progress);
   stopwatch.add_to(plan.timing.quantise);
   start_.choose(belief, failed_ ? nullptr : last_, plan);
   if (!plan.warm && !plan.late() && begin_effort(*plan.current)) {
@@ -205,7 +205,12 @@ void Planner::prepare(const Eigen::MatrixXd& covariance) {
       {.mean = Eigen::VectorXd::Zero(dynamics_.state_dim()), .covariance = covariance}, unused);
 }
 
-std::optional<double> Planner::way_to_target(const Eigen::VectorXd& state) {
+std::optional<double> Planner::way_to_target(const Eigen::VectorXd& state,
+                                             std::optional<double> progress) {
+  if (settings_.path && progress) return std::max(0.0, settings_.path->end - *progress);
+  if (settings_.waypoints) {
+    return way_over(*settings_.waypoints, dynamics_.description(), state, progress.value_or(0.0));
+  }
   std::optional<Guide>& guide = evaluator_.guide();
   if (!guide) return std::nullopt;
   return guide->aim(state).way;

@@ -35,6 +35,10 @@ struct PlanRequest {
   Eigen::Index period = 0;  ///< of the drive, which decides what the model error is
   /// Limits of this plan's risk beside those of the settings; the lower one counts.
   RiskLimits limits{};
+  /// Arc length of the settings' path that the belief is at, m; without it, where its mean is
+  /// nearest. Of waypoints how many have been passed; without it, none. Nothing where there are
+  /// neither.
+  std::optional<double> progress{};
 };
 
 class Planner {
@@ -75,8 +79,10 @@ class Planner {
     if (errorless_) errorless_->reset();
   }
 
-  /// How far it is from `state` to the target the way that the guide knows, m; empty without one.
-  [[nodiscard]] std::optional<double> way_to_target(const Eigen::VectorXd& state);
+  /// How far it is from `state` to the target the way that the guide knows, or from
+  /// `progress` on along the path or over the waypoints, m; empty without any of them.
+  [[nodiscard]] std::optional<double> way_to_target(const Eigen::VectorXd& state,
+                                                    std::optional<double> progress = {});
 
   [[nodiscard]] const PlannerSettings& settings() const { return settings_; }
   [[nodiscard]] const Propagator& propagator() const { return evaluator_.propagator(); }

@@ -43,6 +43,14 @@ void check_planner_settings(const PlannerSettings& settings, int state_dim, int 
   require(std::all_of(settings.cost.angles.begin(), settings.cost.angles.end(),
                       [&](int index) { return index >= 0 && index < state_dim; }),
           "the target's angles must be indices of states");
+  require(!settings.path || settings.path->path != nullptr, "there must be a path to follow");
+  require(!settings.path || !settings.guide, "a path and a guide exclude each other");
+  require(!settings.waypoints || (!settings.path && !settings.guide),
+          "waypoints exclude a path and a guide");
+  require(!settings.waypoints ||
+              (settings.waypoints->states.rows() == state_dim && settings.waypoints->count() > 0 &&
+               settings.waypoints->states.allFinite()),
+          "waypoints must be finite states, at least one");
   require(settings.penalty.length > 0.0, "the penalty's length must be positive");
   require(settings.penalty.box >= 0.0 && settings.penalty.obstacle >= 0.0,
           "penalty weights must not be negative");

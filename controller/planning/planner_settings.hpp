@@ -15,6 +15,8 @@
 #include "controller/planning/risk/risk_limits.hpp"
 #include "controller/prediction/model_error.hpp"
 #include "controller/prediction/policy.hpp"
+#include "controller/reference/path_target.hpp"
+#include "controller/reference/waypoints.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "models/dynamics/dynamics.hpp"
 
@@ -46,6 +48,10 @@ struct PlannerSettings {
   double deadline = std::numeric_limits<double>::infinity();
   Eigen::MatrixXd noise_covariance;  ///< state_dim x state_dim
   QuadraticCost cost;
+  /// What the target of the cost moves along, in place of cost.target: then what the drive is to.
+  std::optional<PathTarget> path{};
+  /// Or what is driven to before it, in order; the last is then cost.target.
+  std::optional<Waypoints> waypoints{};
   /// Where the solver takes constraints, it keeps every particle within the bounds, and `box` is
   /// not used.
   Penalty penalty;

@@ -14,6 +14,14 @@ SafeSet unbounded_safe_set(Eigen::Index dim) {
           .obstacles = {}};
 }
 
+std::vector<const Obstacle*> moving_obstacles(const SafeSet& safe_set) {
+  std::vector<const Obstacle*> moving;
+  for (const Obstacle& obstacle : safe_set.obstacles) {
+    if (obstacle.motion) moving.push_back(&obstacle);
+  }
+  return moving;
+}
+
 void check_box(const Box& box, Eigen::Index dim, const std::string& name) {
   if (box.lower.size() != dim || box.upper.size() != dim) {
     throw std::invalid_argument(name + ": lower and upper need " + std::to_string(dim) +
@@ -44,7 +52,9 @@ void check_safe_set(const SafeSet& safe_set) {
   check_box(safe_set.bounds, safe_set.dim(), "safe set bounds");
   const auto is_state = [&](int index) { return index >= 0 && index < safe_set.dim(); };
   for (const Obstacle& obstacle : safe_set.obstacles) {
+    if (obstacle.motion) models::check_obstacle_motion(*obstacle.motion);
     if (const Box* box = obstacle.box()) {
+      if (obstacle.motion) throw std::invalid_argument("obstacle: only shapes of the plane move");
       check_box(*box, safe_set.dim(), "obstacle");
       continue;
     }
@@ -52,6 +62,12 @@ void check_safe_set(const SafeSet& safe_set) {
     if (!is_state(safe_set.body.x) || !is_state(safe_set.body.y)) {
       throw std::invalid_argument("obstacle: a shape needs a position in the plane");
     }
+  }
+  if (safe_set.forecast && safe_set.forecast->size() != moving_obstacles(safe_set).size()) {
+    throw std::invalid_argument("safe set: a forecast of as many obstacles as move");
+  }
+  if (safe_set.road && (!is_state(safe_set.body.x) || !is_state(safe_set.body.y))) {
+    throw std::invalid_argument("safe set: a road needs a position in the plane");
   }
   check_body(safe_set.body, safe_set.dim());
 }

@@ -1,11 +1,13 @@
 // The safe set (Eq. 4-7): a box in state space without a number of obstacles, boxes of any
-// coordinates or shapes of the plane of position.
+// coordinates or shapes of the plane of position, and within a road if there is one.
 //
 // Its complement, the unsafe set (unsafe_set.hpp), is closed: touching a wall or an obstacle counts
 // as unsafe, so that every probability of being unsafe that is computed from it is on the cautious
 // side.
 #pragma once
 
+#include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -15,10 +17,14 @@
 
 #include "controller/regions/body.hpp"
 #include "controller/regions/planar/planar_shape.hpp"
+#include "controller/surroundings/obstacle_forecast.hpp"
+#include "models/motion/obstacle_motion.hpp"
 
 #pragma GCC visibility push(default)
 
 namespace qsmpc::controller {
+
+class RoadWalls;
 
 /// An axis-aligned box; ±infinity where a coordinate is not restricted.
 struct Box {
@@ -34,6 +40,7 @@ struct Obstacle {
   // NOLINTEND(google-explicit-constructor)
 
   std::variant<Box, PlanarShape> form;
+  std::optional<models::ObstacleMotion> motion{};  ///< of a shape; without, it stands
 
   /// null where it is a shape.
   [[nodiscard]] const Box* box() const { return std::get_if<Box>(&form); }
@@ -42,14 +49,22 @@ struct Obstacle {
 };
 
 /// The states x in which every point of the body is within bounds.lower < x < bounds.upper and in
-/// none of the obstacles. Shapes are in the plane of body.x and body.y.
+/// none of the obstacles. Shapes and the road are in the plane of body.x and body.y.
 struct SafeSet {
   Box bounds;
   std::vector<Obstacle> obstacles;
   Body body{};
+  /// Where those that move will be, in the order in which they are above; copies share it. Without
+  /// it they stand where they are written.
+  std::shared_ptr<const ObstacleForecast> forecast{};
+  /// What is behind the edges of the road (planar/road_walls.hpp); without one, nothing.
+  std::shared_ptr<const RoadWalls> road{};
 
   [[nodiscard]] Eigen::Index dim() const { return bounds.lower.size(); }
 };
+
+/// The obstacles that move, in their order.
+[[nodiscard]] std::vector<const Obstacle*> moving_obstacles(const SafeSet& safe_set);
 
 /// The whole space of dimension `dim`, which nothing can leave.
 [[nodiscard]] SafeSet unbounded_safe_set(Eigen::Index dim);
@@ -63,7 +78,8 @@ void check_box(const Box& box, Eigen::Index dim, const std::string& name);
 void check_body(const Body& body, Eigen::Index dim);
 
 /// check_box for the bounds and all boxes, check_planar_shape for all shapes, which need a plane of
-/// position, and check_body for the body.
+/// position, check_obstacle_motion for what moves, which must be shapes and as many as a forecast
+/// has, and check_body for the body.
 void check_safe_set(const SafeSet& safe_set);
 
 /// Euclidean distance from `point` to the box; 0 inside it.

@@ -26,9 +26,10 @@ void TailSum::clear(Eigen::Index dim) {
   by_covariance_.setZero(dim, dim);
 }
 
-void TailSum::add(double z, std::span<const Eigen::Index> axes, std::span<const double> slope) {
-  value_ += extended_tail(z);
-  const double by_z = tail_slope(z);
+void TailSum::add(double z, std::span<const Eigen::Index> axes, std::span<const double> slope,
+                  double weight) {
+  value_ += weight * extended_tail(z);
+  const double by_z = weight * tail_slope(z);
   for (std::size_t i = 0; i < axes.size(); ++i) {
     by_mean_[axes[i]] += by_z * slope[i];
     for (std::size_t j = 0; j < axes.size(); ++j) {

@@ -23,8 +23,9 @@ class TailSum {
   void clear(Eigen::Index dim);
 
   /// Adds a part. slope: ∂z/∂mean in the coordinates `axes`; ∂z/∂covariance follows from it, as
-  /// −½ z · slope slopeᵀ.
-  void add(double z, std::span<const Eigen::Index> axes, std::span<const double> slope);
+  /// −½ z · slope slopeᵀ. weight: the probability that the part is there.
+  void add(double z, std::span<const Eigen::Index> axes, std::span<const double> slope,
+           double weight = 1.0);
 
   [[nodiscard]] double value() const { return value_; }
   [[nodiscard]] const Eigen::VectorXd& by_mean() const { return by_mean_; }

@@ -23,7 +23,7 @@ UnsafePart unsafe_part(const Eigen::Ref<const Eigen::VectorXd>& state, const Uns
     if (in_any(disc, disc.obstacles(), state, stage)) return UnsafePart::kObstacle;
   }
   for (const DiscView& disc : unsafe.discs()) {
-    if (in_any(disc, std::span(disc.regions).first(1), state, stage)) return UnsafePart::kBounds;
+    if (in_any(disc, disc.borders(), state, stage)) return UnsafePart::kBounds;
   }
   return UnsafePart::kNone;
 }

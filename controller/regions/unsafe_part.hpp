@@ -11,7 +11,7 @@ namespace qsmpc::controller {
 
 enum class UnsafePart {
   kNone,      ///< it is safe
-  kBounds,    ///< a disc of the body is outside of the bounds, or touches them
+  kBounds,    ///< a disc of the body is outside of the bounds or the road, or touches their edges
   kObstacle,  ///< one is in an obstacle or touches it, whether within the bounds or not
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "controller/named_entry.hpp"
+#include "controller/regions/planar/moving_shape.hpp"
+#include "controller/regions/planar/road_region.hpp"
 #include "controller/regions/planar/shape_region.hpp"
 #include "controller/regions/shapes.hpp"
 #include "models/constants.hpp"
@@ -38,8 +40,16 @@ DiscView view_of(const SafeSet& safe_set, const Disc& disc, bool first) {
     view.bounds.lower[axis] += disc.radius;
     view.bounds.upper[axis] -= disc.radius;
   }
+  if (safe_set.road) {
+    view.regions.push_back(make_road(safe_set.road, growth));
+    view.limits = view.regions.size();
+  }
+  std::size_t moving = 0;
   for (const Obstacle& obstacle : safe_set.obstacles) {
-    if (const PlanarShape* shape = obstacle.shape()) {
+    const PlanarShape* shape = obstacle.shape();
+    if (obstacle.motion && safe_set.forecast) {
+      view.regions.push_back(make_moving_shape(*shape, growth, safe_set.forecast, moving++));
+    } else if (shape != nullptr) {
       view.regions.push_back(make_shape(*shape, growth));
     } else if (first || restricts_position(*obstacle.box(), body)) {
       view.regions.push_back(make_region("box", *obstacle.box(), growth));
@@ -63,10 +73,12 @@ RegionPointer make_region(std::string_view shape, const Box& intervals, const Gr
   return named_entry(region_shapes(), shape, "shape").make(intervals, growth);
 }
 
-UnsafeSet::UnsafeSet(const SafeSet& safe_set) : bounds_(safe_set.bounds), body_(safe_set.body) {
+UnsafeSet::UnsafeSet(const SafeSet& safe_set)
+    : bounds_(safe_set.bounds), body_(safe_set.body), forecast_(safe_set.forecast) {
   check_safe_set(safe_set);
   const DiscView point = view_of(safe_set, {}, true);
   regions_ = point.regions;
+  limits_ = point.limits;
   if (body_.is_point()) discs_.push_back(point);
   for (const Disc& disc : body_.discs) {
     discs_.push_back(view_of(safe_set, disc, discs_.empty()));

@@ -55,13 +55,22 @@ struct ShapeEntry {
 /// in one of its regions.
 struct DiscView {
   DiscPlacement placement;
-  /// Of the centre; the walls first. What restricts no position belongs to the first disc alone, so
-  /// that nothing is counted twice.
+  /// Of the centre; the walls first, then what is outside of the road if there is one. What
+  /// restricts no position belongs to the first disc alone, so that nothing is counted twice.
   std::vector<RegionPointer> regions;
+  std::size_t limits = 1;  ///< how many of them bound the safe set: the walls, and the road's
   /// The bounds of the centre that the walls are made of; lower > upper where the disc has no room.
   Box bounds;
 
+  /// The walls, and the road's.
+  [[nodiscard]] std::span<const RegionPointer> borders() const {
+    return std::span(regions).first(limits);
+  }
   [[nodiscard]] std::span<const RegionPointer> obstacles() const {
+    return std::span(regions).subspan(limits);
+  }
+  /// All but the walls.
+  [[nodiscard]] std::span<const RegionPointer> within_walls() const {
     return std::span(regions).subspan(1);
   }
 };
@@ -81,24 +90,30 @@ class UnsafeSet {
   [[nodiscard]] const std::vector<DiscView>& discs() const { return discs_; }
   /// |o| of the disc that is farthest from the position, m.
   [[nodiscard]] double reach() const { return reach_; }
+  /// Whether it is known for certain where everything is at a stage.
+  [[nodiscard]] bool is_certain(Eigen::Index stage) const {
+    return !forecast_ || forecast_->is_certain(stage);
+  }
   /// How far a disc's centre moves at most for a unit of the state.
   [[nodiscard]] double lipschitz() const { return lipschitz_; }
 
   // What stands in the way, whatever the body is: for drawing.
   /// The region outside of the bounds.
   [[nodiscard]] const UnsafeRegion& walls() const { return *regions_.front(); }
-  /// All but the walls.
+  /// All but the walls and the road's.
   [[nodiscard]] std::span<const RegionPointer> obstacles() const {
-    return std::span(regions_).subspan(1);
+    return std::span(regions_).subspan(limits_);
   }
-  /// All regions, the walls first.
+  /// All regions, in the order of DiscView.
   [[nodiscard]] const std::vector<RegionPointer>& regions() const { return regions_; }
 
  private:
   Box bounds_;
   Body body_;
   std::vector<RegionPointer> regions_;
+  std::size_t limits_ = 1;
   std::vector<DiscView> discs_;
+  std::shared_ptr<const ObstacleForecast> forecast_;
   double reach_ = 0.0;
   double lipschitz_ = 1.0;
 };

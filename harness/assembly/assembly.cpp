@@ -58,6 +58,8 @@ controller::PlannerSettings planner_settings(const Scenario& scenario) {
                    .terminal = controller.cost.terminal,
                    .target = scenario.target.state,
                    .angles = scenario.target.angles};
+  settings.path = scenario.target.course;
+  settings.waypoints = scenario.target.route;
   settings.penalty = {.shape = penalty.shape == "thesis" ? controller::PenaltyShape::kThesis
                                                          : controller::PenaltyShape::kSmooth,
                       .box = penalty.box,

@@ -204,6 +204,12 @@ std::string summary_table(const EpisodeView& view, const std::string& folder, bo
   text += row("steps", fmt::format("{}", summary.steps));
   if (summary.time_to_target)
     text += row("time to target", fmt::format("{:.1f} s", *summary.time_to_target));
+  if (summary.laps) {
+    std::string times;
+    for (const double time : summary.laps->times) times += fmt::format(", {:.2f} s", time);
+    text += row("laps",
+                fmt::format("{} of {}{}", summary.laps->times.size(), summary.laps->wanted, times));
+  }
   const std::optional<double> unsafe = view.first_unsafe_time();
   text += row("entered the unsafe set",
               unsafe ? fmt::format("yes, first after {:.1f} s", *unsafe) : "no");

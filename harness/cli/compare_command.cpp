@@ -114,6 +114,7 @@ std::string files_table(const std::string& folder, const std::vector<TextFile>& 
 int compare(CompareArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
+  refuse_motion(scenario, arguments.scenario, arguments.overrides, "compare");
   Scenario warned = scenario;
   warned.error_origin.reset();  // whether the error holds for these plants is what is measured
   print_warnings(scenario_warnings(warned));

@@ -29,6 +29,9 @@ int export_episode(const ExportArguments& arguments) {
   FileGroup files;
   files.add(folder + "/episode.csv").write(episode_csv(view));
   files.add(folder + "/plan.csv").write(plan_csv(view));
+  if (!controller::moving_obstacles(view.scenario().safe_set).empty()) {
+    files.add(folder + "/obstacles.csv").write(obstacles_csv(view));
+  }
   if (arguments.particles) files.add(folder + "/particles.csv").write(particles_csv(view));
   std::string paths;
   for (const std::string& path : files.paths()) paths += path + "\n";
@@ -41,7 +44,9 @@ int export_episode(const ExportArguments& arguments) {
 
 void add_export_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand(
-      "export", "Writes an episode as CSV: episode.csv, plan.csv and, if asked, particles.csv.");
+      "export",
+      "Writes an episode as CSV: episode.csv, plan.csv, obstacles.csv where obstacles move, and, "
+      "if asked, particles.csv.");
   command->footer("Example: qsmpc export out/dubins_obstacles-0 --particles");
   const auto arguments = std::make_shared<ExportArguments>();
   command->add_option("folder", arguments->folder, "folder of an episode")->required();

@@ -142,6 +142,7 @@ int conclude(const PredictionReport& report) {
 int predict(const PredictArguments& arguments) {
   Scenario scenario = load_scenario(arguments.scenario, arguments.overrides);
   scenario.seed = arguments.seed.value_or(scenario.seed);
+  refuse_motion(scenario, arguments.scenario, arguments.overrides, "predict");
   print_warnings(scenario_warnings(scenario));
   PredictionOptions options{.inputs = take_inputs(arguments, scenario),
                             .methods = chosen_methods(arguments.methods)};

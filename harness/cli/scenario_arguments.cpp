@@ -1,5 +1,7 @@
 #include "harness/cli/scenario_arguments.hpp"
 
+#include <fmt/format.h>
+
 #include "harness/assembly/memory_need.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -35,6 +37,16 @@ void refuse_beyond_memory(const Scenario& scenario, const std::string& path_or_n
   where.key = "controller.quantisation";
   where.found = problem->found;
   where.expected = problem->expected;
+  throw InputError(where);
+}
+
+void refuse_motion(const Scenario& scenario, const std::string& path_or_name,
+                   const std::vector<std::string>& overrides, const std::string& command) {
+  if (controller::moving_obstacles(scenario.safe_set).empty()) return;
+  InputError::Where where = place_of_key(path_or_name, overrides, "safe_set.obstacles");
+  where.key = "safe_set.obstacles";
+  where.found = "an obstacle with a motion";
+  where.expected = fmt::format("obstacles that stand, for {}", command);
   throw InputError(where);
 }
 

@@ -27,4 +27,8 @@ void add_seed_option(CLI::App& command, std::optional<std::uint64_t>& seed,
 void refuse_beyond_memory(const Scenario& scenario, const std::string& path_or_name,
                           const std::vector<std::string>& overrides, int count = 1);
 
+/// Throws InputError where an obstacle of `scenario` moves, of which `command` knows nothing.
+void refuse_motion(const Scenario& scenario, const std::string& path_or_name,
+                   const std::vector<std::string>& overrides, const std::string& command);
+
 }  // namespace qsmpc::harness

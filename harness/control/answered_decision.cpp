@@ -17,7 +17,9 @@ AnsweredDecision::AnsweredDecision(const Scenario& scenario, const models::Dynam
             .input = scenario.controller.cost.input,
             .terminal = scenario.controller.cost.terminal,
             .target = scenario.target.state,
-            .angles = scenario.target.angles} {}
+            .angles = scenario.target.angles},
+      route_(scenario.target.route),
+      nearest_(cost_) {}
 
 const controller::Decision& AnsweredDecision::take(const ControllerAnswer& answer,
                                                    const controller::Situation& situation,
@@ -33,9 +35,10 @@ const controller::Decision& AnsweredDecision::take(const ControllerAnswer& answe
   policy_.bounds = bounds_;
   controller::nominal_states(dynamics_, situation.belief.mean, policy_.inputs, policy_.states);
   controller::policy_input(policy_, 0, situation.observation, offset_, decision_.input);
-  controller::nearest_target(cost_.target, cost_.angles, situation.belief.mean, nearest_);
+  if (route_) cost_.target = route_->next(situation.progress.value_or(0.0));
+  controller::nearest_target(cost_.target, cost_.angles, situation.belief.mean, nearest_.target);
   decision_.policy = &policy_;
-  decision_.cost = controller::path_cost(policy_, cost_, nearest_, cost_scratch_);
+  decision_.cost = controller::path_cost(policy_, nearest_, cost_scratch_);
   decision_.status = answer.status;
   decision_.evaluations = answer.evaluations;
   return decision_;

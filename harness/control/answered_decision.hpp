@@ -2,10 +2,13 @@
 // does at what is observed, and the cost along the path.
 #pragma once
 
+#include <optional>
+
 #include <Eigen/Core>
 
 #include "controller/control/controller.hpp"
 #include "controller/control/path_cost.hpp"
+#include "controller/reference/waypoints.hpp"
 #include "harness/control/controller_answer.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "models/dynamics/dynamics.hpp"
@@ -35,8 +38,9 @@ class AnsweredDecision {
   controller::InputBounds bounds_;
   int stages_;
   controller::QuadraticCost cost_;
+  std::optional<controller::Waypoints> route_;  // which the cost's target goes along
   controller::PathCostScratch cost_scratch_;
-  Eigen::VectorXd nearest_;  // what means the target, nearest to the belief
+  controller::QuadraticCost nearest_;  // about what means the target, nearest to the belief
   Eigen::VectorXd offset_;
   controller::Policy policy_;
   controller::Decision decision_;

@@ -88,10 +88,31 @@ Json safe_set_json(const controller::SafeSet& safe_set) {
   json["obstacles"] = Json::array();
   for (const controller::Obstacle& obstacle : safe_set.obstacles) {
     const controller::Box* box = obstacle.box();
-    json["obstacles"].push_back(box != nullptr ? box_json(*box)
-                                               : std::visit(ShapeJson{}, *obstacle.shape()));
+    Json one = box != nullptr ? box_json(*box) : std::visit(ShapeJson{}, *obstacle.shape());
+    if (obstacle.motion) one["moves"] = true;
+    json["obstacles"].push_back(std::move(one));
   }
   return json;
+}
+
+/// By obstacle that moves, stage and way.
+Json forecast_json(const controller::ObstacleForecast& forecast) {
+  Json obstacles = Json::array();
+  for (std::size_t n = 0; n < forecast.size(); ++n) {
+    Json stages = Json::array();
+    for (const std::vector<controller::ObstaclePlace>& places : forecast.of(n)) {
+      Json ways = Json::array();
+      for (const controller::ObstaclePlace& place : places) {
+        ways.push_back({{"weight", place.weight},
+                        {"offset", list_of(place.offset)},
+                        {"turn", place.turn},
+                        {"covariance", rows_of(place.covariance)}});
+      }
+      stages.push_back(std::move(ways));
+    }
+    obstacles.push_back(std::move(stages));
+  }
+  return obstacles;
 }
 
 Json footprint_json(const controller::Body& body) {
@@ -123,6 +144,10 @@ std::string scenario_message(const Scenario& scenario, const models::SystemDescr
   json["target"] = {{"state", list_of(scenario.target.state)},
                     {"radius", scenario.target.radius},
                     {"angles", scenario.target.angles}};
+  if (const auto& route = scenario.target.route) {
+    json["target"]["waypoints"] = rows_of(route->states.transpose());
+    json["target"]["waypoint_radius"] = route->radius;
+  }
   json["risk"] = {{"stage", finite_or_null(scenario.risk.stage)},
                   {"plan", finite_or_null(scenario.risk.plan)},
                   {"mission", finite_or_null(scenario.risk.mission)},
@@ -144,13 +169,15 @@ std::string reset_message(std::uint64_t seed) {
 std::string situation_message(const controller::Situation& situation, double deadline) {
   const Json belief{{"mean", list_of(situation.belief.mean)},
                     {"covariance", rows_of(situation.belief.covariance)}};
-  return compact_json_text({{"type", kSituationMessage},
-                            {"period", situation.period},
-                            {"time", situation.time},
-                            {"observation", list_of(situation.observation)},
-                            {"belief", belief},
-                            {"periods_left", situation.periods_left},
-                            {"deadline", deadline}});
+  Json json{{"type", kSituationMessage}, {"period", situation.period},
+            {"time", situation.time},    {"observation", list_of(situation.observation)},
+            {"belief", belief},          {"periods_left", situation.periods_left},
+            {"deadline", deadline}};
+  if (situation.progress) {
+    json["waypoints_passed"] = static_cast<int>(*situation.progress);
+  }
+  if (situation.obstacles != nullptr) json["obstacles"] = forecast_json(*situation.obstacles);
+  return compact_json_text(json);
 }
 
 std::string end_message() { return compact_json_text({{"type", kEndMessage}}); }

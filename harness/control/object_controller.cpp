@@ -61,13 +61,12 @@ void ObjectController::reset(std::uint64_t seed) {
 }
 
 const controller::Decision& ObjectController::decide(const controller::Situation& situation) {
-  using Clock = std::chrono::steady_clock;
   controller::check_situation(situation, state_dim_);
   const controller::Decision* decision = nullptr;
   guarded(fmt::format("period {}", situation.period), [&] {
-    const auto start = Clock::now();
+    const auto start = std::chrono::steady_clock::now();
     ControllerAnswer answer = object_.act(situation);
-    const std::chrono::duration<double> taken = Clock::now() - start;
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     if (taken.count() > patience_) {
       throw WrongAnswer{fmt::format("an answer after {:.3g} s", taken.count()),
                         fmt::format("one within {} s (controller.deadline)", patience_)};

@@ -1,5 +1,6 @@
 #include "harness/episode/drive.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iterator>
@@ -12,15 +13,17 @@
 #include "controller/certification/error_budget.hpp"
 #include "controller/control/decision_motion.hpp"
 #include "controller/estimation/estimator.hpp"
-#include "controller/regions/unsafe_part.hpp"
 #include "controller/regions/unsafe_set.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/episode/moving_obstacles.hpp"
+#include "harness/episode/true_unsafe_set.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/interruption.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/residuals.hpp"
+#include "harness/trace/target_progress.hpp"
 #include "harness/version.hpp"
 #include "models/constants.hpp"
 #include "models/random/random_numbers.hpp"
@@ -47,6 +50,7 @@ Trace header_of(const Scenario& scenario, const models::SystemDescription& syste
                 std::uint64_t seed, const std::vector<models::NoiseSeed>& noise) {
   Trace trace;
   trace.scenario = scenario;
+  trace.scenario.safe_set.forecast = nullptr;  // it is the drive's
   trace.scenario.seed = seed;
   trace.scenario.disturbance.seeds = noise;
   trace.scenario_text = to_yaml(trace.scenario);
@@ -56,13 +60,16 @@ Trace header_of(const Scenario& scenario, const models::SystemDescription& syste
   return trace;
 }
 
-/// Not a number without states.
-double least_clearance(const Eigen::MatrixXd& states, const controller::UnsafeSet& unsafe) {
-  double least = kNotANumber;
-  for (const auto& state : states.colwise()) {
-    least = std::fmin(least, controller::clearance(state, unsafe));
-  }
-  return least;
+Scenario with_forecast(Scenario scenario,
+                       const std::shared_ptr<controller::ObstacleForecast>& forecast) {
+  scenario.safe_set.forecast = forecast;
+  return scenario;
+}
+
+/// Stages that a controller of the scenario may look ahead.
+int forecast_stages(const Scenario& scenario) {
+  return std::max({scenario.controller.horizon, scenario.controller.shield.stages,
+                   certified_stages(decision_parts(scenario))});
 }
 
 }  // namespace
@@ -70,10 +77,12 @@ double least_clearance(const Eigen::MatrixXd& states, const controller::UnsafeSe
 /// The closed loop's parts, and its state between the periods.
 struct Drive::Parts {
   explicit Parts(const Scenario& of)
-      : scenario(of),
-        unsafe(of.safe_set),
+      : forecast(new_forecast(of.safe_set)),
+        scenario(with_forecast(of, forecast)),
+        unsafe(scenario.safe_set),
+        truly_unsafe(of.safe_set),
         model(model_of(of)),
-        settings(planner_settings(of)),
+        settings(planner_settings(scenario)),
         estimator(controller::make_estimator(of.estimator.kind,
                                              {.dynamics = *model,
                                               .noise_covariance = of.disturbance.covariance,
@@ -81,6 +90,7 @@ struct Drive::Parts {
         motions(*model, settings),
         disturbance(Eigen::VectorXd::Zero(model->state_dim()), of.disturbance.covariance),
         sensor(Eigen::VectorXd::Zero(model->state_dim()), of.disturbance.sensor),
+        others(of.safe_set, of.time_step, forecast_stages(of), forecast),
         belief(first_belief()) {}
 
   [[nodiscard]] controller::Gaussian first_belief() const {
@@ -102,20 +112,37 @@ struct Drive::Parts {
     return {.seed = models::noise_seed_at(noise(), seed, step), .stream = stream, .step = step};
   }
 
+  /// Keys of the obstacles' numbers in this period: how they move is a disturbance of the plant.
+  [[nodiscard]] MovingObstacles::KeyOf obstacle_key() const {
+    return [this](models::RandomStream stream) {
+      const bool moves = stream == models::RandomStream::kObstacleMotion;
+      return noise_key(stream, moves ? plant_seed() : options.seed);
+    };
+  }
+
+  [[nodiscard]] Eigen::Vector2d position() const {
+    const models::SystemDescription& system = model->description();
+    return {state[system.position_x], state[system.position_y]};
+  }
+
   void begin(const DriveOptions& how) {
     options = how;
     period = 0;
     motion_begin = 0;
     outcome.reset();
     unsafe_outcome.reset();
+    progress.reset();
+    believed_progress.reset();
     belief = first_belief();
     trace = header_of(scenario, model->description(), options.seed, noise());
     if (!vehicle_digest) vehicle_digest = digest_of(scenario);
     trace.vehicle_digest = *vehicle_digest;
     const models::GaussianSampler initial(belief.mean, belief.covariance);
     state = initial.sample({.seed = options.seed, .stream = models::RandomStream::kInitialState});
+    others.begin(obstacle_key());
     guarded([&] {
       take_plant();
+      plant->move_obstacles(others.poses(), others.poses());
       trace.motion.push_back(plant->reset(state));
       observe_state();
     });
@@ -147,6 +174,7 @@ struct Drive::Parts {
     trace.fault = fault;
     trace.fault_of = fault_of;
     trace.final_state = state;
+    trace.final_obstacles = others.poses();
     // One that broke, or was stopped midway, is not used again.
     if (how == Outcome::kFault || how == Outcome::kInterrupted) plant.reset();
   }
@@ -154,7 +182,12 @@ struct Drive::Parts {
   /// What follows from the state at a control instant: what is seen, and the end of the episode.
   void observe_state() {
     trace.final_state = state;
+    trace.final_obstacles = others.poses();
     observation = seen();
+    others.see(obstacle_key());
+    truly_unsafe.place(others.poses());
+    progress.advance(state);
+    believed_progress.advance(belief.mean);
     if (const std::optional<Outcome> now = outcome_now()) {
       end(*now);
     } else if (period >= scenario.step_limit) {
@@ -164,9 +197,9 @@ struct Drive::Parts {
 
   /// How the episode ends in the present state, if it does.
   [[nodiscard]] std::optional<Outcome> outcome_now() {
-    if (!unsafe_outcome) unsafe_outcome = outcome_in(controller::unsafe_part(state, unsafe));
+    if (!unsafe_outcome) unsafe_outcome = outcome_in(truly_unsafe.part(state));
     if (scenario.stop_when_unsafe && unsafe_outcome) return unsafe_outcome;
-    if (!at_target(scenario, model->description(), state)) return std::nullopt;
+    if (!at_target(scenario, model->description(), state, progress.now())) return std::nullopt;
     return unsafe_outcome.value_or(Outcome::kReached);
   }
 
@@ -183,7 +216,9 @@ struct Drive::Parts {
             .belief = believed,
             .observation = observed,
             .periods_left = scenario.step_limit - at,
-            .deadline = deadline()};
+            .deadline = deadline(),
+            .obstacles = forecast.get(),
+            .progress = believed_progress.now()};
   }
 
   [[nodiscard]] Clock::time_point deadline() const {
@@ -198,6 +233,8 @@ struct Drive::Parts {
     StepRecord record;
     record.time = now.time;
     record.observation = now.observation;
+    record.obstacles = others.poses();
+    record.obstacles_seen = others.seen();
     record.belief_mean = now.belief.mean;
     record.belief_covariance = now.belief.covariance;
     if (certified) certify(now, decision, record);
@@ -243,10 +280,14 @@ struct Drive::Parts {
     record.disturbance =
         disturbance.sample(noise_key(models::RandomStream::kDisturbance, plant_seed()));
     record.residual = unknown_residual(state.size());
+    if (others.count() > 0) {
+      others.advance(position(), obstacle_key());
+      plant->move_obstacles(others.last_poses(), others.poses());
+    }
     const auto start = Clock::now();
     PlantStep result = drive_plant();
     record.timing.simulate = milliseconds_since(start);
-    record.clearance_between = least_clearance(result.between, unsafe);
+    record.clearance_between = truly_unsafe.least_clearance(result.between, others);
     record.contact = result.contact;
     if (!result.fault) record.residual = one_step_residual(*model, record, result.state);
     trace.motion.insert(trace.motion.end(), std::make_move_iterator(result.motion.begin()),
@@ -271,14 +312,17 @@ struct Drive::Parts {
     }
   }
 
-  const Scenario& scenario;
-  controller::UnsafeSet unsafe;
+  std::shared_ptr<controller::ObstacleForecast> forecast;  // what is known of others; or null
+  Scenario scenario;
+  controller::UnsafeSet unsafe;  // as far as it is known
+  TrueUnsafeSet truly_unsafe;
   std::unique_ptr<const models::Dynamics> model;
   controller::PlannerSettings settings;
   std::unique_ptr<const controller::Estimator> estimator;
   controller::DecisionMotion motions;
   models::GaussianSampler disturbance;
   models::GaussianSampler sensor;
+  MovingObstacles others;
   std::optional<std::string> vehicle_digest;  // once it is known
   std::unique_ptr<Plant> plant;               // of the last drive, reset for every one
   // Of the episode at hand.
@@ -290,6 +334,8 @@ struct Drive::Parts {
   Trace trace;
   std::size_t motion_begin = 0;
   std::optional<Outcome> outcome;
+  TargetProgress progress{scenario, model->description()};           // of the true state
+  TargetProgress believed_progress{scenario, model->description()};  // of the belief's mean
   std::optional<Outcome> unsafe_outcome;  // what the first unsafe state of it makes of it
 };
 
@@ -302,7 +348,29 @@ Drive::~Drive() = default;
 
 const models::Dynamics& Drive::model() const { return *parts_->model; }
 
+const Scenario& Drive::scenario() const { return parts_->scenario; }
+
+void Drive::know_obstacles(const std::vector<controller::PlacesByStage>& obstacles) {
+  const std::size_t count = parts_->forecast ? parts_->forecast->size() : 0;
+  if (obstacles.size() != count) {
+    throw std::invalid_argument(
+        fmt::format("{} obstacles, where {} move", obstacles.size(), count));
+  }
+  const auto needed = static_cast<std::size_t>(forecast_stages(parts_->scenario)) + 1;
+  for (std::size_t n = 0; n < count; ++n) {
+    if (obstacles[n].size() < needed) {
+      throw std::invalid_argument(fmt::format("a forecast of {} stages, where {} are looked at",
+                                              obstacles[n].size(), needed));
+    }
+    parts_->forecast->set(n, obstacles[n]);
+  }
+}
+
+double Drive::clearance() const { return parts_->truly_unsafe.clearance(parts_->state); }
+
 void Drive::begin(const DriveOptions& options) { parts_->begin(options); }
+
+std::optional<double> Drive::progress() const { return parts_->progress.now(); }
 
 int Drive::period() const { return parts_->period; }
 

@@ -41,7 +41,7 @@ struct DriveOptions {
 
 class Drive {
  public:
-  /// `scenario` must outlive it. Throws std::invalid_argument on settings that make no sense.
+  /// Throws std::invalid_argument on settings that make no sense.
   explicit Drive(const Scenario& scenario);
   Drive(Drive&&) noexcept;
   Drive& operator=(Drive&&) noexcept;
@@ -49,6 +49,10 @@ class Drive {
 
   /// The planner's model of the scenario.
   [[nodiscard]] const models::Dynamics& model() const;
+
+  /// The scenario with the drive's forecast of the obstacles that move, which controllers of the
+  /// drive are to be made from.
+  [[nodiscard]] const Scenario& scenario() const;
 
   /// Begins an episode; the one before is forgotten. A vehicle that the simulator refuses is the
   /// outcome `fault`. Throws InputError for what else is wrong with the plant's file, and
@@ -58,12 +62,25 @@ class Drive {
   /// Number of the period that is to be decided, from 0.
   [[nodiscard]] int period() const;
 
+  /// Where the true state is along the scenario's path, m, or how many waypoints it has passed;
+  /// nothing without either.
+  [[nodiscard]] std::optional<double> progress() const;
+
   /// What is known when the next input is to be chosen; refers to this object, until the next call
   /// of `advance` or `begin`. After the episode, what is seen of its last state.
   [[nodiscard]] controller::Situation situation() const;
 
+  /// Sets what is known of the obstacles that move, in their order, until the drive sees them next:
+  /// for situations of the caller's. Without it, what is known before anything is seen. Throws
+  /// std::invalid_argument on other numbers of them, on fewer stages than are looked ahead, and as
+  /// ObstacleForecast::set.
+  void know_obstacles(const std::vector<controller::PlacesByStage>& obstacles);
+
   /// The true state now, state_dim; after the episode, the one in which it ended.
   [[nodiscard]] const Eigen::VectorXd& state() const;
+
+  /// Of the true state from what is unsafe, with the obstacles where they truly are.
+  [[nodiscard]] double clearance() const;
 
   /// Applies `decision` for one control period. Returns the record of the period, which is valid
   /// until the next call. Throws std::invalid_argument where the episode is over or the input

@@ -30,7 +30,7 @@ class EpisodeDriver::Loop {
   explicit Loop(const Scenario& scenario)
       : scenario_(&scenario),
         drive_(scenario),
-        controller_(make_controller(scenario, drive_.model())) {
+        controller_(make_controller(drive_.scenario(), drive_.model())) {
     // Those outside of the program start with the drive, and know of no other situations.
     if (!is_outside(scenario.controller)) rehearse();
   }
@@ -39,8 +39,8 @@ class EpisodeDriver::Loop {
       : own_scenario_(std::make_unique<const Scenario>(with_controller(scenario, object))),
         scenario_(own_scenario_.get()),
         drive_(*scenario_),
-        controller_(
-            std::make_unique<ObjectController>(std::move(object), *scenario_, drive_.model())) {}
+        controller_(std::make_unique<ObjectController>(std::move(object), drive_.scenario(),
+                                                       drive_.model())) {}
 
   Trace run(const EpisodeOptions& options) {
     const DriveOptions how{.seed = options.seed,

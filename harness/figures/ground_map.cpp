@@ -5,10 +5,14 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
+#include "controller/regions/planar/road_walls.hpp"
 #include "controller/regions/unsafe_set.hpp"
+#include "harness/figures/palette.hpp"
+#include "harness/scenario/target_course.hpp"
 #include "harness/text/unit_text.hpp"
 
 namespace qsmpc::harness {
@@ -54,6 +58,31 @@ const controller::HalfPlaneShape* half_plane_of(const controller::Obstacle& obst
   return shape == nullptr ? nullptr : std::get_if<controller::HalfPlaneShape>(shape);
 }
 
+MapPath line_through(const Eigen::Matrix2Xd& points, bool closed) {
+  MapPath line{.colour = kGrey};
+  for (const auto& point : points.colwise())
+    line.points.push_back({.x = point.x(), .y = point.y()});
+  if (closed && !line.points.empty()) line.points.push_back(line.points.front());
+  return line;
+}
+
+/// The centre line of a path that is followed, and the edges of its road.
+void add_road(const Scenario& scenario, PlaneMap& map) {
+  const Scenario::Target& target = scenario.target;
+  if (!target.course) return;
+  MapPath centre = line_through(centre_line(*target.course->path), false);
+  centre.name = "path to follow";
+  centre.dashed = true;
+  map.lines.push_back(std::move(centre));
+  if (scenario.safe_set.road == nullptr) return;
+  const controller::RoadEdges& edges = scenario.safe_set.road->edges();
+  for (const Eigen::Matrix2Xd* edge : {&edges.left, &edges.right}) {
+    MapPath line = line_through(*edge, edges.closed);
+    line.name = "edge of the road";
+    map.lines.push_back(std::move(line));
+  }
+}
+
 std::string label(const models::Coordinate& state) {
   return state.name + " (" + printed_unit(state.unit) + ")";
 }
@@ -80,6 +109,13 @@ PlaneMap ground_map(const Scenario& scenario, const models::SystemDescription& s
                .bounds = rectangle_of(outline_of(unsafe.walls())),
                .targets = {{.centre = map_point(scenario.target.state, system),
                             .radius = scenario.target.radius}}};
+  if (const auto& route = scenario.target.route) {
+    for (Eigen::Index i = 0; i + 1 < route->states.cols(); ++i) {
+      map.targets.push_back({.centre = map_point(route->states.col(i), system),
+                             .radius = route->radius,
+                             .is_waypoint = true});
+    }
+  }
   // Shapes are in the plane of position, which the axes are wherever there is one.
   for (std::size_t k = 0; k < scenario.safe_set.obstacles.size(); ++k) {
     if (const auto* half_plane = half_plane_of(scenario.safe_set.obstacles[k])) {
@@ -90,6 +126,7 @@ PlaneMap ground_map(const Scenario& scenario, const models::SystemDescription& s
       add_obstacle(outline_of(*unsafe.obstacles()[k]), map);
     }
   }
+  add_road(scenario, map);
   return map;
 }
 

@@ -167,7 +167,7 @@ std::vector<std::size_t> room_of(const std::vector<MapCloud>& clouds) {
 }  // namespace
 
 std::string colour_class(int colour) {
-  return fmt::format("c{}", std::clamp(colour, 0, kLastStage));
+  return fmt::format("c{}", std::clamp(colour, 0, kFirstScale + kScaleSize - 1));
 }
 
 std::string path_classes(const MapPath& path) {
@@ -243,6 +243,9 @@ MapRectangle map_area(const PlaneMap& map) {
   }
   for (const MapPolygon& polygon : map.polygons) {
     for (const MapPoint& corner : polygon.corners) extent.include(corner);
+  }
+  for (const MapPath& line : map.lines) {
+    for (const MapPoint& point : line.points) extent.include(point);
   }
   for (const MapCircle& target : map.targets) {
     if (is_shown(target)) extent.include(target.centre, target.radius, target.radius);

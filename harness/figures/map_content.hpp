@@ -10,6 +10,9 @@
 
 namespace qsmpc::harness {
 
+/// What tells a waypoint from the target, within its circle's element.
+inline constexpr const char* kWaypointStyle = " style=\"fill-opacity:0.06;stroke-dasharray:4 3\"";
+
 /// "c0" … "c9", whatever number was given.
 [[nodiscard]] std::string colour_class(int colour);
 [[nodiscard]] std::string path_classes(const MapPath& path);

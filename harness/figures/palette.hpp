@@ -1,4 +1,4 @@
-// The palette of charts and maps: numbers that become the classes c0 … c9 of the page's style
+// The palette of charts and maps: numbers that become the classes c0 … c14 of the page's style
 // (web/page.css).
 #pragma once
 
@@ -22,5 +22,9 @@ inline constexpr int kGrey = 7;
 /// videos and pages share (render/colour.hpp, web/map.js).
 inline constexpr int kFirstStage = 8;
 inline constexpr int kLastStage = 9;
+
+/// Classes c10 … c14, of maps only: a scale from little to much.
+inline constexpr int kFirstScale = 10;
+inline constexpr int kScaleSize = 5;
 
 }  // namespace qsmpc::harness

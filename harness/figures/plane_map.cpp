@@ -17,6 +17,7 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr std::size_t kMostLinePoints = 6000;  // of a whole map; more would not be seen
+constexpr std::size_t kMostRoadPoints = 1500;  // of a line on the ground
 
 bool has_sides(const MapRectangle& box) {
   return box.x_upper > box.x_lower && box.y_upper > box.y_lower;
@@ -38,11 +39,17 @@ std::string ground_svg(const PlaneMap& map, const MapCanvas& canvas) {
   for (const MapHalfPlane& half_plane : map.half_planes) {
     svg += half_plane_svg(canvas, half_plane, "obstacle");
   }
+  for (const MapPath& line : map.lines) {
+    svg +=
+        fmt::format("<path class=\"{}\" d=\"{}\"/>\n", path_classes(line),
+                    polyline_data(canvas, line.points, 1 + line.points.size() / kMostRoadPoints));
+  }
   for (const MapCircle& target : map.targets) {
     if (!is_shown(target)) continue;
     const MapPoint at = canvas.place(target.centre);
-    svg += fmt::format("<circle class=\"target\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>\n",
-                       at.x, at.y, canvas.length(target.radius));
+    svg += fmt::format("<circle class=\"target\"{} cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\"/>\n",
+                       target.is_waypoint ? kWaypointStyle : "", at.x, at.y,
+                       canvas.length(target.radius));
   }
   return svg;
 }
@@ -205,10 +212,11 @@ std::string map_drawing(const PlaneMap& map, double x, double y) {
           ? ""
           : fmt::format(" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\"", x, y,
                         canvas.size().width, canvas.size().height);
-  const std::string content =
-      ground_svg(map, canvas) + contours_svg(map, canvas) + clouds_svg(map, canvas) +
-      bodies_svg(map, canvas) + paths_svg(map, canvas, true) + ellipses_svg(map, canvas) +
-      paths_svg(map, canvas, false) + marks_svg(map, canvas) + labels_svg(map, canvas);
+  const std::string content = ground_svg(map, canvas) + movers_svg(canvas, map.movers) +
+                              contours_svg(map, canvas) + clouds_svg(map, canvas) +
+                              bodies_svg(map, canvas) + paths_svg(map, canvas, true) +
+                              ellipses_svg(map, canvas) + paths_svg(map, canvas, false) +
+                              marks_svg(map, canvas) + labels_svg(map, canvas);
   return canvas.svg(content, {.title = map.title, .x_label = map.x_label, .y_label = map.y_label},
                     place);
 }

@@ -17,6 +17,7 @@
 #include "controller/regions/body_outline.hpp"
 #include "harness/figures/legend.hpp"
 #include "harness/figures/map_canvas.hpp"
+#include "harness/figures/map_movers.hpp"
 #include "harness/figures/map_regions.hpp"
 
 namespace qsmpc::harness {
@@ -74,6 +75,7 @@ struct MapContours {
 struct MapCircle {
   MapPoint centre{};
   double radius = 0.0;
+  bool is_waypoint = false;  ///< on the way to the target; fainter
 };
 
 /// The outline of a body, thin, below the paths.
@@ -100,6 +102,8 @@ struct PlaneMap {
   std::vector<MapRectangle> partial_obstacles{};  ///< for some of the other states only
   std::vector<MapPolygon> polygons{};             ///< obstacles, as are the next
   std::vector<MapHalfPlane> half_planes{};
+  std::vector<MapMover> movers{};  ///< obstacles that move
+  std::vector<MapPath> lines{};    ///< on the ground, below all that moves: of a road
   std::vector<MapCircle> targets{};
   std::vector<MapContours> contours{};
   std::vector<MapCloud> clouds{};
@@ -109,9 +113,10 @@ struct PlaneMap {
   std::vector<MapLabel> labels{};
 };
 
-/// The part of the plane about all that `map` holds, its `area` aside. Where the bounds are finite,
-/// what is farther away from them than their own length is left outside. Of a half-plane it holds
-/// what of its edge is nearest, unless that is farther away than all else is long.
+/// The part of the plane about all that `map` holds, its `area` and what moves aside. Where the
+/// bounds are finite, what is farther away from them than their own length is left outside. Of a
+/// half-plane it holds what of its edge is nearest, unless that is farther away than all else is
+/// long.
 [[nodiscard]] MapRectangle map_area(const PlaneMap& map);
 
 /// The map as a <figure>. Its size does not grow with the number of points beyond some thousands:

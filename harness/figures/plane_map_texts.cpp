@@ -71,10 +71,20 @@ void add_entry(std::vector<LegendEntry>& entries, LegendEntry entry) {
 }
 
 void add_ground_entries(std::vector<LegendEntry>& entries, const PlaneMap& map) {
-  if (std::any_of(map.targets.begin(), map.targets.end(),
-                  [](const MapCircle& target) { return is_shown(target); })) {
+  const auto has = [&](bool waypoint) {
+    return std::ranges::any_of(map.targets, [&](const MapCircle& target) {
+      return target.is_waypoint == waypoint && is_shown(target);
+    });
+  };
+  if (has(false)) {
     add_entry(entries, {.drawing = "<circle class=\"target\" cx=\"14\" cy=\"6\" r=\"5\"/>",
                         .name = "target"});
+  }
+  if (has(true)) {
+    add_entry(entries,
+              {.drawing = fmt::format("<circle class=\"target\"{} cx=\"14\" cy=\"6\" r=\"5\"/>",
+                                      kWaypointStyle),
+               .name = "waypoint"});
   }
   if (!map.obstacles.empty() || !map.polygons.empty() || !map.half_planes.empty()) {
     add_entry(entries, area_entry("obstacle", "obstacle"));
@@ -96,6 +106,9 @@ std::vector<LegendEntry> map_legend(const PlaneMap& map) {
   for (const MapPath& path : map.paths) {
     add_entry(entries, line_entry(path_classes(path), path.name));
   }
+  for (const MapPath& line : map.lines) {
+    add_entry(entries, line_entry(path_classes(line), line.name));
+  }
   for (const MapBody& body : map.bodies) {
     if (body.arcs.empty()) continue;
     add_entry(entries, {.drawing = "<ellipse class=\"" + body_classes(body) +
@@ -115,6 +128,7 @@ std::vector<LegendEntry> map_legend(const PlaneMap& map) {
     add_entry(entries, line_entry("outline " + colour_class(contours.colour),
                                   name_of(contours, map.contours)));
   }
+  for (LegendEntry& entry : mover_entries(map.movers)) add_entry(entries, std::move(entry));
   add_ground_entries(entries, map);
   return entries;
 }

@@ -45,6 +45,8 @@ constexpr std::string_view kStyle =
     ".c0{stroke:#0072b2}.c1{stroke:#d98200}.c2{stroke:#009e73}.c3{stroke:#b8568f}"
     ".c4{stroke:#d55e00}.c5{stroke:#3a9bd1}.c6{stroke:#16202a}.c7{stroke:#55636f}"
     ".c8{stroke:#0d0887}.c9{stroke:#fcbe2c}"
+    ".c10{stroke:#3b4cc0}.c11{stroke:#21918c}.c12{stroke:#5aae3c}.c13{stroke:#e6a117}"
+    ".c14{stroke:#c21807}"
     ".unsafe{fill:#c9d0d7}.free{fill:#ffffff}.obstacle{fill:#8b97a2}"
     ".partial{fill:#8b97a2;fill-opacity:.3;stroke:#8b97a2;stroke-dasharray:5 4}"
     ".area{fill:#d55e00;fill-opacity:.1}"
@@ -60,6 +62,9 @@ constexpr std::string_view kStyle =
     ".mark.edge{stroke:#ffffff;stroke-width:12}"
     "text.time{font-size:12px;font-weight:600}"
     "text.edge{stroke:#ffffff;stroke-width:3px;stroke-linejoin:round}";
+
+/// Of obstacles that move, which few figures have.
+constexpr std::string_view kMoverStyle = ".mover{fill:#0072b2;fill-opacity:.3;stroke-width:.9}";
 
 /// What differs between a chart and a map.
 struct Part {
@@ -195,9 +200,10 @@ std::string document(double width, double height, std::size_t in_row, const Figu
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
       "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0:.0f}\" height=\"{1:.0f}\" "
-      "viewBox=\"0 0 {2:.0f} {3:.0f}\">\n<style>text{{font:{4}px {5}}}{6}</style>\n"
-      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{7}</svg>\n",
-      shown, height * shown / width, width, height, text_size(style), kFontFamily, kStyle, body);
+      "viewBox=\"0 0 {2:.0f} {3:.0f}\">\n<style>text{{font:{4}px {5}}}{6}{7}</style>\n"
+      "<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n{8}</svg>\n",
+      shown, height * shown / width, width, height, text_size(style), kFontFamily, kStyle,
+      body.find("class=\"mover") == std::string::npos ? "" : kMoverStyle, body);
 }
 
 }  // namespace

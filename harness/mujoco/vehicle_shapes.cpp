@@ -50,7 +50,9 @@ std::array<double, 4> colour_of(const mjModel& model, int geom) {
   const int material = model.geom_matid[geom];
   const bool has_own = !std::equal(kColourOfNone.begin(), kColourOfNone.end(), own);
   const float* rgba = has_own || material < 0 ? own : model.mat_rgba + std::ptrdiff_t{4} * material;
-  return {rgba[0], rgba[1], rgba[2], rgba[3]};
+  std::array<double, 4> colour{};
+  std::copy_n(rgba, colour.size(), colour.begin());
+  return colour;
 }
 
 /// Address in qpos of the first joint of `type` along or about `axis`, or -1.

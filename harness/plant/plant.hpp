@@ -50,6 +50,14 @@ class Plant {
   /// returns the first motion sample.
   virtual MotionSample reset(const Eigen::VectorXd& state) = 0;
 
+  /// Where the obstacles that move are at the beginning and at the end of the next period, between
+  /// which they go straight: offset x, y (m) from where they are written, and turn (rad), 3 x
+  /// count. Before a period, and after `reset`; a plant in which nothing is solid takes no notice.
+  virtual void move_obstacles(const Eigen::Matrix3Xd& begin, const Eigen::Matrix3Xd& end) {
+    (void)begin;
+    (void)end;
+  }
+
   /// Holds `input` (input_dim) for one control period, then adds `disturbance` (state_dim) to the
   /// state. A fault of the simulator is returned, never thrown; after one, only `reset` helps.
   virtual PlantStep advance(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance) = 0;

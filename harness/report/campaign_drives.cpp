@@ -14,6 +14,7 @@
 
 #include "harness/figures/ground_map.hpp"
 #include "harness/figures/palette.hpp"
+#include "harness/report/driven_ways.hpp"
 #include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/text/printable.hpp"
@@ -62,7 +63,9 @@ PlaneMap ground_of(const VariantStatistics& variant) {
   const Scenario scenario = parse_scenario(
       variant.scenario_text,
       {.file = "variant " + variant.name, .files_must_exist = false, .is_recorded = true});
-  return ground_map(scenario, system_of(scenario));
+  PlaneMap map = ground_map(standing_scenario(scenario), system_of(scenario));
+  map.movers = written_movers(scenario.safe_set);
+  return map;
 }
 
 /// Drives that arrived lie below the others.

@@ -13,6 +13,7 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/report/chart_data.hpp"
 #include "harness/report/episode_charts.hpp"
+#include "harness/report/moving_data.hpp"
 #include "harness/report/packed_numbers.hpp"
 #include "harness/report/script_json.hpp"
 #include "harness/text/unit_text.hpp"
@@ -71,9 +72,12 @@ class EpisodeData {
   /// What lies in the plane of `map`.
   [[nodiscard]] Json plane(const PlaneMap& map) const {
     const MapView view = map_view(map);
-    return {{"xLeft", view.x_left}, {"yTop", view.y_top},         {"scale", view.scale},
-            {"poses", poses()},     {"predicted", predicted()},   {"plans", plans()},
-            {"moments", moments()}, {"particles", particles(map)}};
+    Json json = {{"xLeft", view.x_left}, {"yTop", view.y_top},         {"scale", view.scale},
+                 {"poses", poses()},     {"predicted", predicted()},   {"plans", plans()},
+                 {"moments", moments()}, {"particles", particles(map)}};
+    const DrivenObstacles others(trace_);
+    if (!others.empty()) json["others"] = moving_data(view_, others);
+    return json;
   }
 
  private:

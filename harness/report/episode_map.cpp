@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -10,7 +11,10 @@
 #include "harness/figures/ground_map.hpp"
 #include "harness/figures/palette.hpp"
 #include "harness/figures/plane_map.hpp"
+#include "harness/report/driven_ways.hpp"
+#include "harness/report/line_colours.hpp"
 #include "harness/text/number_format.hpp"
+#include "harness/trace/target_progress.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -37,16 +41,31 @@ std::string map_words(const models::SystemDescription& system) {
 class EpisodeMap {
  public:
   explicit EpisodeMap(const EpisodeView& view)
-      : states_(view.states()), trace_(view.trace()), system_(view.system()) {}
+      : view_(view), states_(view.states()), trace_(view.trace()), system_(view.system()) {}
 
   [[nodiscard]] EpisodeMaps maps() const {
     EpisodeMaps maps{.drive = ground(), .ground = ground()};
+    maps.drive.movers = driven_ways(view_, DrivenObstacles(trace_));
     maps.drive.paths.push_back(driven_path());
     // The axes are about the drive: a prediction that runs away does not make it small.
     maps.drive.area = map_area(maps.drive);
     maps.ground.area = maps.drive.area;
+    add_waypoints(maps.drive);
     add_bodies(maps.drive);
     add_snapshots(maps.drive);
+    if (trace_.scenario.target.course && !trace_.steps.empty()) {
+      add_laps(maps.drive);
+      for (const LineColours& colours : {speed_colours(trace_), risk_colours(trace_)}) {
+        PlaneMap map = maps.ground;
+        map.title = colours.title;
+        map.note = colours.note;
+        for (MapPath& piece : coloured_line(colours, driven_path().points)) {
+          map.paths.push_back(std::move(piece));
+        }
+        add_laps(map);
+        maps.coloured.push_back(std::move(map));
+      }
+    }
     return maps;
   }
 
@@ -63,6 +82,37 @@ class EpisodeMap {
                  .arrow_period = snapshot_period()};
     for (const auto& state : states_.colwise()) path.points.push_back(point_of(state));
     return path;
+  }
+
+  /// How long each lap took, at the line.
+  void add_laps(PlaneMap& map) const {
+    const std::optional<Laps> laps = laps_of(trace_);
+    if (!laps || laps->times.empty()) return;
+    const controller::PathTarget& course = *trace_.scenario.target.course;
+    const Eigen::Vector2d line = course.path->at(course.begin).position;
+    std::string text;
+    for (std::size_t n = 0; n < laps->times.size(); ++n) {
+      text +=
+          fmt::format("{}lap {}: {} s", n > 0 ? ", " : "", n + 1, format_short(laps->times[n], 4));
+    }
+    map.labels.push_back({.text = text, .at = {.x = line.x(), .y = line.y()}});
+  }
+
+  /// In which order waypoints are driven to, and when those that were passed were.
+  void add_waypoints(PlaneMap& map) const {
+    const std::optional<WaypointTimes> passed = waypoint_times(trace_);
+    if (!passed) return;
+    const Eigen::MatrixXd& states = trace_.scenario.target.route->states;
+    for (std::size_t n = 0; n < static_cast<std::size_t>(passed->wanted); ++n) {
+      std::string text = fmt::format("{}", n + 1);
+      if (n < passed->times.size()) {
+        text += fmt::format(": {} s", format_short(passed->times[n], 4));
+      } else if (!trace_.steps.empty()) {
+        text += ": not passed";
+      }
+      map.labels.push_back(
+          {.text = std::move(text), .at = point_of(states.col(static_cast<Eigen::Index>(n)))});
+    }
   }
 
   /// At each snapshot, and where the drive ended.
@@ -82,7 +132,7 @@ class EpisodeMap {
   }
 
   [[nodiscard]] PlaneMap ground() const {
-    PlaneMap map = ground_map(trace_.scenario, system_);
+    PlaneMap map = ground_map(standing_scenario(trace_.scenario), system_);
     const std::string name = map_words(system_);
     map.title = trace_.steps.empty()
                     ? name
@@ -146,6 +196,7 @@ class EpisodeMap {
     map.paths.insert(map.paths.begin(), plans.begin(), plans.end());
   }
 
+  const EpisodeView& view_;
   const Eigen::MatrixXd& states_;
   const Trace& trace_;
   const models::SystemDescription& system_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "harness/figures/plane_map.hpp"
 #include "harness/trace/episode_view.hpp"
@@ -12,6 +13,8 @@ namespace qsmpc::harness {
 struct EpisodeMaps {
   PlaneMap drive;   ///< all of the drive
   PlaneMap ground;  ///< what stands still in it, and the part of the plane that it shows
+  /// Of a drive along a path: its line by the speed, and by the certified risk of the next state.
+  std::vector<PlaneMap> coloured{};
 };
 
 /// None for a system without a position in the plane.

@@ -16,6 +16,7 @@
 #include "harness/report/key_figures.hpp"
 #include "harness/report/page_frame.hpp"
 #include "harness/text/html.hpp"
+#include "harness/trace/map_axes.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -69,13 +70,18 @@ constexpr std::string_view kMapOfParticles =
     ": particles, and ellipses about 50 and (dashed) 95 % of the probability of a normal "
     "distribution with their mean and covariance";
 
+constexpr std::string_view kMapOfMoving = "; in blue, the obstacles that move";
+constexpr std::string_view kMapOfForecasts =
+    "; in blue, the obstacles that move, and about where the plan took their middles to be going, "
+    "ellipses of two standard deviations, the fainter the later and the less probable";
+
 std::string layer_box(std::string_view layer, std::string_view words) {
   return fmt::format(
       "<label><input type=\"checkbox\" checked=\"checked\" data-layer=\"{}\"/>{}</label>", layer,
       words);
 }
 
-std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts) {
+std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts, bool has_moving) {
   if (map == nullptr) return {};
   std::string html =
       "<figure class=\"card\" id=\"live-map\" hidden>\n<figcaption>The map at this moment"
@@ -83,11 +89,13 @@ std::string live_map(const PlaneMap* map, const controller::DecisionParts& parts
       "unsafe set to <span class=\"far\">1 m and more</span> from it";
   html += parts.stages > 0 ? kMapOfPlans : "; the vehicle";
   if (parts.particles) html += kMapOfParticles;
+  if (has_moving) html += parts.stages > 0 ? kMapOfForecasts : kMapOfMoving;
   html += ".</p>\n<div class=\"layers\">";
   if (parts.particles) {
     html += layer_box("particles", "particles") + layer_box("ellipses", "ellipses");
   }
   if (parts.stages > 0) html += layer_box("plan", "plan") + layer_box("ghost", "model’s vehicle");
+  if (has_moving && parts.stages > 0) html += layer_box("forecast", "forecasts");
   html += "<label><input type=\"checkbox\" id=\"near-view\"/>near view</label>";
   return html + "</div>\n" + map_drawing(*map) + "</figure>\n";
 }
@@ -100,7 +108,7 @@ std::string scene_box(std::string_view layer, std::string_view words) {
 
 /// The view in three dimensions, which the scene's script fills, or why there is none.
 std::string scene_figure(const EpisodeScene& scene, bool in_plane,
-                         const controller::DecisionParts& parts) {
+                         const controller::DecisionParts& parts, bool has_moving) {
   std::string note =
       scene.note.empty() ? "" : "<p class=\"note\">" + escape_html(scene.note) + "</p>\n";
   if (scene.data.empty()) return note;
@@ -115,6 +123,7 @@ std::string scene_figure(const EpisodeScene& scene, bool in_plane,
   if (in_plane) {
     if (parts.particles) html += scene_box("particles", "particles");
     if (parts.stages > 0) html += scene_box("plan", "plan") + scene_box("ghost", "model’s vehicle");
+    if (has_moving && parts.stages > 0) html += scene_box("forecast", "forecasts");
     html += scene_box("way", "way driven");
   }
   return html + "<button type=\"button\" class=\"whole\">Show all of it</button></div>\n" +
@@ -168,7 +177,8 @@ std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeSce
   const std::string meaning(parts.stages > 0 ? kMeaning : kMeaningWithoutPlan);
   if (trace.steps.empty()) return head + film + meaning;
   const std::string moment = fmt::format(kMoment, parts.cost ? kWhy : std::string_view());
-  const std::string plane = live_map(map, parts);
+  const bool has_moving = !controller::moving_obstacles(view.scenario().safe_set).empty();
+  const std::string plane = live_map(map, parts, has_moving);
   std::string html = head + player(trace);
   if (!film.empty() && !plane.empty()) {
     html += columns(film + moment, plane + meaning);
@@ -182,7 +192,8 @@ std::string drive(const EpisodeView& view, const PlaneMap* map, const EpisodeSce
         view.summary().no_bound.empty() ? "Upper bounds" : "Estimates that are no bounds";
     html += "<div class=\"grid drive below\">\n" + fmt::format(kStageCharts, what) + "</div>\n";
   }
-  return html + scene_figure(scene, map != nullptr && has_position(view.system()), parts);
+  return html +
+         scene_figure(scene, map != nullptr && has_position(view.system()), parts, has_moving);
 }
 
 std::string charts_html(const std::vector<Chart>& charts) {
@@ -227,6 +238,9 @@ std::string episode_page(const EpisodeView& view, const EpisodePageOptions& opti
   html += drive(view, ground, scene, options);
   html += charts_html(charts) + "<div class=\"grid below\">\n";
   if (maps) html += map_figure(maps->drive);
+  if (maps) {
+    for (const PlaneMap& map : maps->coloured) html += map_figure(map);
+  }
   html += "<section class=\"card mismatch\">\n" + std::string(kMismatchNote) + figures.mismatch +
           "</section>\n</div>\n" + ending(trace);
   if (moves) {

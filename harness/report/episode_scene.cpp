@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <vector>
 
@@ -39,6 +40,18 @@ Placement moved(const Placement& place, double share, const Placement& before,
   const Eigen::Quaterniond turn = after.rotation * before.rotation.conjugate();
   return {place.position + share * (after.position - before.position),
           Eigen::Quaterniond::Identity().slerp(share, turn) * place.rotation};
+}
+
+/// x and y in turn along the circle.
+std::vector<double> points_about(const MapCircle& circle) {
+  constexpr int kSides = 48;
+  std::vector<double> points;
+  for (int i = 0; i <= kSides; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / kSides;
+    points.insert(points.end(), {circle.centre.x + circle.radius * std::cos(angle),
+                                 circle.centre.y + circle.radius * std::sin(angle)});
+  }
+  return points;
 }
 
 /// Spreads the jump at the end of each period over all of it.
@@ -200,6 +213,7 @@ class SceneData {
                  {"partial", Json::array()},
                  {"polygons", Json::array()},
                  {"halfPlanes", Json::array()},
+                 {"lines", Json::array()},
                  {"targets", Json::array()}};
     for (const MapRectangle& box : map.obstacles) json["obstacles"].push_back(of_rectangle(box));
     for (const MapRectangle& box : map.partial_obstacles) {
@@ -215,7 +229,17 @@ class SceneData {
     for (const MapHalfPlane& half_plane : map.half_planes) {
       json["halfPlanes"].push_back({half_plane.normal.x, half_plane.normal.y, half_plane.offset});
     }
+    for (const MapPath& line : map.lines) {
+      std::vector<double> points;
+      for (const MapPoint& point : line.points) points.insert(points.end(), {point.x, point.y});
+      json["lines"].push_back({{"points", packed_floats(points)}, {"faint", line.dashed}});
+    }
     for (const MapCircle& target : map.targets) {
+      if (target.is_waypoint) {
+        json["lines"].push_back(
+            {{"points", packed_floats(points_about(target))}, {"faint", false}});
+        continue;
+      }
       json["targets"].push_back({target.centre.x, target.centre.y, target.radius});
     }
     return json;

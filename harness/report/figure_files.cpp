@@ -99,6 +99,10 @@ std::vector<FigureFile> episode_figures(const EpisodeView& view) {
   std::vector<FigureFile> figures;
   if (std::optional<EpisodeMaps> maps = episode_maps(view)) {
     figures.push_back({.name = "map", .panels = {std::move(maps->drive)}});
+    for (PlaneMap& map : maps->coloured) {
+      const std::string name = free_name(figures, figure_name(map.title));
+      figures.push_back({.name = name, .panels = {std::move(map)}});
+    }
   }
   for (Chart& chart : episode_charts(view)) {
     const std::string name = free_name(figures, figure_name(chart.title));

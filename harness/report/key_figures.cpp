@@ -64,6 +64,34 @@ Tile time_tile(const Summary& summary) {
                                          : Verdict::kGood};
 }
 
+/// Of a drive along a path.
+Tile path_tile(const EpisodeView& view) {
+  const Summary& summary = view.summary();
+  const double length = view.scenario().target.course->path->length();
+  Tile tile{.name = "Along the path",
+            .value = format_short(summary.distance.value_or(0.0), 4) + " m",
+            .hint = fmt::format("the path is {} m long", format_short(length, 4))};
+  if (!summary.laps) return tile;
+  tile.hint =
+      fmt::format("{} of {} lap{} of {} m", summary.laps->times.size(), summary.laps->wanted,
+                  summary.laps->wanted == 1 ? "" : "s", format_short(length, 4));
+  for (std::size_t n = 0; n < summary.laps->times.size(); ++n) {
+    tile.hint += fmt::format("; lap {}: {}", n + 1, seconds(summary.laps->times[n]));
+  }
+  return tile;
+}
+
+/// Of a drive over waypoints.
+Tile waypoints_tile(const WaypointTimes& passed) {
+  Tile tile{.name = "Waypoints",
+            .value = fmt::format("{} of {}", passed.times.size(), passed.wanted),
+            .hint = "passed in order"};
+  for (std::size_t n = 0; n < passed.times.size(); ++n) {
+    tile.hint += fmt::format("; {}: {}", n + 1, seconds(passed.times[n]));
+  }
+  return tile;
+}
+
 Tile unsafe_tile(const EpisodeView& view) {
   const Summary& summary = view.summary();
   constexpr const char* kHint = "true state at the control instants";
@@ -293,6 +321,8 @@ std::string tiles_html(const EpisodeView& view) {
                                         summary.next_step_max, "upper bound of a probability"),
                              bound_tile(summary, "Sum of next-step certificates",
                                         summary.next_step_sum, "along the drive")};
+  if (summary.distance) tiles.insert(tiles.begin() + 1, path_tile(view));
+  if (summary.waypoints) tiles.insert(tiles.begin() + 1, waypoints_tile(*summary.waypoints));
   if (parts.stages > 0) {
     tiles.push_back(bound_tile(summary, "Largest plan certificate", summary.horizon_max,
                                "sum over a plan's stages"));

@@ -149,12 +149,15 @@ std::vector<controller::Obstacle> read_mjcf_obstacles(Section& section, const st
   const std::size_t before = reading.problems.size();
   const bool by_name = section.has(kGeoms);
   const bool by_group = section.has(kGroup);
-  (void)section.list_size(kGeoms);
+  const bool is_empty = section.list_size(kGeoms) == 0;
   (void)section.tree(kGroup);
   const double height = section.number(kHeight, kInfinity, kPositive);
   section.refuse_unread();
   if (by_name == by_group) {
     section.note_here("geoms, a list of names, or group, a number", by_name ? "both" : "neither");
+  }
+  if (reading.problems.size() == before && by_name && is_empty) {
+    section.note(kGeoms, "at least one name", "an empty list");
   }
   if (reading.problems.size() > before) return {};
   std::vector<controller::Obstacle> obstacles;

@@ -57,6 +57,10 @@ class GeoJson {
   void read_each(Section& object, const char* key) {
     object.require(key, "a list");
     const std::size_t count = object.list_size(key);
+    if (count == 0 && object.tree(key) != nullptr &&
+        object.tree(key)->kind == YamlNode::Kind::kList) {
+      object.note(key, "at least one, of which an obstacle is made", "an empty list");
+    }
     for (std::size_t i = 0; i < count; ++i) {
       Section item = object.item(key, i);
       if (item.present()) read(item);
@@ -180,6 +184,10 @@ class GeoJson {
 
 std::vector<Obstacle> obstacles_in(const YamlNode& tree, const ObstacleReading& reading) {
   if (tree.kind == YamlNode::Kind::kList) {
+    if (tree.items.empty()) {
+      reading.problems.add(tree, "", "an empty list", "at least one obstacle");
+      return {};
+    }
     YamlNode root{.kind = YamlNode::Kind::kMap, .line = tree.line};
     root.keys = {"obstacles"};
     root.items = {tree};

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "harness/scenario/keys/motion_keys.hpp"
 #include "harness/scenario/keys/shape_keys.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/section_values.hpp"
@@ -47,6 +48,11 @@ std::optional<Obstacle> read_item(Section& item, const ObstacleReading& reading)
   // Known keys, so that one that is misspelt is told of them.
   for (const std::string& state : coordinate_names(states)) (void)item.tree(state);
   const std::vector<std::string> shapes = named_shapes(item, states);
+  const bool moves = item.tree(kMotionKey) != nullptr;
+  if (shapes.empty() && moves) {
+    item.note(kMotionKey, fmt::format("none without one of the shapes {}, as only these move",
+                                      fmt::join(shape_names(), ", ")));
+  }
   if (shapes.empty()) return read_box(item, reading.system);
   const std::string& name = shapes.front();
   if (!has_plane(reading.system)) {
@@ -57,8 +63,13 @@ std::optional<Obstacle> read_item(Section& item, const ObstacleReading& reading)
   const std::size_t before = reading.problems.size();
   refuse_others(item, name, states);
   std::optional<controller::PlanarShape> shape = read_shape(item, name);
-  if (!shape || reading.problems.size() > before) return std::nullopt;
-  return Obstacle(std::move(*shape));
+  if (!shape) return std::nullopt;
+  Obstacle obstacle(std::move(*shape));
+  if (item.has(kMotionKey)) {
+    obstacle.motion = read_motion(item, controller::shape_centre(*obstacle.shape()));
+  }
+  if (reading.problems.size() > before) return std::nullopt;
+  return obstacle;
 }
 
 }  // namespace
@@ -89,7 +100,10 @@ std::vector<Obstacle> read_obstacles(Section& section, const std::string& key,
 
 std::string obstacle_text(const Obstacle& obstacle, const models::SystemDescription& system) {
   if (const controller::Box* box = obstacle.box()) return intervals_text(*box, system.states);
-  return shape_text(*obstacle.shape());
+  std::string shape = shape_text(*obstacle.shape());
+  if (!obstacle.motion) return shape;
+  return fmt::format("{{{}, {}: {}}}", shape.substr(1, shape.size() - 2), kMotionKey,
+                     motion_text(*obstacle.motion));
 }
 
 }  // namespace qsmpc::harness

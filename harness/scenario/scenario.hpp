@@ -15,8 +15,11 @@
 #include "controller/chance/chance_settings.hpp"
 #include "controller/control/mppi/mppi_settings.hpp"
 #include "controller/prediction/model_error.hpp"
+#include "controller/reference/path_target.hpp"
+#include "controller/reference/waypoints.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "harness/scenario/plant_mapping.hpp"
+#include "harness/scenario/target_path.hpp"
 #include "models/dynamics/dynamics.hpp"
 #include "models/dynamics/equations/equation_system.hpp"
 #include "models/random/noise_seeds.hpp"
@@ -68,9 +71,19 @@ struct Scenario {
     std::optional<double> wheelbase{};
   };
   struct Target {
-    Eigen::VectorXd state;      ///< state_dim
+    Eigen::VectorXd state;      ///< state_dim; with a path or waypoints, at the end
     double radius = 0.5;        ///< m, in the plane of position (or over all states without one)
     std::vector<int> angles{};  ///< indices of states whose target is meant modulo 2π
+    TargetPath path{};          ///< without a row: none
+    /// What controllers follow, where there is a path.
+    std::optional<controller::PathTarget> course{};
+    /// As they are written, [x, y] or state_dim numbers each; without one: none.
+    std::vector<Eigen::VectorXd> waypoints{};
+    /// What is driven to in turn, where there are waypoints.
+    std::optional<controller::Waypoints> route{};
+
+    [[nodiscard]] bool has_path() const { return path.rows.rows() > 0; }
+    [[nodiscard]] bool has_waypoints() const { return !waypoints.empty(); }
   };
   struct Quantisation {
     int state = 100;                    ///< points of the belief

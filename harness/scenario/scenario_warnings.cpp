@@ -21,7 +21,8 @@ namespace {
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 bool can_be_unsafe(const controller::SafeSet& safe_set) {
-  return !safe_set.obstacles.empty() || !controller::bounded_axes(safe_set.bounds).empty();
+  return !safe_set.obstacles.empty() || safe_set.road != nullptr ||
+         !controller::bounded_axes(safe_set.bounds).empty();
 }
 
 void warn_of_limits(const Scenario& scenario, std::vector<std::string>& warnings) {
@@ -62,7 +63,16 @@ void warn_of_degrees(const Scenario& scenario, std::vector<std::string>& warning
     }
   };
   question("initial_state.mean", scenario.initial_state.mean);
-  question("target.state", scenario.target.state);
+  if (scenario.target.has_waypoints()) {
+    for (std::size_t i = 0; i < scenario.target.waypoints.size(); ++i) {
+      const Eigen::VectorXd& given = scenario.target.waypoints[i];
+      if (given.size() == std::ssize(states)) {
+        question(fmt::format("target.waypoints.{}", i), given);
+      }
+    }
+  } else {
+    question("target.state", scenario.target.state);
+  }
 }
 
 /// Of a file that says of which plant its error was measured.

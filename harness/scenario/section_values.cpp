@@ -30,7 +30,8 @@ std::optional<std::string> named_file(Section& section, const std::string& key,
   fs::path path = fs::path(folder) / name;
   if (section.is_override(key) && !fs::is_regular_file(path, error)) path = name;
   if (!name.empty() && fs::is_regular_file(path, error)) return path.lexically_normal().string();
-  section.note(key, expected, "no file " + name);
+  const bool is_folder = !name.empty() && fs::is_directory(path, error);
+  section.note(key, expected, (is_folder ? "the folder " : "no file ") + name);
   return std::nullopt;
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "controller/regions/unsafe_set.hpp"
+#include "harness/scenario/target_course.hpp"
 #include "harness/text/number_parse.hpp"
 #include "models/linear_algebra.hpp"
 
@@ -64,6 +65,12 @@ std::optional<std::string> why_body_unsafe(const Eigen::VectorXd& state,
     if (clearance > 0.0) continue;
     return fmt::format("a body that reaches {:.3g} into safe_set.obstacles.{}", -clearance, k);
   }
+  one.obstacles.clear();
+  one.road = safe_set.road;
+  if (const double clearance = controller::clearance(state, one); clearance <= 0.0) {
+    return fmt::format("a body that reaches {:.3g} beyond the edge of target.path's road",
+                       -clearance);
+  }
   return std::nullopt;
 }
 
@@ -118,6 +125,10 @@ std::optional<std::string> why_unsafe(const Eigen::VectorXd& point,
     if (controller::clearance(point, one) <= 0.0) {
       return fmt::format("a state inside safe_set.obstacles.{}", k);
     }
+  }
+  if (safe_set.road) {
+    const Eigen::Vector2d place(point[safe_set.body.x], point[safe_set.body.y]);
+    if (!is_on_road(*safe_set.road, place)) return "a state off the road of target.path";
   }
   if (safe_set.body.is_point()) return std::nullopt;
   return why_body_unsafe(point, safe_set, states);

@@ -142,6 +142,14 @@ void Section::note(const std::string& key, const std::string& expected, std::str
   problems_->add(node == nullptr ? *origin_ : *node, path_of(key), std::move(found), expected);
 }
 
+void Section::note_item(const std::string& key, std::size_t index, const std::string& expected,
+                        std::string found) {
+  const YamlNode& list = *get(key);
+  const YamlNode& item = index < list.items.size() ? list.items[index] : list;
+  if (found.empty()) found = harness::describe(item);
+  problems_->add(item, fmt::format("{}.{}", path_of(key), index), std::move(found), expected);
+}
+
 void Section::note_here(const std::string& expected, std::string found) {
   problems_->add(*origin_, path_, std::move(found), expected);
 }

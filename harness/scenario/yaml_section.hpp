@@ -124,6 +124,10 @@ class Section {
   /// defaults to a description of it.
   void note(const std::string& key, const std::string& expected, std::string found = "");
 
+  /// The same of item `index` of the list that `key` holds, or of the list where it is shorter.
+  void note_item(const std::string& key, std::size_t index, const std::string& expected,
+                 std::string found = "");
+
   /// Notes a problem with this section as a whole.
   void note_here(const std::string& expected, std::string found);
 

@@ -37,6 +37,8 @@ std::vector<DatasetSpec> certificate_layout(std::optional<std::size_t> horizon) 
   };
   add_of_stages(kCertificateValuePath, kCertificateValueMeaning);
   for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
+    // Plans that were driven do not have the others.
+    if (horizon && !entry.in_control) continue;
     add_of_stages(certificate_path(entry), entry.meaning);
   }
   layout.push_back({.path = "/certificate/kind",
@@ -60,6 +62,7 @@ void append_certificates(Hdf5File& file, const std::vector<controller::StageBudg
   file.append("/certificate/lipschitz", column_of(budgets, &controller::StageBudget::lipschitz));
   file.append(kCertificateValuePath, column_of(certificates, &controller::StageCertificate::value));
   for (const controller::CertificateEntry& entry : controller::certificate_entries()) {
+    if (!file.has_dataset(certificate_path(entry))) continue;
     std::vector<double> column;
     column.reserve(certificates.size());
     for (const controller::StageCertificate& stage : certificates) {

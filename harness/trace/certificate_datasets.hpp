@@ -17,7 +17,7 @@ namespace qsmpc::harness {
     std::optional<std::size_t> horizon = std::nullopt);
 
 /// Appends `budgets` of stages 0 … horizon and `certificates` of stages 1 … horizon: one step, or
-/// all stages. Throws IoError.
+/// all stages, as far as the layout has a dataset for them. Throws IoError.
 void append_certificates(Hdf5File& file, const std::vector<controller::StageBudget>& budgets,
                          const std::vector<controller::StageCertificate>& certificates);
 

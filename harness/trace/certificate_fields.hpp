@@ -57,6 +57,6 @@ inline constexpr const char* kModelErrorMeaning =
     "W2 error that the scenario's model_error alone would give; 0 without one";
 inline constexpr const char* kLipschitzMeaning =
     "bound of the closed loop's Lipschitz constant from this stage to the next; 1 at the last";
-inline constexpr const char* kKindMeaning = "which bound the value is: c1, c2, c3 or c4";
+inline constexpr const char* kKindMeaning = "which bound the value is: c1, c2, c3, c4 or c5";
 
 }  // namespace qsmpc::harness

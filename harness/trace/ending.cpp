@@ -4,11 +4,22 @@
 #include <cmath>
 
 #include "controller/planning/cost/angular_target.hpp"
+#include "harness/trace/target_progress.hpp"
+#include "harness/trace/true_places.hpp"
 
 namespace qsmpc::harness {
 
 bool at_target(const Scenario& scenario, const models::SystemDescription& system,
-               const Eigen::VectorXd& state) {
+               const Eigen::VectorXd& state, std::optional<double> progress) {
+  if (scenario.target.course) {
+    const controller::PathTarget& course = *scenario.target.course;
+    if (!progress) return false;
+    if (course.path->closed()) return *progress >= course.end;
+    if (*progress < course.end - scenario.target.radius) return false;
+  }
+  if (const auto& route = scenario.target.route) {
+    if (!progress || *progress + 1.0 < route->count()) return false;
+  }
   const Eigen::VectorXd offset =
       controller::target_offset(scenario.target.state, scenario.target.angles, state);
   const int x = system.position_x;
@@ -17,6 +28,16 @@ bool at_target(const Scenario& scenario, const models::SystemDescription& system
   return distance <= scenario.target.radius;
 }
 
+namespace {
+
+std::optional<double> final_progress(const Trace& trace) {
+  const std::vector<double> along = progress_of(trace);
+  if (along.empty()) return std::nullopt;
+  return along.back();
+}
+
+}  // namespace
+
 bool ended_at_target(const Trace& trace) {
   switch (trace.outcome) {
     case Outcome::kReached:
@@ -24,8 +45,8 @@ bool ended_at_target(const Trace& trace) {
     case Outcome::kCollision:
     case Outcome::kLeftBounds:
       // A drive that stops where it is unsafe is over before it is asked whether it has arrived.
-      return !trace.scenario.stop_when_unsafe && trace.final_state.size() > 0 &&
-             at_target(trace.scenario, trace.system, trace.final_state);
+      if (trace.scenario.stop_when_unsafe || trace.final_state.size() == 0) return false;
+      return at_target(trace.scenario, trace.system, trace.final_state, final_progress(trace));
     case Outcome::kTimeout:
     case Outcome::kFault:
     case Outcome::kInterrupted:
@@ -47,10 +68,10 @@ std::optional<Outcome> outcome_in(controller::UnsafePart part) {
 }
 
 std::optional<Outcome> first_unsafe_outcome(const Trace& trace) {
-  const controller::UnsafeSet unsafe(trace.scenario.safe_set);
+  const controller::UnsafeSet unsafe(driven_safe_set(trace));
   const Eigen::MatrixXd states = true_states(trace);
   for (Eigen::Index k = 0; k < states.cols(); ++k) {
-    const auto outcome = outcome_in(controller::unsafe_part(states.col(k), unsafe));
+    const auto outcome = outcome_in(controller::unsafe_part(states.col(k), unsafe, k));
     if (outcome) return outcome;
   }
   return std::nullopt;

@@ -19,9 +19,11 @@ namespace qsmpc::harness {
 inline constexpr const char* kLeftSafeSet = "left_safe_set";
 
 /// Whether `state` (state_dim) is within the target's radius: in the plane of position where the
-/// system has one, else in the norm of all states.
+/// system has one, else in the norm of all states. On a path, at arc length `progress`: whether all
+/// laps are done, or the end of an open path is within the radius. Of waypoints, `progress` of
+/// which have been passed: whether it is the last.
 [[nodiscard]] bool at_target(const Scenario& scenario, const models::SystemDescription& system,
-                             const Eigen::VectorXd& state);
+                             const Eigen::VectorXd& state, std::optional<double> progress = {});
 
 /// Whether the drive ended at its target, whatever happened on the way; not one that broke or was
 /// interrupted.

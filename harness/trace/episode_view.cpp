@@ -6,6 +6,7 @@
 
 #include "controller/regions/unsafe_set.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/trace/true_places.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -35,9 +36,9 @@ EpisodeView::EpisodeView(const Trace& trace)
       states_(true_states(trace)),
       clearances_(states_.cols()),
       residuals_(residuals_of(trace)) {
-  const controller::UnsafeSet unsafe(trace.scenario.safe_set);
+  const controller::UnsafeSet unsafe(driven_safe_set(trace));
   for (Eigen::Index k = 0; k < states_.cols(); ++k) {
-    clearances_[k] = controller::clearance(states_.col(k), unsafe);
+    clearances_[k] = controller::clearance(states_.col(k), unsafe, k);
   }
   summary_ = summarise(*this);
 }

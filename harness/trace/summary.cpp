@@ -11,6 +11,7 @@
 #include "controller/planning/cost/angular_target.hpp"
 #include "controller/planning/solvers/ocp_solver.hpp"
 #include "harness/scenario/certificate_scope.hpp"
+#include "harness/scenario/model_dynamics.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/episode_view.hpp"
@@ -66,8 +67,12 @@ nlohmann::ordered_json or_null(const std::optional<Value>& value) {
 }
 
 void add_cost(const Trace& trace, Summary& summary) {
-  for (const StepRecord& step : trace.steps) {
-    summary.closed_loop_cost += period_cost(trace.scenario, step.state, step.input);
+  const std::vector<double> progress = progress_of(trace);
+  for (std::size_t k = 0; k < trace.steps.size(); ++k) {
+    const StepRecord& step = trace.steps[k];
+    std::optional<double> now;
+    if (k < progress.size()) now = progress[k];
+    summary.closed_loop_cost += period_cost(trace.scenario, step.state, step.input, now);
   }
 }
 
@@ -128,6 +133,18 @@ nlohmann::ordered_json believed_json(const std::optional<BelievedRisk>& believed
   return {{"max", believed->max}, {"mean", believed->mean}, {"sum", believed->sum}};
 }
 
+nlohmann::ordered_json path_json(const Scenario& scenario, const Summary& summary) {
+  nlohmann::ordered_json json{{"length", scenario.target.course->path->length()},
+                              {"distance", *summary.distance},
+                              {"laps", nullptr}};
+  if (summary.laps) {
+    json["laps"] = {{"wanted", summary.laps->wanted},
+                    {"done", summary.laps->times.size()},
+                    {"times", summary.laps->times}};
+  }
+  return json;
+}
+
 void add_mismatch(const EpisodeView& view, Summary& summary) {
   const Eigen::MatrixXd& residuals = view.residuals();
   const Eigen::Index dim = residuals.rows();
@@ -173,11 +190,33 @@ void add_risk(const RiskUse& risk, nlohmann::ordered_json& json) {
 
 }  // namespace
 
+namespace {
+
+/// State less what is wanted of it.
+Eigen::VectorXd offset_from_target(const Scenario& scenario, const Eigen::VectorXd& state,
+                                   std::optional<double> progress) {
+  const Scenario::Target& target = scenario.target;
+  if (target.route) {
+    return controller::target_offset(target.route->next(progress.value_or(0.0)), target.angles,
+                                     state);
+  }
+  if (!target.course || !state.allFinite()) {
+    return controller::target_offset(target.state, target.angles, state);
+  }
+  const models::SystemDescription system = system_of(scenario);
+  const Eigen::Vector2d position(state[system.position_x], state[system.position_y]);
+  Eigen::MatrixXd wanted(state.size(), 1);
+  controller::path_targets(*target.course, system, state,
+                           controller::progress_on(*target.course, position, {}), wanted);
+  return state - wanted.col(0);
+}
+
+}  // namespace
+
 double period_cost(const Scenario& scenario, const Eigen::VectorXd& state,
-                   const Eigen::VectorXd& input) {
+                   const Eigen::VectorXd& input, std::optional<double> progress) {
   const Scenario::Cost& cost = scenario.controller.cost;
-  const Eigen::VectorXd offset =
-      controller::target_offset(scenario.target.state, scenario.target.angles, state);
+  const Eigen::VectorXd offset = offset_from_target(scenario, state, progress);
   return 0.5 * offset.dot(cost.state * offset) + input.dot(cost.input * input);
 }
 
@@ -194,6 +233,12 @@ Summary summarise(const EpisodeView& view) {
   if (trace.outcome == Outcome::kFault) summary.fault_of = fault_of_name(trace.fault_of);
   summary.steps = static_cast<int>(trace.steps.size());
   summary.no_bound = why_no_bound(trace.scenario);
+  if (const auto& course = trace.scenario.target.course) {
+    const std::vector<double> along = progress_of(trace);
+    if (!along.empty()) summary.distance = along.back() - course->begin;
+  }
+  summary.laps = laps_of(trace);
+  summary.waypoints = waypoint_times(trace);
   if (ended_at_target(trace)) {
     summary.time_to_target = summary.steps * trace.scenario.time_step;
   }
@@ -221,6 +266,12 @@ std::string summary_json(const EpisodeView& view, const SummaryOptions& options)
   json["steps"] = summary.steps;
   json["time_to_target"] = nullptr;
   if (summary.time_to_target) json["time_to_target"] = *summary.time_to_target;
+  if (summary.distance) json["path"] = path_json(view.scenario(), summary);
+  if (summary.waypoints) {
+    json["waypoints"] = {{"wanted", summary.waypoints->wanted},
+                         {"passed", summary.waypoints->times.size()},
+                         {"times", summary.waypoints->times}};
+  }
   json["collision"] = summary.collision;
   json["min_clearance"] = summary.min_clearance;
   json["unsafe_between"] = or_null(summary.unsafe_between);

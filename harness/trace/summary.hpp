@@ -9,6 +9,7 @@
 
 #include "harness/statistics/quantiles.hpp"
 #include "harness/trace/risk_use.hpp"
+#include "harness/trace/target_progress.hpp"
 #include "harness/trace/trace.hpp"
 
 #pragma GCC visibility push(default)
@@ -33,9 +34,12 @@ struct Summary {
   std::string fault;     ///< the words of what broke; empty without a fault
   std::string fault_of;  ///< "plant" or "controller"; empty without a fault
   int steps = 0;
-  std::optional<double> time_to_target;  ///< s; also of a drive that was unsafe on its way
-  bool collision = false;                ///< the true state entered the unsafe set
-  double min_clearance = 0.0;            ///< m, over all true states at the control instants
+  std::optional<double> time_to_target;    ///< s; also of a drive that was unsafe on its way
+  std::optional<double> distance;          ///< m, along the path; nothing without one
+  std::optional<Laps> laps;                ///< of a closed path
+  std::optional<WaypointTimes> waypoints;  ///< nothing without any
+  bool collision = false;                  ///< the true state entered the unsafe set
+  double min_clearance = 0.0;              ///< m, over all true states at the control instants
   /// Whether the true state was unsafe at a step of the simulator between the control instants,
   /// before the disturbance; nothing where no such state is known.
   std::optional<bool> unsafe_between;
@@ -67,9 +71,10 @@ struct Summary {
 };
 
 /// ½ |x − r|²_Q + |u|²_R of a period that begins in `state` (state_dim) with `input` (input_dim):
-/// what the closed-loop cost is the sum of.
+/// what the closed-loop cost is the sum of. Along a path r is wanted where that is nearest; of
+/// waypoints, the next after `progress` of them.
 [[nodiscard]] double period_cost(const Scenario& scenario, const Eigen::VectorXd& state,
-                                 const Eigen::VectorXd& input);
+                                 const Eigen::VectorXd& input, std::optional<double> progress = {});
 
 class EpisodeView;
 

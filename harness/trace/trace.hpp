@@ -49,7 +49,10 @@ struct StepRecord {
   /// disturbance; not a number without a simulator, and in traces of earlier versions.
   double clearance_between = kNotANumber;
   PlantContact contact;
-  Eigen::VectorXd belief_mean;  ///< what the plan was made for, state_dim
+  // Of the obstacles that move, in their order, when the input is chosen.
+  Eigen::Matrix3Xd obstacles;       ///< offset x, y (m) from where they are written, turn (rad)
+  Eigen::Matrix2Xd obstacles_seen;  ///< what the planner sees of the offsets, m
+  Eigen::VectorXd belief_mean;      ///< what the plan was made for, state_dim
   Eigen::MatrixXd belief_covariance;
   // Of the plan; empty where the controller makes none.
   Eigen::MatrixXd plan_inputs;              ///< input_dim x horizon
@@ -107,7 +110,8 @@ struct Trace {
   std::string vehicle_digest{};
   std::vector<StepRecord> steps;
   Eigen::VectorXd final_state;  ///< true state after the last period, state_dim; empty if not known
-  std::vector<MotionSample> motion;  ///< of the whole episode, oldest first
+  Eigen::Matrix3Xd final_obstacles{};  ///< as a step's, at the same time
+  std::vector<MotionSample> motion;    ///< of the whole episode, oldest first
   Outcome outcome = Outcome::kTimeout;
   std::string fault;  ///< what happened where the outcome is kFault, e.g. the simulator's words
   FaultOf fault_of = FaultOf::kPlant;  ///< who broke it there

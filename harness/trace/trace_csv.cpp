@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "harness/text/csv.hpp"
+#include "harness/trace/driven_obstacles.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -47,6 +48,15 @@ class Table {
   std::string out_;
   bool begins_ = true;
 };
+
+/// Of the obstacles that move, among all of them.
+std::vector<std::size_t> moving_indices(const controller::SafeSet& safe_set) {
+  std::vector<std::size_t> indices;
+  for (std::size_t i = 0; i < safe_set.obstacles.size(); ++i) {
+    if (safe_set.obstacles[i].motion) indices.push_back(i);
+  }
+  return indices;
+}
 
 void episode_head(const EpisodeView& view, Table& table) {
   const models::SystemDescription& system = view.system();
@@ -119,6 +129,36 @@ std::string plan_csv(const EpisodeView& view) {
       const bool certified = k > 0 && k <= std::ssize(step.certificates);
       table.number(certified ? step.certificates[static_cast<std::size_t>(k - 1)].value
                              : kNotANumber);
+      table.end_line();
+    }
+  }
+  return table.str();
+}
+
+std::string obstacles_csv(const EpisodeView& view) {
+  Table table;
+  for (const char* head :
+       {"time [s]", "obstacle", "x [m]", "y [m]", "turn [rad]", "seen x [m]", "seen y [m]"}) {
+    table.text(head);
+  }
+  table.end_line();
+  const std::vector<StepRecord>& steps = view.trace().steps;
+  const DrivenObstacles others(view.trace());
+  const std::vector<std::size_t> indices = moving_indices(view.scenario().safe_set);
+  for (std::size_t k = 0; k < others.poses().size(); ++k) {
+    for (std::size_t n = 0; n < others.count(); ++n) {
+      const auto column = static_cast<Eigen::Index>(n);
+      const Eigen::Vector2d centre = controller::shape_centre(others.shape(n));
+      const Eigen::Vector3d pose = others.poses()[k].col(column);
+      table.number(static_cast<double>(k) * view.scenario().time_step);
+      table.count(indices[n]);
+      table.numbers(centre + pose.head<2>(), 2);
+      table.number(pose[2]);
+      if (k < steps.size() && column < steps[k].obstacles_seen.cols()) {
+        table.numbers(centre + steps[k].obstacles_seen.col(column), 2);
+      } else {
+        table.nothing(2);
+      }
       table.end_line();
     }
   }

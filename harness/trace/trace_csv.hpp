@@ -17,6 +17,11 @@ namespace qsmpc::harness {
 /// The head alone where nothing is planned.
 [[nodiscard]] std::string plan_csv(const EpisodeView& view);
 
+/// A line a control instant and obstacle that moves: its index among the scenario's obstacles,
+/// where its middle is, its turn from how it is written, and where it was seen to be. The head
+/// alone where nothing moves.
+[[nodiscard]] std::string obstacles_csv(const EpisodeView& view);
+
 /// A line a period, stage and particle: weight and location. The head alone without particles.
 [[nodiscard]] std::string particles_csv(const EpisodeView& view);
 

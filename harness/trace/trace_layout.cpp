@@ -30,7 +30,8 @@ struct TraceSizes {
   CoordinateLabels states;
   CoordinateLabels inputs;
   std::string clearance_unit;
-  bool solid;  // whether contacts are recorded
+  bool solid;             // whether contacts are recorded
+  std::size_t obstacles;  // that move
 };
 
 TraceSizes trace_sizes(const Scenario& scenario, const models::SystemDescription& system) {
@@ -41,7 +42,8 @@ TraceSizes trace_sizes(const Scenario& scenario, const models::SystemDescription
           .states = labels_of(system.states),
           .inputs = labels_of(system.inputs),
           .clearance_unit = clearance_unit_of(scenario.safe_set, system),
-          .solid = scenario.plant.solid};
+          .solid = scenario.plant.solid,
+          .obstacles = controller::moving_obstacles(scenario.safe_set).size()};
 }
 
 void add_contact(std::vector<DatasetSpec>& layout) {
@@ -116,6 +118,30 @@ void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .units = {"SI"},
                     .comment = "generalised position of the MuJoCo model, for drawing",
                     .chunk_rows = kMotionChunk});
+}
+
+void add_obstacles(std::vector<DatasetSpec>& layout, std::size_t count) {
+  const std::vector<std::string> pose = {"x", "y", "turn"};
+  layout.push_back({.path = kObstaclePosePath,
+                    .row_shape = {count, pose.size()},
+                    .axes = {"step", "obstacle", "coordinate"},
+                    .units = {"m", "m", "rad"},
+                    .columns = pose,
+                    .comment = "offset of each moving obstacle from where it is written, and its "
+                               "turn about its centre, at the beginning of the period"});
+  layout.push_back({.path = kObstacleSeenPath,
+                    .row_shape = {count, 2},
+                    .axes = {"step", "obstacle", "coordinate"},
+                    .units = {"m", "m"},
+                    .columns = {"x", "y"},
+                    .comment = "what the planner saw of the offset"});
+  layout.push_back({.path = kObstacleFinalPath,
+                    .row_shape = {pose.size()},
+                    .axes = {"obstacle", "coordinate"},
+                    .units = {"m", "m", "rad"},
+                    .columns = pose,
+                    .comment = "after the last period; empty if the run was killed",
+                    .chunk_rows = count});
 }
 
 void add_belief(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
@@ -229,6 +255,7 @@ std::vector<DatasetSpec> trace_layout(const Scenario& scenario,
   const TraceSizes sizes = trace_sizes(scenario, system);
   std::vector<DatasetSpec> layout;
   add_plant(layout, sizes);
+  if (sizes.obstacles > 0) add_obstacles(layout, sizes.obstacles);
   add_belief(layout, sizes);
   if (sizes.parts.stages > 0) add_policy(layout, sizes);
   add_solution(layout, sizes);

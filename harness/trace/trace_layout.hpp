@@ -28,6 +28,11 @@ inline constexpr const char* kBetweenPath = "/plant/clearance_between";
 inline constexpr const char* kContactForcePath = "/plant/contact_force";
 inline constexpr const char* kContactTimePath = "/plant/contact_time";
 
+/// Of the obstacles that move, where there are any.
+inline constexpr const char* kObstaclePosePath = "/obstacles/pose";
+inline constexpr const char* kObstacleSeenPath = "/obstacles/seen";
+inline constexpr const char* kObstacleFinalPath = "/obstacles/final_pose";
+
 /// Of what controllers believe of the risk that they take.
 inline constexpr const char* kBelievedPath = "/controller/believed";
 

@@ -46,6 +46,7 @@ class TraceReader {
   void read_motion();
   void read_final_state();
   void read_plant_and_belief();
+  void read_obstacles();
   void read_between();
   void read_believed();
   void read_policy();
@@ -80,6 +81,7 @@ Trace TraceReader::read() {
   read_motion();
   read_final_state();
   read_plant_and_belief();
+  read_obstacles();
   read_between();
   read_believed();
   if (parts_.stages > 0) read_policy();
@@ -228,6 +230,25 @@ void TraceReader::read_plant_and_belief() {
     step.belief_covariance = Eigen::Map<const RowMajor>(
         row_of(covariances, k, state_dim_ * state_dim_), state_dim_, state_dim_);
   }
+}
+
+void TraceReader::read_obstacles() {
+  const Eigen::Index count = std::ssize(controller::moving_obstacles(trace_.scenario.safe_set));
+  if (count == 0) return;
+  const auto poses = file_.doubles(kObstaclePosePath);
+  const auto seen = file_.doubles(kObstacleSeenPath);
+  const auto last = file_.doubles(kObstacleFinalPath);
+  // An obstacle is a row in the file and a column in memory.
+  for (std::size_t k = 0; k < trace_.steps.size(); ++k) {
+    StepRecord& step = trace_.steps[k];
+    step.obstacles = Eigen::Map<const Eigen::Matrix3Xd>(row_of(poses, k, 3 * count), 3, count);
+    step.obstacles_seen = Eigen::Map<const Eigen::Matrix2Xd>(row_of(seen, k, 2 * count), 2, count);
+  }
+  if (last.empty()) return;
+  if (std::ssize(last) != 3 * count) {
+    refuse(kObstacleFinalPath, std::to_string(last.size()) + " numbers", std::to_string(3 * count));
+  }
+  trace_.final_obstacles = Eigen::Map<const Eigen::Matrix3Xd>(last.data(), 3, count);
 }
 
 void TraceReader::read_believed() {

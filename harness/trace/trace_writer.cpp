@@ -46,6 +46,7 @@ TraceWriter::TraceWriter(std::string path, const Trace& header)
       state_dim_(std::ssize(header.system.states)),
       input_dim_(std::ssize(header.system.inputs)),
       is_solid_(header.scenario.plant.solid),
+      obstacles_(std::ssize(controller::moving_obstacles(header.scenario.safe_set))),
       parts_(decision_parts(header.scenario)),
       stages_(certified_stages(parts_)) {
   write_trace_header(file_, header);
@@ -86,6 +87,8 @@ void TraceWriter::check_sizes(const StepRecord& record) const {
   require(record.belief_covariance.rows() == state_dim_ &&
               record.belief_covariance.cols() == state_dim_,
           "belief_covariance is not state_dim x state_dim");
+  require(record.obstacles.cols() == obstacles_ && record.obstacles_seen.cols() == obstacles_,
+          "obstacles are not as many as move");
   const auto stages = static_cast<std::size_t>(stages_);
   require(record.budgets.size() == stages + 1, "budgets are not stages + 1");
   require(record.certificates.size() == stages, "certificates are not stages");
@@ -140,6 +143,11 @@ void TraceWriter::append_vectors(const StepRecord& record) {
     file_.append(kContactForcePath, std::vector<double>{record.contact.force});
     file_.append(kContactTimePath, std::vector<double>{record.contact.time});
   }
+  if (obstacles_ > 0) {
+    // An obstacle is a column in memory and a row in the file.
+    file_.append(kObstaclePosePath, by_rows(record.obstacles.transpose()));
+    file_.append(kObstacleSeenPath, by_rows(record.obstacles_seen.transpose()));
+  }
   file_.append("/belief/mean", by_rows(record.belief_mean));
   file_.append("/belief/covariance", by_rows(record.belief_covariance));
 }
@@ -193,6 +201,9 @@ void TraceWriter::finish(const Trace& trace) {
     throw std::invalid_argument("final_state is not state_dim");
   }
   file_.append("/plant/final_state", by_rows(trace.final_state));
+  if (obstacles_ > 0) {
+    file_.append(kObstacleFinalPath, by_rows(trace.final_obstacles.transpose()));
+  }
   file_.end_streaming();
   file_.set_text("/", "outcome", outcome_name(trace.outcome));
   file_.set_text("/", "fault", trace.fault);

@@ -51,6 +51,7 @@ class TraceWriter {
   Eigen::Index state_dim_;
   Eigen::Index input_dim_;
   bool is_solid_ = false;            ///< whether they have contacts
+  Eigen::Index obstacles_;           // that move
   controller::DecisionParts parts_;  ///< that the records have
   Eigen::Index stages_;              ///< with a certificate
   std::int64_t points_ = 0;          ///< particles written so far

@@ -61,14 +61,17 @@ PlanarMoments planar_moments(const render::ParticleStage& stage) {
   return moments;
 }
 
-render::PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probability) {
+render::PlanarEllipse deviation_ellipse(const PlanarMoments& moments, double deviations) {
   const models::SymmetricEigen axes = models::symmetric_eigen(moments.covariance);
-  const double radius = planar_quantile(probability);
   const auto axis = [&](Eigen::Index i) {
     const double deviation = std::sqrt(std::max(axes.values[i], 0.0));
-    return point_of(radius * deviation * axes.vectors.col(i));
+    return point_of(deviations * deviation * axes.vectors.col(i));
   };
   return {.centre = point_of(moments.mean), .first_axis = axis(1), .second_axis = axis(0)};
+}
+
+render::PlanarEllipse probability_ellipse(const PlanarMoments& moments, double probability) {
+  return deviation_ellipse(moments, planar_quantile(probability));
 }
 
 std::vector<render::BeliefEllipses> belief_ellipses(const std::vector<PlanarMoments>& stages) {

@@ -23,6 +23,11 @@ struct PlanarMoments {
 [[nodiscard]] render::PlanarEllipse probability_ellipse(const PlanarMoments& moments,
                                                         double probability);
 
+/// The ellipse of what is `deviations` standard deviations from the mean; its first axis is the
+/// longer one.
+[[nodiscard]] render::PlanarEllipse deviation_ellipse(const PlanarMoments& moments,
+                                                      double deviations);
+
 /// 50 % and 95 % of each stage.
 [[nodiscard]] std::vector<render::BeliefEllipses> belief_ellipses(
     const std::vector<PlanarMoments>& stages);

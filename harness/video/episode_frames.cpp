@@ -1,41 +1,23 @@
 #include "harness/video/episode_frames.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <string>
 #include <utility>
-#include <variant>
 
 #include <fmt/format.h>
 
 #include "controller/control/controller.hpp"
 #include "controller/regions/body_outline.hpp"
+#include "harness/trace/target_progress.hpp"
 #include "harness/video/belief_shape.hpp"
+#include "models/constants.hpp"
 #include "render/scene/scene_painter.hpp"
 #include "render/scene/thinning.hpp"
 
 namespace qsmpc::harness {
 namespace {
-
-constexpr double kFlatHalfWidth = 0.5;  // m, of an obstacle in a direction that a system lacks
-
-// The region's sides along x and y; `missing` stands for half of one that the system lacks.
-render::PlanarRectangle planar_sides(const models::SystemDescription& system,
-                                     const controller::UnsafeRegion& region, double missing) {
-  const std::array<int, 2> index = {drawn_x(system), system.position_y};
-  const Eigen::Matrix2Xd corners = region.outline(0, index[0], index[1]).corners;
-  Eigen::Vector2d lower = corners.rowwise().minCoeff();
-  Eigen::Vector2d upper = corners.rowwise().maxCoeff();
-  for (int side = 0; side < 2; ++side) {
-    if (index[side] >= 0) continue;
-    lower[side] = -missing;
-    upper[side] = missing;
-  }
-  return {lower.x(), upper.x(), lower.y(), upper.y()};
-}
 
 /// What became of a drive that ended at `time` (s), and whether that is a failure.
 void add_banner(const EpisodeView& view, double time, render::Frame& frame) {
@@ -66,48 +48,6 @@ void add_banner(const EpisodeView& view, double time, render::Frame& frame) {
   }
 }
 
-std::vector<render::PlanarPoint> points_of(const Eigen::Matrix2Xd& corners) {
-  std::vector<render::PlanarPoint> points;
-  for (const auto& corner : corners.colwise()) points.push_back({corner.x(), corner.y()});
-  return points;
-}
-
-// Adds a shape of the plane of position.
-void add_shape(const controller::PlanarShape& shape, render::World& world) {
-  if (const auto* half_plane = std::get_if<controller::HalfPlaneShape>(&shape)) {
-    world.half_planes.push_back(
-        {{half_plane->normal.x(), half_plane->normal.y()}, half_plane->offset});
-    return;
-  }
-  render::Prism prism{.outline = points_of(controller::shape_outline(shape)), .pieces = {}};
-  if (std::holds_alternative<controller::PolygonShape>(shape)) {
-    for (const controller::ConvexPart& part : controller::convex_parts(shape)) {
-      prism.pieces.push_back(points_of(part.corners));
-    }
-  } else {
-    prism.pieces.push_back(prism.outline);
-  }
-  world.prisms.push_back(std::move(prism));
-}
-
-// The safe set in the plane of position: bounds and boxes as they are drawn, shapes as they are.
-controller::SafeSet planar_safe_set(const render::World& world,
-                                    const std::vector<controller::Obstacle>& obstacles) {
-  const auto box = [](const render::PlanarRectangle& area) {
-    return controller::Box{Eigen::Vector2d(area.x_lower, area.y_lower),
-                           Eigen::Vector2d(area.x_upper, area.y_upper)};
-  };
-  controller::SafeSet safe_set{
-      .bounds = box(world.bounds), .obstacles = {}, .body = {.discs = {}, .x = 0, .y = 1}};
-  for (const render::PlanarRectangle& obstacle : world.obstacles) {
-    safe_set.obstacles.emplace_back(box(obstacle));
-  }
-  for (const controller::Obstacle& obstacle : obstacles) {
-    if (obstacle.shape() != nullptr) safe_set.obstacles.push_back(obstacle);
-  }
-  return safe_set;
-}
-
 constexpr double kRailTime = 1.0;  // m/s: on a rail, y is time
 
 std::string every_nth(std::size_t every) { return fmt::format("1 of {}", every); }
@@ -121,10 +61,13 @@ EpisodeFrames::EpisodeFrames(const EpisodeView& view, const Overlays& overlays)
       track_(view),
       on_rail_(is_on_rail(view.system())),
       vehicle_(drawn_vehicle(view)),
-      planar_unsafe_(planar_safe_set(world(), view.scenario().safe_set.obstacles)),
+      others_(view),
+      planar_clearances_(view, world(), others_.driven()),
       ranges_(chart_ranges(view)) {
+  if (view.scenario().target.route) waypoints_passed_ = progress_of(view.trace());
   if (overlays_.raw) raw_.emplace(view.scenario());
   if (on_rail_) joints_ = JointPose::of(view.scenario(), view.system(), vehicle_);
+  if (overlays_.path) path_clearances_ = path_clearances();
 }
 
 std::string EpisodeFrames::heading() const {
@@ -135,26 +78,6 @@ std::string EpisodeFrames::heading() const {
                      !planned ? scenario.controller.kind
                      : closed ? "closed loop"
                               : "open loop");
-}
-
-render::World EpisodeFrames::world() const {
-  const models::SystemDescription& system = view_.system();
-  const Scenario& scenario = view_.scenario();
-  render::World world;
-  const controller::UnsafeSet unsafe(scenario.safe_set);
-  world.bounds = planar_sides(system, unsafe.walls(), std::numeric_limits<double>::infinity());
-  const double missing = on_rail_ ? std::numeric_limits<double>::infinity() : kFlatHalfWidth;
-  for (std::size_t k = 0; k < scenario.safe_set.obstacles.size(); ++k) {
-    if (const controller::PlanarShape* shape = scenario.safe_set.obstacles[k].shape()) {
-      add_shape(*shape, world);
-    } else {
-      world.obstacles.push_back(planar_sides(system, *unsafe.obstacles()[k], missing));
-    }
-  }
-  const render::PlanarPose target = planar_pose(system, scenario.target.state);
-  world.target = {target.x, target.y};
-  world.target_radius = scenario.target.radius;
-  return world;
 }
 
 render::PlanarRectangle EpisodeFrames::region() const {
@@ -182,6 +105,23 @@ double EpisodeFrames::longest_plan() const {
   return longest;
 }
 
+// Of all points of the driven path but the last, whose time depends on the frame's; those of a rail
+// are clearances of the whole state.
+std::vector<double> EpisodeFrames::path_clearances() const {
+  if (steps_.empty()) return {};
+  std::vector<render::PlanarPoint> path = track_.driven_path(kInfinity);
+  path.pop_back();
+  std::vector<double> times;
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    times.push_back(std::min(track_.path_time(i), duration()));
+  }
+  if (!on_rail_) return planar_clearances_.of(path, times);
+  std::vector<double> clearances;
+  clearances.reserve(times.size());
+  for (const double time : times) clearances.push_back(clearance_at(time));
+  return clearances;
+}
+
 std::size_t EpisodeFrames::step_at(double time) const {
   const auto later =
       std::upper_bound(steps_.begin(), steps_.end(), time + kTimeTolerance,
@@ -197,6 +137,7 @@ render::Frame EpisodeFrames::at(double time) const {
   frame.title = view_.scenario().name;
   frame.qpos = track_.qpos(now);
   frame.pose = track_.pose(now);
+  frame.moving = others_.at(now);
   if (steps_.empty()) {
     add_banner(view_, now, frame);
     return frame;
@@ -204,18 +145,20 @@ render::Frame EpisodeFrames::at(double time) const {
   frame.followed = track_.smooth_pose(now);
   frame.driven_path = track_.driven_path(now);
   if (overlays_.path) {
-    const std::size_t count = frame.driven_path.size();
-    for (std::size_t i = 0; i < count; ++i) {
-      const render::PlanarPoint& point = frame.driven_path[i];
-      frame.clearances.push_back(
-          on_rail_ ? clearance_at(driven_time(i, count, now))
-                   : controller::clearance(Eigen::Vector2d(point.x, point.y), planar_unsafe_));
-    }
+    const auto before = static_cast<std::ptrdiff_t>(frame.driven_path.size() - 1);
+    frame.clearances.assign(path_clearances_.begin(), path_clearances_.begin() + before);
+    frame.clearances.push_back(
+        on_rail_ ? clearance_at(now)
+                 : planar_clearances_.of({frame.driven_path.back()}, {now}).front());
   }
   const std::size_t step = step_at(now);
+  if (step < waypoints_passed_.size()) {
+    frame.waypoints_passed = static_cast<std::size_t>(waypoints_passed_[step]);
+  }
   frame.hud = hud_rows(view_.trace(), step, now, track_.driven_speed(now));
   add_plan(steps_[step], frame);
   add_belief(steps_[step], frame);
+  if (overlays_.ellipses) frame.forecasts = others_.forecasts(step);
   if (overlays_.body) frame.body = body_at(frame.pose);
   if (overlays_.ghost) frame.ghost = ghost(step, now);
   if (on_rail_) put_on_rail(step, now, frame);

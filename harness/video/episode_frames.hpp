@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "controller/regions/unsafe_set.hpp"
 #include "harness/plant/mujoco/joint_pose.hpp"
 #include "harness/trace/episode_view.hpp"
 #include "harness/video/episode_hud.hpp"
 #include "harness/video/episode_track.hpp"
+#include "harness/video/episode_world.hpp"
+#include "harness/video/moving_bodies.hpp"
 #include "harness/video/overlays.hpp"
 #include "harness/video/raw_points.hpp"
 #include "render/frame.hpp"
@@ -37,10 +38,11 @@ class EpisodeFrames {
   /// Scenario, plant and policy in one line.
   [[nodiscard]] std::string heading() const;
 
-  /// Bounds, obstacles and target of the scenario, as far as they lie in the plane of position.
-  [[nodiscard]] render::World world() const;
+  /// See episode_world.
+  [[nodiscard]] render::World world() const { return episode_world(view_); }
 
-  /// The smallest rectangle about the world and the whole way driven.
+  /// The smallest rectangle about the world and the whole way driven; obstacles that move may be
+  /// beyond it.
   [[nodiscard]] render::PlanarRectangle region() const;
 
   /// m, the longest plan of the episode: how far a camera must see.
@@ -51,8 +53,8 @@ class EpisodeFrames {
   void set_ranges(const ChartRanges& ranges) { ranges_ = ranges; }
 
   /// The frame at `time` (s); from `duration()` on with a banner that tells the outcome. Plan,
-  /// particles and certificate are those of the control period that `time` is in. More than
-  /// kMostOverlayPoints points are thinned, and a row says so.
+  /// particles, certificate and forecasts are those of the control period that `time` is in. More
+  /// than kMostOverlayPoints points are thinned, and a row says so.
   [[nodiscard]] render::Frame at(double time) const;
 
  private:
@@ -71,6 +73,7 @@ class EpisodeFrames {
   [[nodiscard]] Eigen::VectorXd state_at(std::size_t step, double time) const;
   [[nodiscard]] double driven_time(std::size_t i, std::size_t count, double now) const;
   [[nodiscard]] double clearance_at(double time) const;
+  [[nodiscard]] std::vector<double> path_clearances() const;
   void put_on_rail(std::size_t step, double time, render::Frame& frame) const;
 
   const EpisodeView& view_;
@@ -80,9 +83,12 @@ class EpisodeFrames {
   bool on_rail_;
   std::string vehicle_;
   std::optional<JointPose> joints_;  // on a rail
-  controller::UnsafeSet planar_unsafe_;
-  std::optional<RawPoints> raw_;  // where they are drawn
+  MovingBodies others_;
+  PlanarClearances planar_clearances_;
+  std::vector<double> path_clearances_;  // see path_clearances()
+  std::optional<RawPoints> raw_;         // where they are drawn
   ChartRanges ranges_;
+  std::vector<double> waypoints_passed_;  // at each control instant; empty without waypoints
 };
 
 }  // namespace qsmpc::harness

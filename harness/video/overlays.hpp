@@ -11,7 +11,7 @@ namespace qsmpc::harness {
 
 struct Overlays {
   bool particles = true;  ///< every stage's points, area by weight
-  bool ellipses = true;   ///< 50 % and 95 % of every stage
+  bool ellipses = true;   ///< 50 % and 95 % of every stage; forecasts of what moves
   bool tube = true;       ///< along the plan, coloured by the stages' certificates
   bool ghost = true;      ///< the vehicle where the plan before predicted it to be now
   bool raw = false;       ///< the points that were compressed to the particles

@@ -26,6 +26,11 @@ enum class RandomStream : std::uint64_t {
   kPlanning = 7,    ///< paths that a controller samples, a period an episode
   kSearch = 8,      ///< the order in which the points of a grid of settings are tried
   kSplitting = 9,   ///< parents and seeds of paths that are split, a generation an episode
+  // Obstacles that move, each an episode.
+  kObstacleWay = 10,     ///< which way one goes
+  kObstacleStart = 11,   ///< where it is at the beginning, and how fast
+  kObstacleMotion = 12,  ///< what pushes it off its way
+  kObstacleSensor = 13,  ///< what is seen of its place less what is
   // Controllers that sample; their "episode" is a chunk of samples.
   kSampledInputs = 16,  ///< perturbations of inputs
   kSampledNoise = 17,   ///< process noise of their rollouts

@@ -14,7 +14,7 @@ Arrays have the samples as rows: ``episode.states`` is (steps + 1) × n. What is
 value is an `InputError` with one line.
 """
 
-from qsmpc._native.core import InputError, IoError, Situation, __version__
+from qsmpc._native.core import InputError, IoError, ObstaclePlace, Situation, __version__
 from qsmpc.campaigns import Store, campaign, campaigns, open_campaign
 from qsmpc.comparisons import Comparison, compare
 from qsmpc.episodes import Episode, read, run
@@ -31,6 +31,7 @@ __all__ = [
     "InputError",
     "IoError",
     "Model",
+    "ObstaclePlace",
     "Plan",
     "Planner",
     "Prediction",

@@ -174,7 +174,7 @@ class Episode:
     def certificates(self) -> dict[str, Floats]:
         """Upper bounds of the probability to be unsafe, steps × stages (1 without plans).
 
-        ``value`` is the least of ``c1`` … ``c4``; ``thesis`` is the published value, and no bound.
+        ``value`` is the least of ``c1`` … ``c4`` and, where it was worked out, ``c5``; ``thesis`` is the published value, and no bound.
         They are bounds unless ``scenario.no_bound`` says why not.
         """
         return self.core.certificates

@@ -24,6 +24,7 @@ def _moment(
     period: int,
     periods_left: int,
     deadline: float,
+    waypoints_passed: Optional[int] = None,
 ) -> core.Moment:
     if situation is not None:
         return core.Moment.of(
@@ -33,13 +34,15 @@ def _moment(
             situation.period,
             situation.periods_left,
             situation.deadline,
+            situation.obstacles,
+            situation.waypoints_passed,
         )
     at = scenario.initial_mean if mean is None else np.asarray(mean, float)
     spread = scenario.initial_covariance if covariance is None else np.asarray(covariance, float)
     seen = at if observation is None else np.asarray(observation, float)
     if spread.ndim == 1:
         spread = np.diag(spread)
-    return core.Moment.of(at, spread, seen, period, periods_left, deadline)
+    return core.Moment.of(at, spread, seen, period, periods_left, deadline, None, waypoints_passed)
 
 
 class Plan:
@@ -171,15 +174,25 @@ class Planner:
         period: int = 0,
         periods_left: int = _UNKNOWN,
         deadline: float = math.inf,
+        waypoints_passed: Optional[int] = None,
     ) -> Plan:
         """Plans in a situation, or from a belief with ``mean`` (n) and ``covariance`` (n × n, or its
         diagonal), the scenario's initial ones by default.
 
         ``observation`` is what is seen of the state now, the mean by default; ``deadline`` (s from
-        now) is when the best so far is wanted. Raises `ValueError`.
+        now) is when the best so far is wanted; ``waypoints_passed``, of a scenario that has some, says
+        which is next, the first by default. Raises `ValueError`.
         """
         moment = _moment(
-            self.scenario, situation, mean, covariance, observation, period, periods_left, deadline
+            self.scenario,
+            situation,
+            mean,
+            covariance,
+            observation,
+            period,
+            periods_left,
+            deadline,
+            waypoints_passed,
         )
         return Plan(self._core.decide(moment, self._certify), self.scenario.no_bound)
 

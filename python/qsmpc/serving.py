@@ -37,6 +37,7 @@ def _situation(message: dict[str, Any]) -> SimpleNamespace:
         belief_mean=np.array(message["belief"]["mean"], float),
         belief_covariance=np.array(message["belief"]["covariance"], float),
         periods_left=message["periods_left"],
+        waypoints_passed=message.get("waypoints_passed"),
         deadline=math.inf if message.get("deadline") is None else message["deadline"],
     )
 

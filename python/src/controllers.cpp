@@ -6,13 +6,17 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "python/src/arrays.hpp"
 #include "python/src/calls.hpp"
 #include "python/src/module.hpp"
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "controller/planning/solvers/ocp_solver.hpp"
+#include "controller/surroundings/obstacle_forecast.hpp"
 #include "harness/control/controller_answer.hpp"
 
 namespace qsmpc::python {
@@ -30,6 +34,8 @@ struct ToldSituation {
   Eigen::MatrixXd belief_covariance;
   Eigen::Index periods_left = 0;
   double deadline = std::numeric_limits<double>::infinity();
+  std::optional<double> progress{};                    // in waypoints
+  std::vector<controller::PlacesByStage> obstacles{};  // that move
 };
 
 ToldSituation told(const Situation& now) {
@@ -39,9 +45,15 @@ ToldSituation told(const Situation& now) {
                           .belief_mean = now.belief.mean,
                           .belief_covariance = now.belief.covariance,
                           .periods_left = now.periods_left};
+  situation.progress = now.progress;
   if (now.deadline != std::chrono::steady_clock::time_point::max()) {
     const std::chrono::duration<double> left = now.deadline - std::chrono::steady_clock::now();
     situation.deadline = left.count();
+  }
+  if (now.obstacles != nullptr) {
+    for (std::size_t n = 0; n < now.obstacles->size(); ++n) {
+      situation.obstacles.push_back(now.obstacles->of(n));
+    }
   }
   return situation;
 }
@@ -175,6 +187,13 @@ harness::ControllerObject controller_object(const nb::object& object) {
 }
 
 void add_controllers(nb::module_& module) {
+  using controller::ObstaclePlace;
+  nb::class_<ObstaclePlace>(module, "ObstaclePlace",
+                            "One of the ways in which an obstacle may have moved at a stage.")
+      .def_ro("weight", &ObstaclePlace::weight, "Its probability.")
+      .def_ro("offset", &ObstaclePlace::offset, "Mean offset from where the shape is written, m.")
+      .def_ro("turn", &ObstaclePlace::turn, "About the shape's centre, rad.")
+      .def_ro("covariance", &ObstaclePlace::covariance, "Of the offset, m².");
   nb::class_<ToldSituation>(module, "Situation", "What a controller is told once per period.")
       .def_ro("period", &ToldSituation::period, "Of the drive, from 0.")
       .def_ro("time", &ToldSituation::time, "s, when the period begins.")
@@ -184,7 +203,18 @@ void add_controllers(nb::module_& module) {
       .def_ro("belief_covariance", &ToldSituation::belief_covariance, "Its covariance.")
       .def_ro("periods_left", &ToldSituation::periods_left, "This one with them, at most.")
       .def_ro("deadline", &ToldSituation::deadline,
-              "s from now until the answer should be there; infinite without a deadline.");
+              "s from now until the answer should be there; infinite without a deadline.")
+      .def_prop_ro(
+          "waypoints_passed",
+          [](const ToldSituation& s) -> std::optional<int> {
+            if (!s.progress) return std::nullopt;
+            return static_cast<int>(*s.progress);
+          },
+          "How many waypoints the mean has passed; None in a scenario without any.")
+      .def_ro(
+          "obstacles", &ToldSituation::obstacles,
+          "Where each obstacle that moves will be: by stage from 0 (now) to the horizon, and by "
+          "way.");
 }
 
 }  // namespace qsmpc::python

@@ -17,7 +17,6 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
-#include "controller/regions/unsafe_set.hpp"
 #include "harness/episode/drive.hpp"
 #include "harness/threads/executor.hpp"
 #include "harness/trace/episode_view.hpp"
@@ -43,9 +42,7 @@ struct Period {
 class OpenDrive {
  public:
   explicit OpenDrive(Scenario scenario)
-      : scenario_(std::make_unique<const Scenario>(std::move(scenario))),
-        unsafe_(scenario_->safe_set),
-        drive_(*scenario_) {}
+      : scenario_(std::make_unique<const Scenario>(std::move(scenario))), drive_(*scenario_) {}
 
   void begin(std::uint64_t seed, std::optional<std::uint64_t> plant_seed, bool certify) {
     drive_.begin({.seed = seed, .plant_seed = plant_seed, .certify = certify});
@@ -54,15 +51,16 @@ class OpenDrive {
 
   Period advance(const Eigen::VectorXd& input) {
     decision_.input = input;
+    const std::optional<double> progress = drive_.progress();
     const harness::StepRecord& record = drive_.advance(decision_);
     Period period;
-    period.cost = harness::period_cost(*scenario_, record.state, record.input);
+    period.cost = harness::period_cost(*scenario_, record.state, record.input, progress);
     if (!record.certificates.empty()) period.certified = record.certificates.front().value;
     period.clearance = clearance();
     return period;
   }
 
-  [[nodiscard]] double clearance() const { return controller::clearance(drive().state(), unsafe_); }
+  [[nodiscard]] double clearance() const { return drive().clearance(); }
 
   /// What is seen of the state.
   [[nodiscard]] const Eigen::VectorXd& observation() const {
@@ -85,7 +83,6 @@ class OpenDrive {
 
  private:
   std::unique_ptr<const Scenario> scenario_;
-  controller::UnsafeSet unsafe_;
   harness::Drive drive_;
   bool has_begun_ = false;
   controller::Decision decision_;

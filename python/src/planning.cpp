@@ -21,6 +21,7 @@
 
 #include "controller/measure/measures.hpp"
 #include "controller/planning/cost/cost_parts.hpp"
+#include "controller/surroundings/obstacle_forecast.hpp"
 #include "harness/assembly/assembly.hpp"
 #include "harness/control/answered_decision.hpp"
 #include "harness/episode/drive.hpp"
@@ -40,6 +41,8 @@ struct Moment {
   Eigen::Index period = 0;
   Eigen::Index periods_left = 0;
   double deadline = std::numeric_limits<double>::infinity();  // s from now
+  std::optional<int> waypoints_passed{};
+  std::optional<std::vector<controller::PlacesByStage>> obstacles{};  // that move
 };
 
 controller::Situation situation_of(const Moment& moment, const Scenario& scenario) {
@@ -49,6 +52,12 @@ controller::Situation situation_of(const Moment& moment, const Scenario& scenari
                                   .belief = moment.belief,
                                   .observation = moment.observation,
                                   .periods_left = moment.periods_left};
+  if (moment.waypoints_passed) {
+    if (*moment.waypoints_passed < 0) {
+      throw std::invalid_argument("waypoints_passed must be at least 0");
+    }
+    situation.progress = *moment.waypoints_passed;
+  }
   if (std::isfinite(moment.deadline)) {
     situation.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                             std::chrono::duration<double>(moment.deadline));
@@ -58,12 +67,15 @@ controller::Situation situation_of(const Moment& moment, const Scenario& scenari
 
 Moment moment_of(const Eigen::VectorXd& mean, const Eigen::MatrixXd& covariance,
                  const Eigen::VectorXd& observation, Eigen::Index period, Eigen::Index periods_left,
-                 double deadline) {
+                 double deadline, std::optional<std::vector<controller::PlacesByStage>> obstacles,
+                 std::optional<int> waypoints_passed) {
   Moment moment{.belief = {.mean = mean, .covariance = covariance},
                 .observation = observation,
                 .period = period,
                 .periods_left = periods_left,
-                .deadline = deadline};
+                .deadline = deadline,
+                .waypoints_passed = waypoints_passed,
+                .obstacles = std::move(obstacles)};
   controller::check_gaussian(moment.belief);
   if (period < 0) throw std::invalid_argument("a period below 0");
   return moment;
@@ -80,11 +92,12 @@ class Planner {
   explicit Planner(Scenario scenario)
       : scenario_(within_memory(std::move(scenario))),
         drive_(*scenario_),
-        controller_(harness::make_controller(*scenario_, drive_.model())) {}
+        controller_(harness::make_controller(drive_.scenario(), drive_.model())) {}
 
   void reset(std::uint64_t seed) { controller_->reset(seed); }
 
   StepRecord decide(const Moment& moment, bool certify) {
+    if (moment.obstacles) drive_.know_obstacles(*moment.obstacles);
     const controller::Situation situation = situation_of(moment, *scenario_);
     const controller::Decision& decision = controller_->decide(situation);
     return drive_.record_of(situation, decision, certify);
@@ -135,6 +148,7 @@ class Certifier {
     } catch (const harness::WrongAnswer& wrong) {
       throw std::invalid_argument("found " + wrong.found + ", expected " + wrong.expected);
     }
+    if (moment.obstacles) drive_.know_obstacles(*moment.obstacles);
     const controller::Situation situation = situation_of(moment, *scenario_);
     controller::check_situation(situation, drive_.model().state_dim());
     return without_lock(
@@ -225,7 +239,8 @@ void add_planning(nb::module_& module) {
   add_plan_class(module);
   nb::class_<Moment>(module, "Moment")
       .def_static("of", &moment_of, "mean"_a, "covariance"_a, "observation"_a, "period"_a,
-                  "periods_left"_a, "deadline"_a);
+                  "periods_left"_a, "deadline"_a, "obstacles"_a.none(),
+                  "waypoints_passed"_a.none() = nb::none());
   nb::class_<Planner>(module, "Planner")
       .def(nb::init<Scenario>(), "scenario"_a)
       .def("reset", &Planner::reset, "seed"_a)

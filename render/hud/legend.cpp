@@ -73,6 +73,13 @@ std::vector<Legend::Entry> Legend::entries_of(const Frame& frame) {
   } else if (!frame.driven_path.empty()) {
     entries.push_back({"driven path", Mark::kLine, {Colour{0.45F, 0.62F, 0.90F}}});
   }
+  if (!frame.moving.empty()) {
+    entries.push_back(
+        {"moving obstacle", Mark::kPatch, {mix(palette::kMovingObstacle, kWhite, 0.15F)}});
+  }
+  if (!frame.forecasts.empty()) {
+    entries.push_back({"its forecast", Mark::kRing, {mix(palette::kForecast, kWhite, 0.35F)}});
+  }
   entries.push_back({"unsafe", Mark::kPatch, {mix(palette::kUnsafeEdge, kWhite, 0.15F)}});
   entries.push_back({"target", Mark::kPatch, {mix(palette::kTarget, kWhite, 0.25F)}});
   return entries;

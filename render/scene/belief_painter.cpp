@@ -31,6 +31,11 @@ constexpr float kNearOpacity = 0.22F;  // of a particle's, where the vehicle sta
 constexpr double kNearLengths = 1.5;   // of the vehicle, from which on particles are as usual
 constexpr float kRawOpacity = 0.42F;
 constexpr float kHalfOpacity = 0.95F;
+constexpr double kForecastWidth = 1.6;    // pixels
+constexpr int kForecastSides = 32;        // of an ellipse
+constexpr double kForecastOpacity = 0.9;  // of a way that is certain, now …
+constexpr double kForecastEnd = 0.3;      // … and at the plan's end
+constexpr double kLeastForecast = 0.12;   // fainter ones would not be seen
 constexpr float kMostOpacity = 0.75F;
 
 // Marks shrink with the vehicle, or seen from afar they would cover it; but not below recognition.
@@ -115,10 +120,11 @@ void paint_particles(const View& view, const std::vector<ParticleStage>& stages,
   draw_points(view, points);
 }
 
-void paint_ellipse(const PlanarEllipse& ellipse, const Colour& colour, double width) {
+void paint_ellipse(const PlanarEllipse& ellipse, const Colour& colour, double width,
+                   int sides = kEllipseSides) {
   std::vector<PlanarPoint> outline;
-  for (int side = 0; side <= kEllipseSides; ++side) {
-    outline.push_back(on_ellipse(ellipse, 2.0 * std::numbers::pi * side / kEllipseSides));
+  for (int side = 0; side <= sides; ++side) {
+    outline.push_back(on_ellipse(ellipse, 2.0 * std::numbers::pi * side / sides));
   }
   draw_path(outline, kMarkHeight, width, colour);
 }
@@ -131,6 +137,31 @@ void paint_ellipses(const std::vector<BeliefEllipses>& ellipses, double scale) {
     const Colour colour = stage_colour(static_cast<int>(i), static_cast<int>(ellipses.size()));
     paint_ellipse(ellipses[i].most, colour.with_alpha(kMostOpacity), kEllipseWidth * scale);
     paint_ellipse(ellipses[i].half, colour.with_alpha(kHalfOpacity), kEllipseWidth * scale);
+  }
+}
+
+// Where the share `at` 0 … 1 of the time from now to the plan's end has passed.
+Colour forecast_colour(double weight, double at) {
+  const double fading = kForecastOpacity + at * (kForecastEnd - kForecastOpacity);
+  const double opacity = std::max(kLeastForecast, fading * std::sqrt(weight));
+  return palette::kForecast.with_alpha(static_cast<float>(opacity));
+}
+
+double share_of(std::size_t index, std::size_t count) {
+  return count > 1 ? static_cast<double>(index) / static_cast<double>(count - 1) : 0.0;
+}
+
+void paint_forecast(const ForecastWay& forecast, double width) {
+  std::vector<ColouredPoint> way;
+  for (std::size_t i = 0; i < forecast.way.size(); ++i) {
+    const double share = share_of(i, forecast.way.size());
+    way.push_back({on_ground(forecast.way[i]), forecast_colour(forecast.weight, share)});
+  }
+  draw_coloured_path(way, width);
+  for (std::size_t i = 0; i < forecast.ellipses.size(); ++i) {
+    const double share = share_of(i, forecast.ellipses.size());
+    paint_ellipse(forecast.ellipses[i], forecast_colour(forecast.weight, share), width,
+                  kForecastSides);
   }
 }
 
@@ -161,6 +192,9 @@ PlanarPoint on_ellipse(const PlanarEllipse& ellipse, double angle) {
 
 void paint_belief(const Frame& frame, const View& view, double vehicle_length) {
   const double scale = mark_scale(view);
+  for (const ForecastWay& forecast : frame.forecasts) {
+    paint_forecast(forecast, kForecastWidth * scale);
+  }
   paint_tube(frame.tube);
   paint_raw_points(view, frame.raw_points);
   paint_particles(view, frame.particles, scale,

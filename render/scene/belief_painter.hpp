@@ -1,5 +1,5 @@
-// What the planner believes and intends, drawn on the ground: tube, raw points, particles,
-// ellipses, the planned mean.
+// What the planner believes and intends, drawn on the ground: where obstacles that move will be,
+// tube, raw points, particles, ellipses, the planned mean.
 #pragma once
 
 #include "render/camera.hpp"

@@ -32,6 +32,8 @@ constexpr double kNearEdge = 1.5;         // lengths of all else from its middle
 constexpr double kFogBegin = 2.2;         // of the camera's distance
 constexpr double kFogEnd = 9.0;           // of the camera's distance
 constexpr double kPathWidth = 4.0;        // pixels
+constexpr double kRoadEdgeWidth = 3.0;    // pixels
+constexpr double kRoadMiddleWidth = 1.5;  // pixels
 constexpr double kBodyWidth = 1.8;        // pixels
 constexpr double kBodyCasing = 4.0;       // pixels
 
@@ -168,6 +170,10 @@ PlanarRectangle world_region(const World& world) {
   for (const Prism& prism : world.prisms) {
     for (const PlanarPoint& corner : prism.outline) include(corner.x, corner.y);
   }
+  for (const RoadLine& line : world.road) {
+    for (const PlanarPoint& point : line.points) include(point.x, point.y);
+  }
+  for (const PlanarPoint& point : world.waypoints) include(point.x, point.y);
   include(world.target.x - world.target_radius, world.target.y - world.target_radius);
   include(world.target.x + world.target_radius, world.target.y + world.target_radius);
   // Of a half-plane what of its edge is nearest, unless that is farther away than all else is long.
@@ -187,23 +193,28 @@ PlanarRectangle world_region(const World& world) {
 }
 
 ScenePainter::ScenePainter(World world, const PlanarRectangle& region)
-    : world_(std::move(world)), region_(region), walls_(boundary_walls(world_.bounds, region)) {
+    : world_(std::move(world)),
+      region_(region),
+      ground_(grown(region, kGroundReach)),
+      walls_(boundary_walls(world_.bounds, region)) {
   // A side may be infinite: a drawn box ends where the ground does.
-  const PlanarRectangle ground = grown(region, kGroundReach);
-  for (PlanarRectangle& obstacle : world_.obstacles) obstacle = clipped_to(obstacle, ground);
+  for (PlanarRectangle& obstacle : world_.obstacles) obstacle = clipped_to(obstacle, ground_);
   for (const PlanarHalfPlane& half_plane : world_.half_planes) {
-    const PlanarOutline part = clipped_to(corners_of(ground), half_plane);
+    const PlanarOutline part = clipped_to(corners_of(ground_), half_plane);
     world_.prisms.push_back({.outline = part, .pieces = {part}});
   }
-  for (Prism& prism : world_.prisms) prism = clipped_to(prism, ground);
+  for (Prism& prism : world_.prisms) prism = clipped_to(prism, ground_);
 }
 
-void ScenePainter::paint_solids() const {
+void ScenePainter::paint_solids(const std::vector<Prism>& moving) const {
   for (const PlanarRectangle& o : world_.obstacles) {
     draw_box(o, kObstacleHeight, palette::kObstacle);
   }
   for (const Prism& prism : world_.prisms) {
     draw_prism(prism, kObstacleHeight, palette::kObstacle);
+  }
+  for (const Prism& prism : moving) {
+    draw_prism(prism, kObstacleHeight, palette::kMovingObstacle);
   }
   for (const PlanarRectangle& wall : walls_) {
     draw_box(wall, kWallHeight, palette::kWall);
@@ -211,7 +222,7 @@ void ScenePainter::paint_solids() const {
 }
 
 // After the ground: smooth lines blend with what is below.
-void ScenePainter::paint_edges(double scale) const {
+void ScenePainter::paint_edges(const std::vector<Prism>& moving, double scale) const {
   for (const PlanarRectangle& o : world_.obstacles) {
     const double z = kObstacleHeight + kEdgeClearance;
     const SpacePoint a{o.x_lower, o.y_lower, z};
@@ -220,23 +231,27 @@ void ScenePainter::paint_edges(double scale) const {
     const SpacePoint d{o.x_lower, o.y_upper, z};
     draw_segments({a, b, b, c, c, d, d, a}, kEdgeWidth * scale, palette::kUnsafeEdge);
   }
-  for (const Prism& prism : world_.prisms) {
-    PlanarOutline edge = prism.outline;
-    if (!edge.empty()) edge.push_back(edge.front());
-    draw_path(edge, kObstacleHeight + kEdgeClearance, kEdgeWidth * scale, palette::kUnsafeEdge);
+  for (const std::vector<Prism>* prisms : {&world_.prisms, &moving}) {
+    for (const Prism& prism : *prisms) {
+      PlanarOutline edge = prism.outline;
+      if (!edge.empty()) edge.push_back(edge.front());
+      draw_path(edge, kObstacleHeight + kEdgeClearance, kEdgeWidth * scale, palette::kUnsafeEdge);
+    }
   }
 }
 
 // What is unsafe is striped: tops of obstacles, and the ground outside of the bounds.
-void ScenePainter::paint_stripes(double scale) const {
+void ScenePainter::paint_stripes(const std::vector<Prism>& moving, double scale) const {
   std::vector<SpacePoint> ends;
   for (const PlanarRectangle& obstacle : world_.obstacles) {
     const PlanarRectangle top = clipped_to(obstacle, grown(region_, kGridReach));
     append_stripes(top, kObstacleHeight + kEdgeClearance, stripe_spacing(region_), ends);
   }
-  for (const Prism& prism : world_.prisms) {
-    append_stripes(clipped_to(prism.outline, grown(region_, kGridReach)),
-                   kObstacleHeight + kEdgeClearance, stripe_spacing(region_), ends);
+  for (const std::vector<Prism>* prisms : {&world_.prisms, &moving}) {
+    for (const Prism& prism : *prisms) {
+      append_stripes(clipped_to(prism.outline, grown(region_, kGridReach)),
+                     kObstacleHeight + kEdgeClearance, stripe_spacing(region_), ends);
+    }
   }
   draw_segments(ends, kEdgeWidth * scale, palette::kUnsafeStripe);
 }
@@ -256,14 +271,17 @@ void ScenePainter::paint_ground(const View& view) const {
 }
 
 void ScenePainter::paint_shadows(
+    const std::vector<Prism>& moving,
     const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const {
   begin_single_coverage();
   for (const PlanarRectangle& obstacle : world_.obstacles) {
     draw_polygon(box_shadow(obstacle, kObstacleHeight), palette::kShadow);
   }
-  for (const Prism& prism : world_.prisms) {
-    for (const PlanarOutline& piece : prism.pieces) {
-      draw_polygon(prism_shadow(piece, kObstacleHeight), palette::kShadow);
+  for (const std::vector<Prism>* prisms : {&world_.prisms, &moving}) {
+    for (const Prism& prism : *prisms) {
+      for (const PlanarOutline& piece : prism.pieces) {
+        draw_polygon(prism_shadow(piece, kObstacleHeight), palette::kShadow);
+      }
     }
   }
   for (const PlanarRectangle& wall : walls_) {
@@ -275,11 +293,30 @@ void ScenePainter::paint_shadows(
   end_single_coverage();
 }
 
+void ScenePainter::paint_road(double scale) const {
+  for (const RoadLine& line : world_.road) {
+    const double width = (line.is_edge ? kRoadEdgeWidth : kRoadMiddleWidth) * scale;
+    draw_path(line.points, kMarkHeight, width,
+              line.is_edge ? palette::kUnsafeEdge : palette::kGridLine);
+  }
+}
+
 void ScenePainter::paint_target_mark() const {
   const double radius = world_.target_radius;
   draw_ring(world_.target, 0.0, radius, palette::kTarget.with_alpha(0.22F));
   draw_ring(world_.target, 0.93 * radius, radius, palette::kTarget.with_alpha(0.9F));
   draw_ring(world_.target, 0.46 * radius, 0.50 * radius, palette::kTarget.with_alpha(0.55F));
+}
+
+/// The next one is drawn as the target is, those after it as rings, and those passed faintly.
+void ScenePainter::paint_waypoints(std::size_t passed) const {
+  const double radius = world_.waypoint_radius;
+  for (std::size_t i = 0; i < world_.waypoints.size(); ++i) {
+    const PlanarPoint& at = world_.waypoints[i];
+    if (i == passed) draw_ring(at, 0.0, radius, palette::kTarget.with_alpha(0.22F));
+    const float strength = i < passed ? 0.25F : 0.8F;
+    draw_ring(at, 0.93 * radius, radius, palette::kTarget.with_alpha(strength));
+  }
 }
 
 void ScenePainter::paint_target_post() const {
@@ -298,12 +335,16 @@ void ScenePainter::paint_target_post() const {
 void ScenePainter::paint(const Frame& frame, const View& view, const VehicleMarks& vehicle) const {
   const FlatDrawing drawing(view);
   const double scale = view.height / kReferenceHeight;
+  std::vector<Prism> moving;
+  for (const Prism& prism : frame.moving) moving.push_back(clipped_to(prism, ground_));
   write_depth(true);
-  paint_solids();
+  paint_solids(moving);
   write_depth(false);
   paint_ground(view);
+  paint_road(scale);
+  paint_waypoints(frame.waypoints_passed);
   paint_target_mark();
-  paint_shadows(vehicle.shadows);
+  paint_shadows(moving, vehicle.shadows);
   paint_driven_path(frame, scale);
   paint_belief(frame, view, vehicle.length);
   for (const std::vector<PlanarPoint>& line : frame.body) {
@@ -312,8 +353,8 @@ void ScenePainter::paint(const Frame& frame, const View& view, const VehicleMark
   for (const std::vector<PlanarPoint>& line : frame.body) {
     draw_path(line, kMarkHeight, kBodyWidth * scale, palette::kBody);
   }
-  paint_stripes(scale);
-  paint_edges(scale);
+  paint_stripes(moving, scale);
+  paint_edges(moving, scale);
   paint_target_post();
   // The vehicle is neither tinted by the ghost nor hidden by what stands before it.
   begin_beside(vehicle.surface);

@@ -25,16 +25,21 @@ class ScenePainter {
   void paint(const Frame& frame, const View& view, const VehicleMarks& vehicle) const;
 
  private:
-  void paint_solids() const;
-  void paint_edges(double scale) const;
-  void paint_stripes(double scale) const;
+  /// Obstacles that move are among what is drawn of them.
+  void paint_solids(const std::vector<Prism>& moving) const;
+  void paint_edges(const std::vector<Prism>& moving, double scale) const;
+  void paint_stripes(const std::vector<Prism>& moving, double scale) const;
   void paint_ground(const View& view) const;
-  void paint_shadows(const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const;
+  void paint_shadows(const std::vector<Prism>& moving,
+                     const std::vector<std::vector<PlanarPoint>>& vehicle_shadows) const;
+  void paint_road(double scale) const;
   void paint_target_mark() const;
+  void paint_waypoints(std::size_t passed) const;
   void paint_target_post() const;
 
   World world_;
   PlanarRectangle region_;
+  PlanarRectangle ground_;
   std::vector<PlanarRectangle> walls_;
 };
 

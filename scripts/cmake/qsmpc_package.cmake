@@ -62,7 +62,7 @@ install(CODE "
       -P ${CMAKE_SOURCE_DIR}/scripts/cmake/install_headers.cmake
     COMMAND_ERROR_IS_FATAL ANY)" COMPONENT development)
 
-install(DIRECTORY models/campaigns models/contests models/mjcf models/scenarios
+install(DIRECTORY models/campaigns models/contests models/mjcf models/scenarios models/tracks
   DESTINATION ${CMAKE_INSTALL_DATADIR}/qsmpc/models COMPONENT program)
 
 # Manual pages and completion, which the program makes of its own commands.

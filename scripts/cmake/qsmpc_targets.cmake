@@ -27,6 +27,11 @@ if(QSMPC_SANITIZE)
     -fno-omit-frame-pointer -fno-sanitize-recover=all -g1)
   target_link_options(qsmpc_options INTERFACE -fsanitize=${QSMPC_SANITIZE})
 endif()
+if(QSMPC_FUZZ)
+  # What inputs reach is counted in all of the project's code.
+  target_compile_options(qsmpc_options INTERFACE -fsanitize=fuzzer-no-link)
+  target_link_options(qsmpc_options INTERFACE -fsanitize=fuzzer-no-link)
+endif()
 
 # What nearly every source includes is parsed once a group of targets: controller (all that plans and
 # certifies, at -O3), harness (the rest of the program, whose own loops take no time) and tests.

@@ -3,7 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <utility>
 
+#include "controller/reference/road_edges.hpp"
+#include "controller/surroundings/motion_filter.hpp"
 #include "models/constants.hpp"
 #include "tests/support/own_systems.hpp"
 
@@ -183,9 +187,44 @@ controller::PlanarShape random_shape(Generator& generator, const std::string& ki
   return controller::PolygonShape{.corners = corners};
 }
 
+/// A winding road of some six spreads about a place beside the path.
+std::shared_ptr<const controller::RoadWalls> random_road(Generator& generator,
+                                                         const Eigen::Vector2d& about,
+                                                         double size) {
+  constexpr int kPoints = 9;
+  while (true) {
+    Eigen::Matrix2Xd points(2, kPoints);
+    double heading = uniform(generator, -3.0, 3.0);
+    Eigen::Vector2d place = Eigen::Vector2d::Zero();
+    for (int i = 0; i < kPoints; ++i) {
+      points.col(i) = place;
+      heading += uniform(generator, -0.6, 0.6);
+      place += 4.0 * size * Eigen::Vector2d(std::cos(heading), std::sin(heading));
+    }
+    const Eigen::Vector2d middle = points.col(kPoints / 2);
+    points.colwise() += about - middle;
+    const controller::ArcPath centre(points, false);
+    const controller::RoadWidths widths{
+        .right = uniform_vector(generator, kPoints, 1.5 * size, 5.0 * size),
+        .left = uniform_vector(generator, kPoints, 1.5 * size, 5.0 * size)};
+    if (controller::folded_edge(centre, widths)) continue;
+    controller::RoadEdges edges = controller::edges_about(centre, widths, 6.0 * size);
+    if (controller::where_edges_meet(edges)) continue;
+    return std::make_shared<const controller::RoadWalls>(std::move(edges));
+  }
+}
+
 controller::SafeSet random_shapes(Generator& generator, const std::string& kind,
                                   const Eigen::MatrixXd& path, const Eigen::VectorXd& spread) {
   controller::SafeSet safe_set = controller::unbounded_safe_set(path.rows());
+  if (kind == "road") {
+    const Eigen::Vector2d beside =
+        path.col(uniform_int(generator, 0, static_cast<int>(path.cols()) - 1)).head<2>();
+    const double size = spread.head<2>().maxCoeff();
+    safe_set.road =
+        random_road(generator, beside + size * uniform_vector(generator, 2, -2.0, 2.0), size);
+    return safe_set;
+  }
   const int count = kind == "half_plane" ? 1 : uniform_int(generator, 1, 4);
   for (int i = 0; i < count; ++i) {
     const Eigen::Vector2d beside =
@@ -195,6 +234,63 @@ controller::SafeSet random_shapes(Generator& generator, const std::string& kind,
     safe_set.obstacles.emplace_back(random_shape(generator, kind, beside + away, spread.head<2>()));
   }
   return safe_set;
+}
+
+/// A way that covers some `reach` within `duration`, and never stands still.
+models::IntendedWay random_way(Generator& generator, const Eigen::Vector2d& from, double reach,
+                               double duration) {
+  const auto velocity = [&]() -> Eigen::Vector2d {
+    const double angle = uniform(generator, -3.2, 3.2);
+    return reach / duration * uniform(generator, 0.3, 1.5) *
+           Eigen::Vector2d(std::cos(angle), std::sin(angle));
+  };
+  models::IntendedWay way = models::steady_way(velocity(), from);
+  if (chance(generator, 0.5)) return way;
+  for (int i = 0; i < 3; ++i) {
+    const models::TimedPlace& last = way.points.back();
+    const double time = uniform(generator, 0.2, 0.6) * duration;
+    way.points.push_back({.time = last.time + time, .place = last.place + time * velocity()});
+  }
+  return way;
+}
+
+models::ObstacleMotion random_motion(Generator& generator, const Eigen::Vector2d& from,
+                                     double reach, double duration) {
+  models::ObstacleMotion motion{.ways = {}, .seen_deviation = 0.1 * reach};
+  const int count = chance(generator, 0.5) ? 1 : uniform_int(generator, 2, 3);
+  for (int i = 0; i < count; ++i) {
+    motion.ways.push_back(random_way(generator, from, reach, duration));
+    motion.ways.back().probability = 1.0 / count;
+  }
+  if (chance(generator, 0.15)) {
+    motion.ways.resize(1);  // that is certain
+    motion.ways.front().probability = 1.0;
+    return motion;
+  }
+  if (chance(generator, 0.5))
+    motion.start_deviation = reach * uniform_vector(generator, 2, 0.0, 1.0);
+  motion.speed_deviation = reach / duration * uniform_vector(generator, 2, 0.0, 1.0);
+  motion.memory = duration * uniform(generator, 0.1, 3.0);
+  if (chance(generator, 0.5)) motion.returns_in = duration * uniform_vector(generator, 2, 0.1, 2.0);
+  if (chance(generator, 0.5)) {
+    motion.covariance_rate = reach * reach / duration * uniform_vector(generator, 2, 0.0, 0.5);
+  }
+  motion.turns = chance(generator, 0.5);
+  return motion;
+}
+
+/// Lets the shapes move, by about what they are away from the path.
+void set_in_motion(Generator& generator, const Eigen::VectorXd& spread, int horizon,
+                   controller::SafeSet& safe_set) {
+  auto forecast = std::make_shared<controller::ObstacleForecast>(safe_set.obstacles.size());
+  for (std::size_t n = 0; n < safe_set.obstacles.size(); ++n) {
+    controller::Obstacle& obstacle = safe_set.obstacles[n];
+    const double reach = spread.head<2>().mean() * uniform(generator, 0.2, 2.0);
+    obstacle.motion = random_motion(generator, controller::shape_centre(*obstacle.shape()), reach,
+                                    horizon * kObstaclePeriod);
+    forecast->set(n, controller::MotionFilter(*obstacle.motion, kObstaclePeriod).forecast(horizon));
+  }
+  safe_set.forecast = std::move(forecast);
 }
 
 /// Up to four discs of the size of `spread`, or a point; off the position where the system has a
@@ -251,10 +347,10 @@ void random_policy(Generator& generator, Problem& problem) {
 
 namespace {
 
-/// shapes: where given, obstacles are of this kind.
+/// shapes: where given, obstacles are of this kind, and may move.
 Problem random_problem_of(Generator& generator, const Family& family,
                           std::unique_ptr<const models::Dynamics> dynamics,
-                          const std::string& shapes = "") {
+                          const std::string& shapes = "", bool move = false) {
   const Eigen::Index dim = family.start.size();
   Problem problem;
   problem.system = family.system;
@@ -279,6 +375,7 @@ Problem random_problem_of(Generator& generator, const Family& family,
                                      .cwiseMax(0.01);
   settings.safe_set = shapes.empty() ? random_safe_set(generator, family, path, spread)
                                      : random_shapes(generator, shapes, path, spread);
+  if (move) set_in_motion(generator, spread, settings.horizon, settings.safe_set);
   settings.safe_set.body = random_body(generator, family, spread);
   if (chance(generator, 0.3)) settings.risk.plan = log_uniform(generator, -3.0, -0.3);
   return problem;
@@ -312,17 +409,30 @@ Problem random_problem(Generator& generator) {
 }
 
 const std::vector<std::string>& shape_kinds() {
-  static const std::vector<std::string> kinds = {"disc",    "ellipse", "box",
-                                                 "polygon", "corner",  "half_plane"};
+  static const std::vector<std::string> kinds = {"disc",   "ellipse",    "box", "polygon",
+                                                 "corner", "half_plane", "road"};
   return kinds;
 }
 
-Problem random_shape_problem(Generator& generator, const std::string& kind) {
+namespace {
+
+Problem random_planar_problem(Generator& generator, const std::string& kind, bool move) {
   Family family;
   do family = random_family(generator);
   while (family.walls.size() < 3);  // those that have a plane
-  return random_problem_of(
-      generator, family, models::make_dynamics(family.system, family.parameters, kTimeStep), kind);
+  return random_problem_of(generator, family,
+                           models::make_dynamics(family.system, family.parameters, kTimeStep), kind,
+                           move);
+}
+
+}  // namespace
+
+Problem random_shape_problem(Generator& generator, const std::string& kind) {
+  return random_planar_problem(generator, kind, false);
+}
+
+Problem random_moving_problem(Generator& generator, const std::string& kind) {
+  return random_planar_problem(generator, kind, true);
 }
 
 Problem random_own_problem(Generator& generator) {

@@ -28,12 +28,16 @@ struct Problem {
 [[nodiscard]] Problem random_problem(Generator& generator);
 
 /// The kinds of shapes of the plane: "disc", "ellipse", "box", "polygon" (convex), "corner" (a
-/// polygon that is not), "half_plane".
+/// polygon that is not), "half_plane", and "road": what is off a winding one.
 [[nodiscard]] const std::vector<std::string>& shape_kinds();
 
 /// As random_problem, of a system in the plane, with 1 to 4 shapes of this kind beside the path in
 /// place of boxes, and no walls.
 [[nodiscard]] Problem random_shape_problem(Generator& generator, const std::string& kind);
+
+/// As random_shape_problem, with shapes that move along one or more ways, sometimes turning with
+/// them, and the forecast of what is known when nothing was seen of them.
+[[nodiscard]] Problem random_moving_problem(Generator& generator, const std::string& kind);
 
 /// The same of a system of a user's: of tests/support/own_systems.hpp.
 [[nodiscard]] Problem random_own_problem(Generator& generator);

@@ -55,6 +55,56 @@ def test_the_planner_as_a_python_object_drives_the_same_way(small):
     np.testing.assert_array_equal(program.plan_gains, python.plan_gains)
 
 
+def test_the_planner_as_a_python_object_drives_over_waypoints():
+    eight = qsmpc.load("waypoints", {
+        "plant.kind": "analytic",
+        "controller.horizon": 8,
+        "controller.quantisation": "{state: 20, noise: 20, compressed: 20}",
+        "limit.steps": 60,
+    })
+    passed = []
+
+    class Watcher(qsmpc.Planner):
+        def act(self, situation):
+            passed.append(situation.waypoints_passed)
+            return super().act(situation)
+
+    program = qsmpc.run(eight, seed=2)
+    python = qsmpc.run(eight, seed=2, controller=Watcher(eight))
+    np.testing.assert_array_equal(program.states, python.states)
+    assert passed[0] == 0 and passed[-1] >= 2 and sorted(passed) == passed
+    with pytest.raises(ValueError, match="waypoints_passed"):
+        qsmpc.Planner(eight).decide(waypoints_passed=-1)
+
+
+def test_the_planner_as_a_python_object_knows_obstacles_that_move():
+    square = qsmpc.load("crossing", {
+        "plant.kind": "analytic",
+        "controller.horizon": 6,
+        "controller.quantisation": "{state: 20, noise: 20, compressed: 20}",
+        "limit.steps": 25,
+    })
+    told = []
+
+    class Watcher(qsmpc.Planner):
+        def act(self, situation):
+            told.append(situation.obstacles)
+            return super().act(situation)
+
+    program = qsmpc.run(square, seed=2)
+    python = qsmpc.run(square, seed=2, controller=Watcher(square))
+    np.testing.assert_array_equal(program.states, python.states)
+    np.testing.assert_array_equal(program.certificates["value"], python.certificates["value"])
+    assert len(told) == python.steps and len(told[0]) == 12
+    stages = told[-1][0]
+    assert len(stages) == 7
+    assert np.trace(stages[6][0].covariance) > np.trace(stages[0][0].covariance)
+    assert len(told[0][5][3]) == 2 and sum(way.weight for way in told[0][5][3]) == pytest.approx(1)
+    # Without a situation it plans with what is known before anything is seen.
+    plan = qsmpc.Planner(square).decide()
+    assert plan.certificates["value"][-1] < 0.01
+
+
 def test_arrays_have_a_period_as_a_row(small):
     episode = qsmpc.run(small, seed=1)
     steps, stages = episode.steps, small.horizon

@@ -108,7 +108,7 @@ inline void add_example_plan(harness::StepRecord& step, const harness::Scenario&
       step.certificates.push_back(
           {.value = value,
            .kind = value < 1e-3 ? "c2" : "c1",
-           .figures = {value * 1.5, value, value * 2.5, value * 2.25, value * 0.3, 0.0}});
+           .figures = {value * 1.5, value, value * 2.5, value * 2.25, 1.0, value * 0.3, 0.0}});
     }
     models::StateBatch next(3, 1);
     const models::StateBatch input = step.input;

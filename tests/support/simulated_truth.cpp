@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <Eigen/Geometry>
 
 #include "controller/prediction/policy.hpp"
+#include "controller/regions/planar/road_walls.hpp"
 #include "models/linear_algebra.hpp"
+#include "tests/support/moving_truth.hpp"
 #include "tests/support/shape_truth.hpp"
 
 namespace qsmpc::testing {
@@ -40,6 +43,18 @@ bool touches(const controller::Box& box, const controller::Body& body, const con
   return std::sqrt(square) <= disc.radius;
 }
 
+/// Whether the disc touches a wall of the road, each as a polygon.
+bool touches(const controller::RoadWalls& road, const Eigen::Vector2d& centre, double radius) {
+  return std::any_of(
+      road.pieces().begin(), road.pieces().end(), [&](const controller::ConvexPart& piece) {
+        const Eigen::Vector2d middle = piece.corners.rowwise().mean();
+        const double reach =
+            radius + (piece.corners.colwise() - middle).colwise().norm().maxCoeff();
+        return (centre - middle).norm() <= reach &&
+               is_near(controller::PolygonShape{.corners = piece.corners}, centre, radius);
+      });
+}
+
 /// Whether all of the disc is within the bounds, and the other coordinates of state i are.
 bool within(const controller::Box& bounds, const controller::Body& body,
             const controller::Disc& disc, const controller::Points& states, Eigen::Index i) {
@@ -53,17 +68,48 @@ bool within(const controller::Box& bounds, const controller::Body& body,
   return true;
 }
 
-bool unsafe(const controller::SafeSet& safe_set, const controller::Points& states, Eigen::Index i) {
+/// `point`, of path i, as an obstacle that has moved with it sees it.
+Eigen::Vector2d as_seen_by(const controller::PlanarShape& shape, const MovingTruth& moved,
+                           const Eigen::Vector2d& point, int i) {
+  const Eigen::Vector2d centre = controller::shape_centre(shape);
+  const Eigen::Vector2d arm = point - centre - moved.offset(i);
+  const double turn = moved.turn(i);
+  return centre + Eigen::Vector2d(std::cos(turn) * arm.x() + std::sin(turn) * arm.y(),
+                                  std::cos(turn) * arm.y() - std::sin(turn) * arm.x());
+}
+
+/// Of each obstacle; nothing where it stands.
+using Movements = std::vector<std::optional<MovingTruth>>;
+
+Movements movements_of(const controller::SafeSet& safe_set, int paths, Generator& generator) {
+  Movements movements;
+  for (const controller::Obstacle& obstacle : safe_set.obstacles) {
+    movements.emplace_back();
+    if (obstacle.motion) {
+      movements.back().emplace(*obstacle.motion, kObstaclePeriod, paths, generator);
+    }
+  }
+  return movements;
+}
+
+bool unsafe(const controller::SafeSet& safe_set, const Movements& movements,
+            const controller::Points& states, int i) {
   const controller::Body& body = safe_set.body;
   const std::vector<controller::Disc> point(1);
   for (const controller::Disc& disc : body.is_point() ? point : body.discs) {
     if (!within(safe_set.bounds, body, disc, states, i)) return true;
-    for (const controller::Obstacle& obstacle : safe_set.obstacles) {
+    if (safe_set.road && touches(*safe_set.road, centre_of(body, disc, states, i), disc.radius)) {
+      return true;
+    }
+    for (std::size_t n = 0; n < safe_set.obstacles.size(); ++n) {
+      const controller::Obstacle& obstacle = safe_set.obstacles[n];
       if (const controller::Box* box = obstacle.box()) {
         if (touches(*box, body, disc, states, i)) return true;
-      } else if (is_near(*obstacle.shape(), centre_of(body, disc, states, i), disc.radius)) {
-        return true;
+        continue;
       }
+      Eigen::Vector2d centre = centre_of(body, disc, states, i);
+      if (movements[n]) centre = as_seen_by(*obstacle.shape(), *movements[n], centre, i);
+      if (is_near(*obstacle.shape(), centre, disc.radius)) return true;
     }
   }
   return false;
@@ -100,6 +146,7 @@ UnsafeCounts simulate(const controller::PredictedMotion& motion,
   }
   controller::Points inputs(motion.policy.inputs.rows(), paths);
   controller::Points next(current.rows(), paths);
+  Movements movements = movements_of(safe_set, paths, generator);
   UnsafeCounts counts;
   std::vector<bool> ever(paths, false);
   for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
@@ -108,9 +155,12 @@ UnsafeCounts simulate(const controller::PredictedMotion& motion,
     if (error) next += error({.stage = k, .stepped = next, .last_noise = drawn});
     drawn = noise(paths, generator);
     current = next + drawn;
+    for (auto& movement : movements) {
+      if (movement) movement->advance(generator);
+    }
     counts.stages.push_back(0);
     for (int i = 0; i < paths; ++i) {
-      if (!unsafe(safe_set, current, i)) continue;
+      if (!unsafe(safe_set, movements, current, i)) continue;
       ++counts.stages.back();
       ever[i] = true;
     }

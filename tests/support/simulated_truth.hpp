@@ -31,7 +31,11 @@ struct PlantMoment {
 /// What a plant adds to the model at a moment, dim x paths; may keep a memory of earlier ones.
 using PlantError = std::function<controller::Points(const PlantMoment&)>;
 
+/// The period with which obstacles that move do so in `simulate`, s.
+inline constexpr double kObstaclePeriod = 0.1;
+
 /// Simulates `paths` paths of x⁺ = f(x, u(x)) + w from the motion's belief under its policy.
+/// Obstacles that move begin to when the motion does, each path with its own of them.
 /// states: where given, receives the states of every stage 1 … horizon (state_dim x paths each).
 /// error: where given, the plant is x⁺ = f(x, u(x)) + e + w.
 [[nodiscard]] UnsafeCounts simulate(const controller::PredictedMotion& motion,

@@ -18,6 +18,10 @@ namespace qsmpc::controller {
 /// C4: the same, smoothed by noise that is independent of this error; never above C3.
 [[nodiscard]] StageFigure smoothed_surrogate_bound(const CertificateProblem& problem);
 
+/// C5: C3 and C4 given where the functionals of the noise are that bend the motion most, summed
+/// over these places; 1 where the motion has a model error, and where C4 leaves little to gain.
+[[nodiscard]] StageFigure conditioned_bound(const CertificateProblem& problem);
+
 /// What the thesis would say (published_certificate.hpp): NOT a bound.
 [[nodiscard]] StageFigure published_probability(const CertificateProblem& problem);
 

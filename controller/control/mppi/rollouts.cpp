@@ -23,17 +23,21 @@ Rollouts::Rollouts(const models::Dynamics& dynamics, const PlannerSettings& prob
     : dynamics_(dynamics),
       horizon_(problem.horizon),
       input_dim_(dynamics.input_dim()),
-      state_(problem.cost.state, problem.cost.target),
+      state_({QuadraticForm(problem.cost.state, problem.cost.target)}),
       input_(problem.cost.input, Eigen::VectorXd::Zero(dynamics.input_dim())),
       terminal_(problem.cost.terminal, problem.cost.target),
       unsafe_(problem.safe_set),
       unsafe_cost_(unsafe_cost),
       start_(problem.cost.target) {}
 
-void Rollouts::place(const Eigen::VectorXd& start, const Eigen::VectorXd& target) {
+void Rollouts::place(const Eigen::VectorXd& start, const QuadraticCost& cost) {
   start_ = start;
-  state_.centre = target;
-  terminal_.centre = target;
+  const bool moves = cost.stage_targets.cols() > 0;
+  state_.resize(moves ? static_cast<std::size_t>(horizon_) : 1, state_.front());
+  for (std::size_t k = 0; k < state_.size(); ++k) {
+    state_[k].centre = cost.target_at(static_cast<Eigen::Index>(k));
+  }
+  terminal_.centre = cost.target_at(horizon_);
 }
 
 Eigen::Map<const Points> Rollouts::inputs_of(const SampleChunk& chunk, int stage) const {
@@ -54,7 +58,8 @@ void Rollouts::roll_out(const RolloutNoise& noise, SampleChunk& chunk) const {
     std::swap(chunk.states, chunk.next);
     add_noise(noise, k + 1, chunk);
     const bool ends = k + 1 == horizon_;
-    add_quadratic(ends ? terminal_ : state_, ends ? 1.0 : 0.5, chunk.states, chunk.quadratic);
+    const QuadraticForm& state = state_.size() > 1 && !ends ? state_[k + 1] : state_.front();
+    add_quadratic(ends ? terminal_ : state, ends ? 1.0 : 0.5, chunk.states, chunk.quadratic);
     add_unsafe(k + 1, chunk);
   }
 }

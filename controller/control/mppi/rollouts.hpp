@@ -5,6 +5,8 @@
 // the present state, is left out.
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "controller/control/mppi/noise_paths.hpp"
@@ -47,8 +49,8 @@ class Rollouts {
   Rollouts(const models::Dynamics& dynamics, const PlannerSettings& problem,
            const UnsafeCost& unsafe_cost);
 
-  /// From now on rollouts start at `start`, and cost by their distance to `target` (state_dim).
-  void place(const Eigen::VectorXd& start, const Eigen::VectorXd& target);
+  /// From now on rollouts start at `start`, and cost by their distances to the targets of `cost`.
+  void place(const Eigen::VectorXd& start, const QuadraticCost& cost);
 
   /// Adds Σ uᵀRu of the chunk's inputs to `totals` (count).
   void add_input_cost(const SampleChunk& chunk, Eigen::ArrayXd& totals) const;
@@ -64,7 +66,7 @@ class Rollouts {
   const models::Dynamics& dynamics_;
   int horizon_;
   Eigen::Index input_dim_;
-  QuadraticForm state_;
+  std::vector<QuadraticForm> state_;  // the only one, or of each stage
   QuadraticForm input_;
   QuadraticForm terminal_;
   UnsafeSet unsafe_;

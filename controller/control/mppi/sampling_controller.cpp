@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "controller/control/mppi/sample_weights.hpp"
-#include "controller/planning/cost/angular_target.hpp"
+#include "controller/planning/cost/placed_target.hpp"
 #include "controller/planning/start/first_guess.hpp"
 #include "models/constants.hpp"
 #include "models/random/random_numbers.hpp"
@@ -55,7 +55,8 @@ SamplingController::SamplingController(const models::Dynamics& dynamics,
       slopes_(dynamics.input_dim(), problem_.horizon),
       costs_(settings_.samples),
       tilts_(Eigen::ArrayXd::Zero(settings_.samples)),
-      weights_(settings_.samples) {
+      weights_(settings_.samples),
+      cost_(problem_.cost) {
   for (int n = 0; n < chunk_count(settings_.samples); ++n) {
     const Eigen::Index count =
         std::min<Eigen::Index>(kSampleChunk, settings_.samples - n * kSampleChunk);
@@ -96,7 +97,7 @@ const Decision& SamplingController::decide(const Situation& situation) {
   decision_.input = policy_.inputs.col(0);
   smoothing_.note_applied(decision_.input);
   decision_.policy = &policy_;
-  decision_.cost = path_cost(policy_, problem_.cost, target_, cost_scratch_);
+  decision_.cost = path_cost(policy_, cost_, cost_scratch_);
   decision_.timing = {.optimise =
                           std::chrono::duration<double, std::milli>(Clock::now() - begin).count()};
   return decision_;
@@ -111,8 +112,8 @@ void SamplingController::prepare(const Situation& situation) {
   } else {
     policy_.inputs = rest_.replicate(1, problem_.horizon);
   }
-  nearest_target(problem_.cost.target, problem_.cost.angles, belief.mean, target_);
-  rollouts_.place(belief.mean, target_);
+  place_target(problem_, dynamics_.description(), belief.mean, situation.progress, cost_);
+  rollouts_.place(belief.mean, cost_);
   if (noise_ != SampleNoise::kNone) {
     noise_draw_.emplace(NoiseDraw{.start_root = belief_root_.of(belief.covariance),
                                   .step_root = noise_root_.of(problem_.noise_covariance),

@@ -85,7 +85,7 @@ class SamplingController final : public Controller {
   std::uint64_t seed_ = 0;
   std::uint64_t draws_ = 0;  // of the drive so far
   bool under_way_ = false;   // whether the inputs are those of the period before
-  Eigen::VectorXd target_;   // what means the target, nearest to the belief
+  QuadraticCost cost_;       // about the target that is nearest to the belief
   Policy policy_;
   Eigen::MatrixXd shifted_;
   PathCostScratch cost_scratch_;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "controller/planning/policy_maker.hpp"
+#include "controller/regions/standing.hpp"
 #include "controller/regions/unsafe_set.hpp"
 
 namespace qsmpc::controller {
@@ -51,7 +52,8 @@ double allowed_risk(const PlannerSettings& settings) {
 Eigen::ArrayXXd prices_on(const PlaneGrid& grid, const models::Dynamics& dynamics,
                           const PlannerSettings& settings) {
   const models::SystemDescription& system = dynamics.description();
-  const UnsafeSet unsafe(settings.safe_set);
+  // The way is found once: round what stands.
+  const UnsafeSet unsafe(standing(settings.safe_set));
   double radius = 0.0;
   for (const Disc& disc : settings.safe_set.body.discs) radius = std::max(radius, disc.radius);
   const double deviation =

@@ -16,7 +16,8 @@ StartChoice::StartChoice(const models::Dynamics& dynamics, const PlannerSettings
                                      .within_covariance = no_noise_}),
       guess_(settings),
       gain_change_(Eigen::MatrixXd::Zero(dynamics.input_dim(), dynamics.state_dim())) {
-  if (!settings.safe_set.obstacles.empty() || settings.risk.any()) {
+  const SafeSet& safe_set = settings.safe_set;
+  if (!safe_set.obstacles.empty() || safe_set.road != nullptr || settings.risk.any()) {
     minima_.emplace(settings, noise_free_);
   }
 }

@@ -122,7 +122,8 @@ std::vector<DirectionPair> other_pairs(const ConvexPart& part, const Eigen::Vect
 
 // With gap the distance of the mean from the circle along u: z + e is in the circle only if u·z is
 // at least gap/2 below its mean, or u·e below −gap/2.
-double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxes axes) {
+double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxes axes,
+                       const Eigen::Matrix2d& spread) {
   const Eigen::Vector2d way =
       Eigen::Vector2d(state.law.mean[axes.x], state.law.mean[axes.y]) - circle.centre;
   const double distance = way.norm();
@@ -132,7 +133,7 @@ double far_probability(const SurrogateLaw& state, const Circle& circle, PlaneAxe
   const Eigen::MatrixXd& covariance = state.law.covariance;
   const double variance = u.x() * u.x() * covariance(axes.x, axes.x) +
                           2.0 * u.x() * u.y() * covariance(axes.x, axes.y) +
-                          u.y() * u.y() * covariance(axes.y, axes.y);
+                          u.y() * u.y() * covariance(axes.y, axes.y) + u.dot(spread * u);
   constexpr std::size_t kHighest = kHigherOrders.size() - 1;
   const Eigen::VectorXd& norms = state.higher[kHighest];
   const double norm = std::abs(u.x()) * norms[axes.x] + std::abs(u.y()) * norms[axes.y];

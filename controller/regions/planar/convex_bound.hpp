@@ -36,9 +36,11 @@ using DirectionPair = Eigen::Matrix2d;
 inline constexpr double kNegligiblePart = 1e-8;
 
 /// A bound of P(z + e in the circle), good where that is far away: half of the way to it is left to
-/// z, the other half to e. 1 where the mean is not outside of it.
+/// z, the other half to e. 1 where the mean is not outside of it. spread: covariance in the plane
+/// that z has besides that of its law.
 [[nodiscard]] double far_probability(const SurrogateLaw& state, const Circle& circle,
-                                     PlaneAxes axes);
+                                     PlaneAxes axes,
+                                     const Eigen::Matrix2d& spread = Eigen::Matrix2d::Zero());
 
 /// Bounds C3 and C4 of P(z + e in the part): for each pair those of the rectangle in the
 /// projections (box_part.hpp), whose errors are bounded by the triangle inequality; of all pairs

@@ -121,20 +121,43 @@ struct OutlineOf {
   }
 };
 
+struct CentreOf {
+  Eigen::Vector2d operator()(const PolygonShape& polygon) const {
+    return 0.5 * (polygon.corners.rowwise().minCoeff() + polygon.corners.rowwise().maxCoeff());
+  }
+  Eigen::Vector2d operator()(const HalfPlaneShape& half_plane) const {
+    return half_plane.offset / half_plane.normal.squaredNorm() * half_plane.normal;
+  }
+  template <class Centred>
+  Eigen::Vector2d operator()(const Centred& shape) const {
+    return shape.centre;
+  }
+};
+
 struct MovedBy {
   Eigen::Vector2d by;
+  double turn;
 
+  PlanarShape operator()(DiscShape disc) const {
+    disc.centre += by;
+    return disc;
+  }
   PlanarShape operator()(PolygonShape polygon) const {
-    polygon.corners.colwise() += by;
+    const Eigen::Vector2d centre = CentreOf{}(polygon);
+    const Eigen::Matrix2d rotation = Eigen::Rotation2Dd(turn).toRotationMatrix();
+    polygon.corners = (rotation * (polygon.corners.colwise() - centre)).colwise() + (centre + by);
     return polygon;
   }
   PlanarShape operator()(HalfPlaneShape half_plane) const {
-    half_plane.offset += half_plane.normal.dot(by);
+    const Eigen::Vector2d edge = CentreOf{}(half_plane) + by;
+    half_plane.normal = Eigen::Rotation2Dd(turn) * half_plane.normal;
+    half_plane.offset = half_plane.normal.dot(edge);
     return half_plane;
   }
   template <class Centred>
   PlanarShape operator()(Centred shape) const {
     shape.centre += by;
+    shape.angle += turn;
     return shape;
   }
 };
@@ -151,8 +174,10 @@ Eigen::Matrix2Xd shape_outline(const PlanarShape& shape, int round, double far) 
   return std::visit(OutlineOf{.round = round, .far = far}, shape);
 }
 
-PlanarShape moved(const PlanarShape& shape, const Eigen::Vector2d& by) {
-  return std::visit(MovedBy{.by = by}, shape);
+Eigen::Vector2d shape_centre(const PlanarShape& shape) { return std::visit(CentreOf{}, shape); }
+
+PlanarShape moved(const PlanarShape& shape, const Eigen::Vector2d& by, double turn) {
+  return std::visit(MovedBy{.by = by, .turn = turn}, shape);
 }
 
 }  // namespace qsmpc::controller

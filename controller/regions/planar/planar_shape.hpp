@@ -78,8 +78,13 @@ void check_planar_shape(const PlanarShape& shape);
 [[nodiscard]] Eigen::Matrix2Xd shape_outline(const PlanarShape& shape, int round = 72,
                                              double far = 1e4);
 
-/// The shape moved by `by`.
-[[nodiscard]] PlanarShape moved(const PlanarShape& shape, const Eigen::Vector2d& by);
+/// Its middle: what a disc, an ellipse and a box are written about, of a polygon that of the
+/// rectangle about it, of a half-plane the point of the edge that is nearest to the origin.
+[[nodiscard]] Eigen::Vector2d shape_centre(const PlanarShape& shape);
+
+/// The shape turned about its centre by `turn` rad, and then moved by `by`.
+[[nodiscard]] PlanarShape moved(const PlanarShape& shape, const Eigen::Vector2d& by,
+                                double turn = 0.0);
 
 }  // namespace qsmpc::controller
 

@@ -11,6 +11,7 @@
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
 #include "harness/trace/trace.hpp"
+#include "harness/trace/true_places.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -27,7 +28,6 @@ class LevelDrives {
   LevelDrives(const Scenario& scenario, bool certify, const std::function<bool()>& should_stop)
       : scenario_(ended_when_unsafe(scenario)),
         certify_(certify),
-        unsafe_(scenario_.safe_set),
         should_stop_(should_stop),
         driver_(scenario_) {}
 
@@ -47,20 +47,23 @@ class LevelDrives {
   [[nodiscard]] std::int64_t faults() const { return faults_; }
 
  private:
-  [[nodiscard]] double level_of(const Eigen::Ref<const Eigen::VectorXd>& state) const {
-    if (controller::unsafe_part(state, unsafe_) != controller::UnsafePart::kNone) {
+  /// At control instant `k` of the drive that the unsafe set is of.
+  [[nodiscard]] static double level_of(const Eigen::Ref<const Eigen::VectorXd>& state,
+                                       const controller::UnsafeSet& unsafe, Eigen::Index k) {
+    if (controller::unsafe_part(state, unsafe, k) != controller::UnsafePart::kNone) {
       return std::numeric_limits<double>::infinity();
     }
-    return std::min(0.0, -controller::clearance(state, unsafe_));
+    return std::min(0.0, -controller::clearance(state, unsafe, k));
   }
 
   /// At the control instants that the plant came to.
   [[nodiscard]] std::vector<double> levels_of(const Trace& trace) const {
+    const controller::UnsafeSet unsafe(driven_safe_set(trace));
     const Eigen::MatrixXd states = true_states(trace);
     const Eigen::Index count = std::min(states.cols(), completed_periods(trace) + 1);
     std::vector<double> levels;
     levels.reserve(static_cast<std::size_t>(count));
-    for (Eigen::Index k = 0; k < count; ++k) levels.push_back(level_of(states.col(k)));
+    for (Eigen::Index k = 0; k < count; ++k) levels.push_back(level_of(states.col(k), unsafe, k));
     return levels;
   }
 
@@ -73,7 +76,6 @@ class LevelDrives {
 
   const Scenario scenario_;
   const bool certify_;
-  const controller::UnsafeSet unsafe_;
   const std::function<bool()>& should_stop_;
   EpisodeDriver driver_;
   std::int64_t faults_ = 0;

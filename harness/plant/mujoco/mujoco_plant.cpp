@@ -10,6 +10,7 @@
 #include "harness/mujoco/mujoco_errors.hpp"
 #include "harness/plant/mujoco/force_shooting.hpp"
 #include "harness/plant/mujoco/simulation.hpp"
+#include "models/motion/obstacle_poses.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -67,6 +68,12 @@ class MujocoPlant final : public Plant {
     return sample();
   }
 
+  void move_obstacles(const Eigen::Matrix3Xd& begin, const Eigen::Matrix3Xd& end) override {
+    obstacles_ = begin;
+    moved_obstacles_ = end;
+    simulation_->place_obstacles(begin);
+  }
+
   PlantStep advance(const Eigen::VectorXd& input, const Eigen::VectorXd& disturbance) override {
     require_size(input, input_dim_, "input");
     require_size(disturbance, state_dim_, "disturbance");
@@ -120,6 +127,10 @@ class MujocoPlant final : public Plant {
     try {
       while (taken < steps) {
         const double time = simulation_->time();
+        if (obstacles_.cols() > 0) {
+          simulation_->place_obstacles(
+              models::poses_between(obstacles_, moved_obstacles_, (taken + 1.0) / steps));
+        }
         simulation_->step();
         note_contact(time, result.contact);
         result.between.col(taken) = simulation_->state();
@@ -144,6 +155,8 @@ class MujocoPlant final : public Plant {
   std::unique_ptr<Simulation> simulation_;
   std::optional<ForceShooting> shooting_;
   int sample_steps_;
+  Eigen::Matrix3Xd obstacles_;        // that move, at the beginning of the period
+  Eigen::Matrix3Xd moved_obstacles_;  // the same at its end
   std::optional<std::string> fault_;
 };
 

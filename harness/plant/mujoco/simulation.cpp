@@ -295,6 +295,11 @@ void Simulation::add(const Eigen::VectorXd& change) {
   state_ = states_.read(*data_, next);
 }
 
+void Simulation::place_obstacles(const Eigen::Matrix3Xd& poses) {
+  obstacles_ = poses;
+  if (solid_ && obstacles_.cols() > 0) solid_->place(obstacles_, *model_, *data_);
+}
+
 void Simulation::set_solid_standing(bool standing) {
   if (solid_) solid_->set_standing(*model_, standing);
 }
@@ -323,6 +328,7 @@ SimulationSnapshot Simulation::snapshot() const {
 
 void Simulation::restore(const SimulationSnapshot& snapshot) {
   mj_resetData(model_.get(), data_.get());  // also forgets warnings, and a stack left by an error
+  if (solid_ && obstacles_.cols() > 0) solid_->place(obstacles_, *model_, *data_);
   std::ranges::copy(snapshot.qpos, data_->qpos);
   std::ranges::copy(snapshot.qvel, data_->qvel);
   std::ranges::copy(snapshot.act, data_->act);

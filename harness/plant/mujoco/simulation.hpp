@@ -83,6 +83,8 @@ class Simulation {
 
   /// Whether the vehicle can touch what is solid; at first it cannot.
   void set_solid_standing(bool standing);
+  /// Puts solid obstacles that move where they are, see SolidMap::place.
+  void place_obstacles(const Eigen::Matrix3Xd& poses);
   /// How it touches what is solid now, see SolidMap; not a number where nothing is solid.
   [[nodiscard]] double contact_force() const;
 
@@ -137,6 +139,7 @@ class Simulation {
   std::vector<RollingWheel> rolling_;
   std::vector<int> tipping_;  // free joints of bodies that can tip over
   std::optional<SolidMap> solid_;
+  Eigen::Matrix3Xd obstacles_;  // that move; empty until they are placed
   int period_steps_;
   long delay_steps_;
 

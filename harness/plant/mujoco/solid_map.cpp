@@ -15,12 +15,13 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr const char* kSolidName = "qsmpc_solid_";  // before a number
-constexpr double kFarAway = 1000.0;                 // m
-constexpr double kHalfHeight = 5.0;                 // m, about the ground
-constexpr int kSolidContacts = 500;                 // at once
-constexpr int kRowsPerContact = 4;                  // of a pyramidal friction cone
-constexpr int kLowestBit = 8;                       // others are more likely to be the model's own
+constexpr const char* kSolidName = "qsmpc_solid_";    // before a number
+constexpr const char* kMovingName = "qsmpc_moving_";  // the same, of a body
+constexpr double kFarAway = 1000.0;                   // m
+constexpr double kHalfHeight = 5.0;                   // m, about the ground
+constexpr int kSolidContacts = 500;                   // at once
+constexpr int kRowsPerContact = 4;                    // of a pyramidal friction cone
+constexpr int kLowestBit = 8;  // others are more likely to be the model's own
 
 // Softer than wheels on the ground: a disturbance can put the vehicle 0.3 m deep into a block, and
 // is not to be answered by forces that throw it into the air. Highest priority: the vehicle's own
@@ -76,6 +77,15 @@ class SolidWriter {
   void operator()(const controller::EllipseShape& ellipse) { prisms(ellipse); }
   void operator()(const controller::PolygonShape& polygon) { prisms(polygon); }
 
+  /// On a body of its own, whose place is the middle of the shape.
+  void moving(const controller::PlanarShape& shape) {
+    const Eigen::Vector2d centre = controller::shape_centre(shape);
+    solids_.geoms += fmt::format("<body name=\"{}{}\" mocap=\"true\" pos=\"{} {} 0\">\n",
+                                 kMovingName, moving_count_++, centre.x(), centre.y());
+    std::visit(*this, controller::moved(shape, -centre));
+    solids_.geoms += "</body>\n";
+  }
+
   [[nodiscard]] Solids solids() const { return solids_; }
 
  private:
@@ -107,6 +117,7 @@ class SolidWriter {
 
   Solids solids_;
   int count_ = 0;
+  int moving_count_ = 0;
 };
 
 /// A bit that no geom of the model uses.
@@ -141,7 +152,10 @@ Solids solids_of(const controller::SafeSet& safe_set, const models::SystemDescri
     wall(axis, safe_set.bounds.upper[axis], -1.0);
   }
   for (const controller::Obstacle& obstacle : safe_set.obstacles) {
-    if (const controller::PlanarShape* shape = obstacle.shape()) {
+    const controller::PlanarShape* shape = obstacle.shape();
+    if (obstacle.motion) {
+      writer.moving(*shape);
+    } else if (shape != nullptr) {
       std::visit(writer, *shape);
     } else if (const controller::Box& box = *obstacle.box(); is_in_plane(box, system)) {
       writer.box(finite_interval(box, system.position_x), finite_interval(box, system.position_y));
@@ -177,6 +191,12 @@ MujocoModelPtr load_with_solids(const std::string& mjcf, const controller::SafeS
 SolidMap::SolidMap(const NamedModel& named, int carrier) : bit_(spare_bit(named)) {
   const mjModel& model = named.model;
   is_solid_.assign(static_cast<std::size_t>(model.ngeom), 0);
+  for (int body = 0;; ++body) {
+    const int found =
+        mj_name2id(&model, mjOBJ_BODY, fmt::format("{}{}", kMovingName, body).c_str());
+    if (found < 0) break;
+    moving_.push_back(found);
+  }
   const int root = model.body_rootid[carrier];
   for (int geom = 0; geom < model.ngeom; ++geom) {
     const std::string name = model.names + model.name_geomadr[geom];
@@ -194,6 +214,18 @@ void SolidMap::set_standing(mjModel& model, bool standing) const {
   for (const int geom : vehicle_) {
     int& affinity = model.geom_conaffinity[geom];
     affinity = standing ? affinity | bit_ : affinity & ~bit_;
+  }
+}
+
+void SolidMap::place(const Eigen::Matrix3Xd& poses, const mjModel& model, mjData& data) const {
+  for (std::size_t n = 0; n < moving_.size(); ++n) {
+    const int body = moving_[n];
+    const auto pose = poses.col(static_cast<Eigen::Index>(n));
+    mjtNum* const place = data.mocap_pos + std::ptrdiff_t{3} * model.body_mocapid[body];
+    for (int axis = 0; axis < 2; ++axis) place[axis] = model.body_pos[3 * body + axis] + pose[axis];
+    mjtNum* const turn = data.mocap_quat + std::ptrdiff_t{4} * model.body_mocapid[body];
+    turn[0] = std::cos(0.5 * pose[2]);
+    turn[3] = std::sin(0.5 * pose[2]);
   }
 }
 

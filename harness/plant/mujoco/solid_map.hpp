@@ -23,8 +23,8 @@ struct Solids {
 
 /// A plane for each bound of x and y and each half-plane, and a solid as high as a house for each
 /// other obstacle that restricts these two alone: boxes, cylinders, and a prism for each convex
-/// part of ellipses and polygons. A box that is not bounded on a side ends 1 km away. They collide
-/// with nothing yet.
+/// part of ellipses and polygons. A box that is not bounded on a side ends 1 km away. Those of
+/// obstacles that move are on mocap bodies. They collide with nothing yet.
 [[nodiscard]] Solids solids_of(const controller::SafeSet& safe_set,
                                const models::SystemDescription& system);
 
@@ -44,6 +44,9 @@ class SolidMap {
 
   /// Whether the vehicle can touch the geoms; at first it cannot. Its other contacts are the same.
   void set_standing(mjModel& model, bool standing) const;
+  /// Puts the bodies of obstacles that move where they are: poses as Plant::move_obstacles takes
+  /// them.
+  void place(const Eigen::Matrix3Xd& poses, const mjModel& model, mjData& data) const;
   /// N, the largest normal force between one of them and the vehicle; 0 without contact. data: of
   /// the model, after a step or mj_forward.
   [[nodiscard]] double largest_force(const mjModel& model, const mjData& data) const;
@@ -51,6 +54,7 @@ class SolidMap {
  private:
   int bit_ = 0;  // of contype and conaffinity
   std::vector<int> solids_;
+  std::vector<int> moving_;     // bodies
   std::vector<int> vehicle_;    // geoms
   std::vector<char> is_solid_;  // by geom
 };

@@ -15,7 +15,8 @@
 //                                 poses: x, y, heading at each control instant; predicted: the same
 //                                 at each period's end by the model without noise; plans: x, y by
 //                                 period and stage; moments: x, y, xx, xy, yy of the particles by
-//                                 period and stage; particles: see unpackParticles
+//                                 period and stage; particles: see unpackParticles;
+//                                 others (where obstacles move): see unpackOthers
 //   video                           from: s of the drive where it begins; speed: of the drive in it
 
 const bytesOf = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
@@ -42,6 +43,19 @@ function unpackParticles(packed) {
   return {starts, x, y, sizes: bytesOf(packed.sizes), stride: packed.stride};
 }
 
+// The obstacles that move:
+//   outlines   of each: x, y about its middle
+//   poses      x, y of its middle, turn: by control instant and obstacle
+//   ways       that all obstacles together may intend, those of one after those of the one before
+//   stages     of the plan that forecasts are of; none: there are no forecasts
+//   weights    by period and way: its probability, not a number without a plan
+//   places     by period, way and stage: x, y, xx, xy, yy of the middle
+function unpackOthers(others) {
+  const some = (text) => text === undefined ? new Float32Array() : floatsOf(text);
+  return {...others, outlines: others.outlines.map(floatsOf), poses: floatsOf(others.poses),
+          weights: some(others.weights), places: some(others.places)};
+}
+
 function unpackMap(map) {
   return {
     ...map,
@@ -50,6 +64,7 @@ function unpackMap(map) {
     plans: floatsOf(map.plans),
     moments: floatsOf(map.moments),
     particles: unpackParticles(map.particles),
+    others: map.others && unpackOthers(map.others),
   };
 }
 

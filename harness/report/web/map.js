@@ -95,7 +95,7 @@ class LiveMap {
       figure.append(note);
     }
     this.layers = {};
-    for (const name of ["particles", "ellipses", "plan", "ghost"]) {
+    for (const name of ["forecast", "particles", "ellipses", "plan", "ghost"]) {
       this.layers[name] = svgElement("g", {id: `layer-${name}`}, root);
     }
     this.addStages();
@@ -105,6 +105,9 @@ class LiveMap {
     this.nodes.forEach((node, stage) => { node.style.fill = onGround(stageColour(stage, data.horizon)); });
     const shape = Number.isFinite(this.map.poses[2]) ? kVehicle : kPoint;
     this.ghost = svgElement("path", {class: "ghost", d: shape}, this.layers.ghost);
+    const bodies = svgElement("g", {id: "others"}, root);
+    this.others = this.map.others &&
+      new LiveObstacles(this, this.map.others, bodies, this.layers.forecast);
     this.vehicle = svgElement("path", {id: "vehicle", class: "vehicle", d: shape}, root);
     document.getElementById("near-view").addEventListener("change", (event) =>
       this.setZoom(event.target.checked ? kNearView : 1));
@@ -276,6 +279,7 @@ class LiveMap {
       this.lines.forEach((line, i) => line.toggleAttribute("hidden", i >= k));
     }
     if (k === this.data.steps - 1) this.lines[k].toggleAttribute("hidden", share < 1);
+    this.others?.show(k, share);
     const from = poses.subarray(3 * k, 3 * k + 3);
     const to = poses.subarray(3 * k + 3, 3 * k + 6);
     const pose = this.between(from, to, share);

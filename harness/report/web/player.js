@@ -214,7 +214,8 @@ class Player {
     if (this.map) this.map.show(k, share);
     // For the view in three dimensions, whose script is apart (scene3d.js).
     document.dispatchEvent(new CustomEvent("qsmpc-moment", {
-      detail: {data, period: k, share, time: this.time, stageColour, wayColour}}));
+      detail: {data, period: k, share, time: this.time, stageColour, wayColour, forecastEllipses,
+               obstaclePose}}));
     if (k !== this.period) for (const chart of this.stages) chart.show(k);
     this.period = k;
     for (const chart of this.charts) chart.show(this.time);

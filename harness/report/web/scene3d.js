@@ -6,6 +6,7 @@
 //   share       of the way through that period
 //   time        s
 //   stageColour, wayColour   the page's colours, of a stage and of a clearance
+//   forecastEllipses, obstaclePose   of the obstacles that move (map_obstacles.js)
 //
 // Its own data:
 //
@@ -18,7 +19,8 @@
 //               the origin
 //   ground      area, bounds, obstacles, partial: x from, to, y from, to, null for no end;
 //               polygons: obstacles as packed floats, x and y of the corners in turn; halfPlanes:
-//               those of all (x, y) with a x + b y >= c, as a, b, c; targets: x, y, radius; no
+//               those of all (x, y) with a x + b y >= c, as a, b, c; lines: packed points, and
+//               whether faint, of a road; targets: x, y, radius; no
 //               ground for systems without a place in the plane
 //
 // A place has seven numbers: x, y, z in m, and the quaternion x, y, z, w.
@@ -26,6 +28,7 @@ import {Color, DirectionalLight, Group, HemisphereLight, Mesh, PerspectiveCamera
         Scene, ShadowMaterial, Vector3, WebGLRenderer} from "three";
 
 import {Ground, gridAbout} from "./scene_ground.js";
+import {Obstacles} from "./scene_obstacles.js";
 import {Plan} from "./scene_plan.js";
 import {Vehicle} from "./scene_vehicle.js";
 import {View} from "./scene_view.js";
@@ -165,10 +168,13 @@ class Panel {
       : gridAbout(this.vehicle.extent(), colours);
     // Without a ground, the page's map is of two states that have no place in this view.
     this.plan = data.ground && this.moment.data.map && new Plan(this.moment, colours);
-    this.layers = {particles: this.plan?.particles, plan: this.plan?.line, way: this.plan?.way,
+    this.others = this.plan && this.moment.data.map.others &&
+      new Obstacles(this.moment, this.ground.obstacleHeight, colours);
+    this.layers = {forecast: this.others?.forecasts, particles: this.plan?.particles, plan: this.plan?.line, way: this.plan?.way,
                    ghost: this.vehicle.ghost};
     this.scene.add(this.ground.group, this.vehicle.group, ...this.lights(size));
     if (this.plan) this.scene.add(this.plan.group);
+    if (this.others) this.scene.add(this.others.group);
   }
 
   // The sun goes with the vehicle, so that its shadow is sharp; the ground takes nothing but that.
@@ -204,6 +210,7 @@ class Panel {
     }
     this.vehicle.show(this.moment);
     this.plan?.show(this.moment, this.vehicle.pose);
+    this.others?.show(this.moment);
     const centre = this.vehicle.centre();
     const follow = this.figure.querySelector('[data-scene="follow"]');
     if (follow.checked) this.view.move(centre.clone().sub(this.centre));
@@ -212,6 +219,7 @@ class Panel {
     this.sun.position.copy(centre).addScaledVector(kSunTowards, this.sunDistance);
     this.shade.position.set(centre.x, centre.y, this.ground.height);
     this.ground.clear(this.camera.position, centre);
+    this.others?.clear(this.camera.position, centre);
     this.renderer.render(this.scene, this.camera);
   }
 }

@@ -70,6 +70,7 @@ export class Ground {
     for (const box of data.partial) this.obstacle(this.clipped(box), true);
     for (const polygon of data.polygons) this.prism(within(pairsOf(floatsOf(polygon)), this.shown));
     for (const halfPlane of data.halfPlanes) this.prism(cut(cornersOf(this.shown), halfPlane));
+    for (const line of data.lines) this.line(pairsOf(floatsOf(line.points)), line.faint);
     for (const target of data.targets) this.target(...target);
   }
 
@@ -88,6 +89,19 @@ export class Ground {
     floor.position.set((xl + xh) / 2, (yl + yh) / 2, 0);
     floor.renderOrder = order;
     this.group.add(floor);
+  }
+
+  // Of a road: its edges, and more faintly its middle.
+  line(points, faint) {
+    const ends = [];
+    for (let i = 1; i < points.length; i++) {
+      for (const [x, y] of [points[i - 1], points[i]]) ends.push(new Vector3(x, y, 0));
+    }
+    const colour = this.colours.of(faint ? "var(--edge)" : "var(--obstacle)");
+    const lines = new LineSegments(new BufferGeometry().setFromPoints(ends),
+                                   new LineBasicMaterial({color: colour, depthWrite: false}));
+    lines.renderOrder = -1;
+    this.group.add(lines);
   }
 
   box([xl, xh, yl, yh], height, material) {

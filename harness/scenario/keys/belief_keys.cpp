@@ -134,7 +134,8 @@ ScenarioKey initial_state_key() {
                     },
                     .check =
                         [](const ScenarioReading& reading, Section& section) {
-                          check_safe(reading, section, "mean", reading.scenario.initial_state.mean);
+                          check_safe(reading, section, "mean", reading.scenario.initial_state.mean,
+                                     reading.scenario.safe_set);
                         }},
                    {.about = {.name = "covariance",
                               .values = {MatrixValue{}},

@@ -53,7 +53,7 @@ struct FlagValue {};
 /// A list of finite numbers.
 struct VectorValue {
   Dimension size = Dimension::kStates;
-  std::size_t length = 0;  ///< where the size is kAny
+  std::size_t length = 0;  ///< where the size is kAny; 0: any
   NumberRange range{};
 };
 /// A list of rows, or of numbers: a diagonal, or the only row.

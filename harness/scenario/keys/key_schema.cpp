@@ -51,7 +51,7 @@ struct ValueSchema {
   Json operator()(const FlagValue& /*flag*/) const { return {{"type", "boolean"}}; }
   Json operator()(const VectorValue& vector) const {
     Json schema{{"type", "array"}, {"items", (*this)(NumberValue{vector.range})}};
-    if (vector.size == Dimension::kAny) {
+    if (vector.size == Dimension::kAny && vector.length > 0) {
       schema["minItems"] = vector.length;
       schema["maxItems"] = vector.length;
     }
@@ -79,11 +79,14 @@ struct ValueSchema {
 Json either(Json first, const Json& second) {
   if (first.empty()) return second;
   Json types = Json::array();
+  const auto add = [&types](const Json& type) {
+    if (std::ranges::find(types, type) == types.end()) types.push_back(type);
+  };
   for (const Json& type : {std::as_const(first)["type"], second["type"]}) {
     if (type.is_array()) {
-      types.insert(types.end(), type.begin(), type.end());
+      std::ranges::for_each(type, add);
     } else {
-      types.push_back(type);
+      add(type);
     }
   }
   first.update(second);

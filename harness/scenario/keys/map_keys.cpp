@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "controller/regions/standing.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/section_values.hpp"
+#include "harness/scenario/yaml_text.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -54,6 +56,27 @@ std::optional<std::string> angles_text(const Scenario& scenario,
   return fmt::format("[{}]", fmt::join(names, ", "));
 }
 
+void read_target_state(ScenarioReading& reading, Section& section, const KeyDescription& about) {
+  const std::vector<models::Coordinate>& states = reading.system().states;
+  const Eigen::Index size = std::ssize(states);
+  Eigen::VectorXd& state = reading.scenario.target.state;
+  state.setZero(size);
+  const char* const other = section.has("path") ? "path" : "waypoints";
+  if (!section.has(other)) {
+    section.require(about.name, fmt::format("{} numbers, [{}]", size,
+                                            fmt::join(coordinate_names(states), ", ")));
+  } else if (section.has(about.name)) {
+    section.note(about.name, fmt::format("nothing, as there is target.{}", other));
+  }
+  if (const auto given = section.vector(about.name, size)) state = *given;
+}
+
+std::optional<std::string> target_state_text(const Scenario& scenario,
+                                             const models::SystemDescription& /*system*/) {
+  if (scenario.target.has_path() || scenario.target.has_waypoints()) return std::nullopt;
+  return yaml_list(scenario.target.state);
+}
+
 ScenarioKey angles_key() {
   return {
       .about = {.name = "angles",
@@ -91,19 +114,21 @@ ScenarioKey safe_set_key() {
 }
 
 ScenarioKey target_key() {
-  return {
-      .about = {.name = "target"},
+  ScenarioKey key{
+      .about = {.name = "target", .required = true},
       .keys = {{.about = {.name = "state",
                           .values = {VectorValue{}},
                           .words = "*n* numbers; must be safe",
-                          .required = true},
-                .member = [](Scenario& scenario) -> Eigen::VectorXd& {
-                  return scenario.target.state;
-                },
+                          .fallback_words = "required without `path` and `waypoints`"},
+                .read = read_target_state,
                 .check =
                     [](const ScenarioReading& reading, Section& section) {
-                      check_safe(reading, section, "state", reading.scenario.target.state);
-                    }},
+                      const Scenario::Target& target = reading.scenario.target;
+                      if (target.has_path() || target.has_waypoints()) return;
+                      check_safe(reading, section, "state", target.state,
+                                 controller::standing(reading.scenario.safe_set));
+                    },
+                .write = target_state_text},
                {.about = {.name = "radius",
                           .values = {NumberValue{kPositive}},
                           .words = "distance at which the target counts as reached, {range}, in "
@@ -114,6 +139,9 @@ ScenarioKey target_key() {
                angles_key()},
       .after = ReadAfter::kSystem,
       .table = "map"};
+  for (ScenarioKey& of_path : path_keys()) key.keys.push_back(std::move(of_path));
+  for (ScenarioKey& of_route : waypoint_keys()) key.keys.push_back(std::move(of_route));
+  return key;
 }
 
 }  // namespace qsmpc::harness

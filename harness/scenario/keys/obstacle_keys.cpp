@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "harness/scenario/keys/motion_keys.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/keys/shape_keys.hpp"
 #include "harness/scenario/mjcf_obstacles.hpp"
@@ -74,6 +75,7 @@ MappingValue obstacle_value() {
   MappingValue value{
       {{.name = "STATE", .family = NameFamily::kStates, .values = {IntervalValue{}}, .words = ""}}};
   for (KeyDescription& shape : shape_keys()) value.keys.push_back(std::move(shape));
+  value.keys.push_back(motion_key());
   return value;
 }
 
@@ -86,7 +88,7 @@ std::vector<ScenarioKey> obstacle_keys() {
                          "up to {} obstacles, each a box, a mapping of at least one state to "
                          "`[lower, upper]`, where a state that is not named is not restricted; or "
                          "a `disc`, `ellipse`, `box`, `polygon` or `half_plane` of the plane of "
-                         "position",
+                         "position, which may have a `motion`",
                          kMostObstacles),
                      .see = "[below](#shapes)",
                      .unit = "of the state; m",

@@ -79,6 +79,10 @@ struct ScenarioKey {
 /// Within it, the obstacles and where else they are from.
 [[nodiscard]] std::vector<ScenarioKey> obstacle_keys();
 [[nodiscard]] ScenarioKey target_key();
+/// Within it, those of a path.
+[[nodiscard]] std::vector<ScenarioKey> path_keys();
+/// And those of waypoints.
+[[nodiscard]] std::vector<ScenarioKey> waypoint_keys();
 [[nodiscard]] ScenarioKey risk_key();
 [[nodiscard]] ScenarioKey estimator_key();
 [[nodiscard]] ScenarioKey controller_key();
@@ -96,9 +100,10 @@ void check_policy(const ScenarioReading& reading, Section& section);
 /// All of them.
 [[nodiscard]] const std::vector<ScenarioKey>& scenario_keys();
 
-/// Notes that `point`, the value of `key`, is not in the safe set.
+/// Notes that `point`, the value of `key`, is not in the safe set where obstacles stand as they are
+/// written.
 void check_safe(const ScenarioReading& reading, Section& section, const char* key,
-                const Eigen::VectorXd& point);
+                const Eigen::VectorXd& point, const controller::SafeSet& safe_set);
 /// Notes that the value of `key`, a covariance, has variances too small for certificates.
 void check_variances(Section& section, const char* key, const Eigen::MatrixXd& covariance);
 

@@ -40,14 +40,14 @@ KeyDescription describe(const ScenarioKey& key) {
 }
 
 void check_safe(const ScenarioReading& reading, Section& section, const char* key,
-                const Eigen::VectorXd& point) {
+                const Eigen::VectorXd& point, const controller::SafeSet& safe_set) {
   Eigen::Index largest = 0;
   if (point.cwiseAbs().maxCoeff(&largest) > kLargestCoordinate) {
     section.note(key, fmt::format("numbers of at most {:g} in size", kLargestCoordinate),
                  fmt::format("{:g}", point[largest]));
     return;
   }
-  const auto problem = why_unsafe(point, reading.scenario.safe_set, reading.system().states);
+  const auto problem = why_unsafe(point, safe_set, reading.system().states);
   if (problem) section.note(key, "a state in the safe set", *problem);
 }
 

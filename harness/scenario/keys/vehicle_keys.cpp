@@ -57,6 +57,7 @@ void read_discs(ScenarioReading& reading, Section& section, const KeyDescription
     if (offset) disc.offset = *offset;
     if (system.heading < 0 && !disc.offset.isZero(0.0)) {
       item.note("offset", "[0, 0], as the system has no heading");
+      disc.offset.setZero();  // for the checks that follow
     }
     item.refuse_unread();
     reading.scenario.safe_set.body.discs.push_back(disc);

@@ -81,6 +81,40 @@ TEST(ControllerProtocol, tells_a_situation_with_numbers_that_read_back_as_the_sa
   EXPECT_EQ(json["deadline"], 0.5);
 }
 
+TEST(ControllerProtocol, tells_what_is_known_of_obstacles_that_move) {
+  const controller::Gaussian belief{.mean = Eigen::Vector2d::Zero(),
+                                    .covariance = Eigen::Matrix2d::Identity()};
+  const Eigen::VectorXd seen = Eigen::Vector2d::Zero();
+  controller::ObstacleForecast forecast(1);
+  const controller::ObstaclePlace left{.weight = 0.25, .offset = {1.0, 2.0}, .turn = 0.5};
+  const controller::ObstaclePlace right{
+      .weight = 0.75, .covariance = (Eigen::Matrix2d() << 0.3, 0.1, 0.1, 0.2).finished()};
+  forecast.set(0, {{left, right}, {right, left}});
+  const auto json = nlohmann::json::parse(
+      situation_message({.belief = belief, .observation = seen, .obstacles = &forecast}, 1.0));
+  const auto& stages = json["obstacles"][0];
+  ASSERT_EQ(stages.size(), 2U);
+  EXPECT_EQ(stages[0][0]["weight"], 0.25);
+  EXPECT_EQ(stages[0][0]["offset"][1], 2.0);
+  EXPECT_EQ(stages[0][0]["turn"], 0.5);
+  EXPECT_EQ(stages[1][0]["covariance"][0][1], 0.1);
+  const auto without =
+      nlohmann::json::parse(situation_message({.belief = belief, .observation = seen}, 1.0));
+  EXPECT_FALSE(without.contains("obstacles"));
+}
+
+TEST(ControllerProtocol, tells_how_many_waypoints_were_passed) {
+  const controller::Gaussian belief{.mean = Eigen::Vector2d::Zero(),
+                                    .covariance = Eigen::Matrix2d::Identity()};
+  const Eigen::VectorXd seen = Eigen::Vector2d::Zero();
+  const auto told = nlohmann::json::parse(
+      situation_message({.belief = belief, .observation = seen, .progress = 3.0}, 1.0));
+  EXPECT_EQ(told["waypoints_passed"], 3);
+  const auto without =
+      nlohmann::json::parse(situation_message({.belief = belief, .observation = seen}, 1.0));
+  EXPECT_FALSE(without.contains("waypoints_passed"));
+}
+
 /// Two states and two inputs from -1 to 1.
 class Answers : public ::testing::Test {
  protected:

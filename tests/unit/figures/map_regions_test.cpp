@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/figures/ground_map.hpp"
+#include "harness/figures/svg_figure.hpp"
 #include "harness/scenario/model_dynamics.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "tests/unit/report/page_checks.hpp"
@@ -98,6 +99,36 @@ TEST(MapFigure, a_polygon_is_drawn_with_its_corners_where_they_belong) {
   ASSERT_EQ(drawn.size(), kCorner.size());
   EXPECT_NEAR(area_of(drawn), 12.0, 0.01);
   EXPECT_TRUE(contains(svg, "L144.0 336.0L"));  // the corner that leads inwards
+}
+
+TEST(MapFigure, a_moving_obstacle_is_a_way_and_outlines_and_has_no_part_in_the_area) {
+  PlaneMap map = square_map();
+  map.bounds = kSquare;
+  map.movers = {{.way = {{1, 1}, {1, 9}},
+                 .start = {disc(1, 1, 0.5)},
+                 .end = {disc(1, 9, 0.5)},
+                 .nearest = {disc(1, 5, 0.5)}},
+                {.way = {{2, 1}, {2, 1}}, .start = {disc(2, 1, 0.5)}}};
+  const std::string html = map_figure(map);
+  EXPECT_EQ(testing::tag_problem(html), "");
+  const std::string svg = map_drawing(map);
+  EXPECT_EQ(occurrences(svg, "class=\"way faint c0\""), 2);
+  EXPECT_TRUE(contains(svg, "d=\"M48.0 432.0L48.0 48.0\""));
+  EXPECT_EQ(occurrences(svg, "class=\"outline thin c0\""), 2);
+  EXPECT_EQ(occurrences(svg, "class=\"outline thin broken c0\""), 1);
+  EXPECT_EQ(occurrences(svg, "class=\"mover c0\""), 1);
+  // In the legend each once.
+  EXPECT_EQ(occurrences(html, "moving obstacle at the start</li>"), 1);
+  EXPECT_EQ(occurrences(html, "moving obstacle when the vehicle was nearest to it</li>"), 1);
+  EXPECT_TRUE(contains(svg_figure({map}), ".mover{fill"));
+  EXPECT_FALSE(contains(svg_figure({square_map()}), ".mover{fill"));
+  PlaneMap still = map;
+  still.movers = {{.start = {disc(2, 1, 0.5)}}};
+  EXPECT_FALSE(contains(map_figure(still), "nearest to it"));
+  map.area.reset();
+  const MapRectangle area = map_area(map);
+  map.movers.front().way.push_back({300, 300});
+  EXPECT_EQ(map_area(map).x_upper, area.x_upper);
 }
 
 TEST(MapFigure, a_disc_takes_no_more_corners_than_can_be_seen) {

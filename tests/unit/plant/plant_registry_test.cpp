@@ -1,6 +1,7 @@
 // The analytic plant and the table of plants.
 #include "harness/plant/plant_registry.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <stdexcept>
 
@@ -75,7 +76,9 @@ TEST(PlantRegistry, refuses_what_it_cannot_make) {
   scenario.model.parameters["speed"] = 0.0;
   EXPECT_THROW((void)make_plant(scenario), InputError);
   scenario = dubins_scenario("mujoco");
-  scenario.model = {.system = "bicycle", .parameters = models::systems().at(2).defaults};
+  const auto bicycle = std::ranges::find(models::systems(), "bicycle", &models::SystemEntry::name);
+  ASSERT_NE(bicycle, models::systems().end());
+  scenario.model = {.system = "bicycle", .parameters = bicycle->defaults};
   EXPECT_THROW((void)make_plant(scenario), InputError);
 }
 

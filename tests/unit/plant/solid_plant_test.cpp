@@ -277,6 +277,34 @@ INSTANTIATE_TEST_SUITE_P(
                       MetShape{"corner", corner_at}, MetShape{"triangle", triangle_at}),
     [](const auto& tested) { return tested.param.name; });
 
+// A disc that moves onto a car that stands pushes it on, and one that turns past it does not.
+TEST(SolidPlant, moves_what_moves) {
+  MujocoPlantSetup setup = car_setup();
+  controller::SafeSet map = controller::unbounded_safe_set(3);
+  map.body = {.discs = {}, .x = 0, .y = 1, .heading = 2};
+  controller::Obstacle bar(controller::TurnedBoxShape{.centre = {0.0, 3.0}, .size = {0.3, 2.0}});
+  bar.motion.emplace();
+  map.obstacles = {corner_at(50.0), bar};
+  setup.solid = map;
+  const auto plant = make_mujoco_plant(setup);
+  const auto pushed = [&](const Eigen::Vector3d& end) {
+    plant->reset(pose(0.0, 0.0, 0.0));
+    double force = 0.0;
+    for (int k = 0; k < 5; ++k) {
+      plant->move_obstacles(0.2 * k * end, 0.2 * (k + 1) * end);
+      const PlantStep step = plant->advance(yaw_rate(0.0), no_disturbance());
+      EXPECT_FALSE(step.fault.has_value()) << *step.fault;
+      force = std::fmax(force, step.contact.force);
+    }
+    return force;
+  };
+  EXPECT_EQ(pushed({0.0, 0.0, 0.0}), 0.0);
+  EXPECT_GT(pushed({0.6, -2.2, 0.0}), 0.0);
+  // Across, it is too far away.
+  EXPECT_EQ(pushed({0.6, -1.7, 0.5 * std::numbers::pi}), 0.0);
+  EXPECT_GT(pushed({0.6, -1.9, 0.0}), 0.0);
+}
+
 TEST(SolidPlant, has_a_prism_for_each_convex_part_where_the_coordinates_are_large) {
   constexpr double kEast = 500'000.0;  // m, as in maps of the surveyor
   controller::SafeSet map = controller::unbounded_safe_set(3);

@@ -41,6 +41,34 @@ Pixel nearest_pixel(const Image& image, const PixelPoint& place, const Colour& c
   return nearest;
 }
 
+/// How much of the forecast's colour is at the rightmost point of the last of two ellipses.
+int forecast_contrast(double weight) {
+  Renderer renderer(large_picture("top"), small_world(), kRedBox);
+  Frame frame;
+  Image image;
+  renderer.draw(frame, image);
+  const PlanarEllipse first{{-1.5, 0.0}, {0.3, 0.0}, {0.0, 0.3}};
+  const PlanarEllipse last{{1.5, 0.0}, {0.6, 0.0}, {0.0, 0.6}};
+  const auto at_side = [&](const PlanarEllipse& ellipse) {
+    const PlanarPoint side = on_ellipse(ellipse, 0.0);
+    return nearest_pixel(image, *renderer.locate(frame, side, kMarks), palette::kForecast);
+  };
+  const Pixel before = at_side(last);
+  frame.forecasts = {
+      {.weight = weight, .way = {{-1.5, 0.0}, {1.5, 0.0}}, .ellipses = {first, last}}};
+  renderer.draw(frame, image);
+  EXPECT_LT(at_side(first).red, before.red - 20);
+  EXPECT_LT(at_side(last).red, at_side(last).blue);
+  return before.red - at_side(last).red;
+}
+
+TEST(overlays, forecasts_are_fainter_the_later_and_the_less_probable) {
+  const int certain = forecast_contrast(1.0);
+  const int improbable = forecast_contrast(0.1);
+  EXPECT_GT(certain, improbable + 10);
+  EXPECT_GT(improbable, 5);  // still seen
+}
+
 TEST(overlays, ellipses_are_drawn_in_their_stages_colour) {
   Renderer renderer(large_picture("top"), small_world(), kRedBox);
   Frame frame;

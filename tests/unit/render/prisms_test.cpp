@@ -136,6 +136,28 @@ TEST(prisms, in_front_hide_a_particle) {
       kOtherColour);
 }
 
+TEST(prisms, that_move_stand_where_the_frame_has_them_in_a_colour_of_their_own) {
+  Renderer renderer(small_picture("top"), small_world(), kRedBox);
+  Frame frame;
+  frame.qpos = {-2.5, 2.5, 0.1, 1.0, 0.0, 0.0, 0.0};
+  Image image;
+  const auto differing = [&](double x) {
+    renderer.draw(frame, image);
+    int count = 0;
+    for (const PlanarPoint& top : {PlanarPoint{x - 0.3, 0.1}, PlanarPoint{x, -0.2},
+                                   PlanarPoint{x + 0.2, 0.15}, PlanarPoint{x, 0.3}}) {
+      const Pixel pixel = pixel_at(image, *renderer.locate(frame, top, kObstacleTop));
+      count += colour_difference(pixel, palette::kMovingObstacle) > kSameColour ? 1 : 0;
+    }
+    return count;
+  };
+  frame.moving = {convex({{-1.5, -0.5}, {-0.5, -0.5}, {-0.5, 0.5}, {-1.5, 0.5}})};
+  EXPECT_LE(differing(-1.0), 2);  // stripes may go through some
+  frame.moving = {convex({{0.5, -0.5}, {1.5, -0.5}, {1.5, 0.5}, {0.5, 0.5}})};
+  EXPECT_LE(differing(1.0), 2);
+  EXPECT_EQ(differing(-1.0), 4);
+}
+
 TEST(prisms, half_planes_reach_to_the_end_of_the_ground_and_leave_the_region_as_it_is) {
   World world = small_world();
   world.half_planes = {{{1.0, 1.0}, 2.0}};

@@ -222,6 +222,7 @@ INSTANTIATE_TEST_SUITE_P(
         BrokenChoice{"empty_group", "group: 4", ".group", "no geom that stands in the way",
                      "a group with such geoms: 0, 3"},
         BrokenChoice{"no_such_group", "group: 6", ".group", "6", "from 0 to 5"},
+        BrokenChoice{"no_name", "geoms: []", ".geoms", "an empty list", "at least one name"},
         BrokenChoice{"both", "{geoms: [crate], group: 3}", "", "both", "geoms, a list of names", 8},
         BrokenChoice{"neither", "{height: 2}", "", "neither", "geoms, a list of names", 8},
         BrokenChoice{"unknown_key", "{geom: [crate], group: 3}", ".geom", "an unknown key",

@@ -151,6 +151,9 @@ INSTANTIATE_TEST_SUITE_P(
                    "type: FeatureCollection\nfeatures:\n- type: Feature\n  geometry:\n"
                    "    type: LineString\n    coordinates: [[0, 0], [1, 1]]\n",
                    5, "features.0.geometry.type", "LineString", "Polygon, MultiPolygon, Point"},
+        BrokenFile{"no_feature", "{type: FeatureCollection, features: []}", 1, "features",
+                   "an empty list", "at least one"},
+        BrokenFile{"no_obstacle", "[]", 1, "", "an empty list", "at least one obstacle"},
         BrokenFile{"no_geometry", "{type: Feature, properties: {}}", 1, "geometry", "nothing",
                    "a geometry"},
         BrokenFile{"no_coordinates", "{type: Polygon}", 1, "coordinates", "nothing", "a list"},

@@ -10,6 +10,27 @@
 
 namespace qsmpc::harness {
 
+inline void expect_equal(const models::ObstacleMotion& a, const models::ObstacleMotion& b) {
+  ASSERT_EQ(a.ways.size(), b.ways.size());
+  for (std::size_t i = 0; i < a.ways.size(); ++i) {
+    EXPECT_EQ(a.ways[i].probability, b.ways[i].probability);
+    EXPECT_EQ(a.ways[i].onward, b.ways[i].onward);
+    ASSERT_EQ(a.ways[i].points.size(), b.ways[i].points.size());
+    for (std::size_t k = 0; k < a.ways[i].points.size(); ++k) {
+      EXPECT_EQ(a.ways[i].points[k].time, b.ways[i].points[k].time);
+      EXPECT_EQ(a.ways[i].points[k].place, b.ways[i].points[k].place);
+    }
+  }
+  EXPECT_EQ(a.start_deviation, b.start_deviation);
+  EXPECT_EQ(a.speed_deviation, b.speed_deviation);
+  EXPECT_EQ(a.memory, b.memory);
+  EXPECT_EQ(a.returns_in, b.returns_in);
+  EXPECT_EQ(a.covariance_rate, b.covariance_rate);
+  EXPECT_EQ(a.seen_deviation, b.seen_deviation);
+  EXPECT_EQ(a.turns, b.turns);
+  EXPECT_EQ(a.yields, b.yields);
+}
+
 inline void expect_equal(const Scenario& a, const Scenario& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.description, b.description);
@@ -30,6 +51,8 @@ inline void expect_equal(const Scenario& a, const Scenario& b) {
     const controller::Obstacle& one = a.safe_set.obstacles[i];
     const controller::Obstacle& other = b.safe_set.obstacles[i];
     ASSERT_EQ(one.form.index(), other.form.index());
+    ASSERT_EQ(one.motion.has_value(), other.motion.has_value());
+    if (one.motion) expect_equal(*one.motion, *other.motion);
     if (one.box() != nullptr) {
       EXPECT_EQ(one.box()->lower, other.box()->lower);
       EXPECT_EQ(one.box()->upper, other.box()->upper);
@@ -41,6 +64,11 @@ inline void expect_equal(const Scenario& a, const Scenario& b) {
   EXPECT_EQ(a.target.state, b.target.state);
   EXPECT_EQ(a.target.radius, b.target.radius);
   EXPECT_EQ(a.target.angles, b.target.angles);
+  EXPECT_EQ(a.target.path.rows, b.target.path.rows);
+  EXPECT_EQ(a.target.path.closed, b.target.path.closed);
+  EXPECT_EQ(a.target.path.fast, b.target.path.fast);
+  EXPECT_EQ(a.target.path.speed, b.target.path.speed);
+  EXPECT_EQ(a.target.path.laps, b.target.path.laps);
   EXPECT_EQ(a.estimator.kind, b.estimator.kind);
   EXPECT_EQ(a.step_limit, b.step_limit);
   EXPECT_EQ(a.stop_when_unsafe, b.stop_when_unsafe);

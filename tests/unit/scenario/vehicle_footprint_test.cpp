@@ -205,7 +205,9 @@ class RefusedVehicle : public ::testing::TestWithParam<BrokenVehicle> {};
 
 TEST_P(RefusedVehicle, is_named_with_file_line_and_key) {
   const BrokenVehicle& broken = GetParam();
-  const std::string mean = broken.system == "dubins" ? "[0, 0, 0]" : "[0, 0]";
+  static const std::map<std::string, std::string> means = {
+      {"dubins", "[0, 0, 0]"}, {"double_integrator", "[0, 0]"}, {"point_mass", "[0, 0, 0, 0]"}};
+  const std::string& mean = means.at(broken.system);
   const InputError::Where where =
       refusal_of("name: a\nmodel: {system: " + broken.system + "}\ninitial_state: {mean: " + mean +
                  "}\ntarget: {state: " + mean + "}\n" + broken.vehicle);
@@ -232,6 +234,10 @@ INSTANTIATE_TEST_SUITE_P(
                       "vehicle.footprint.0.offset", "2 "},
         BrokenVehicle{"unknown_key", "vehicle: {footprint: [{radius: 1, ofset: [1, 0]}]}",
                       "vehicle.footprint.0.ofset", "offset"},
+        BrokenVehicle{"offset_without_a_heading",
+                      "vehicle: {footprint: [{radius: 1, offset: [1, 0]}]}\n"
+                      "safe_set: {obstacles: [{x: [5, 6]}]}",
+                      "vehicle.footprint.0.offset", "no heading", "point_mass"},
         BrokenVehicle{"no_file",
                       "vehicle: {footprint: from_mjcf}\nplant: {kind: analytic, mjcf: "
                       "\"\"}",

@@ -22,7 +22,11 @@ const DatasetSpec& dataset(const std::vector<DatasetSpec>& layout, const std::st
 TEST(CertificateLayout, a_row_is_a_stage_or_a_step_of_all_stages) {
   const std::vector<DatasetSpec> once = certificate_layout();
   const std::vector<DatasetSpec> stepwise = certificate_layout(3);
-  ASSERT_EQ(once.size(), stepwise.size());
+  // Drives have no C5, which is not worked out for plans that are driven.
+  ASSERT_EQ(once.size(), stepwise.size() + 1);
+  EXPECT_NE(std::ranges::find(once, "/certificate/conditioned", &DatasetSpec::path), once.end());
+  EXPECT_EQ(std::ranges::find(stepwise, "/certificate/conditioned", &DatasetSpec::path),
+            stepwise.end());
   EXPECT_THAT(dataset(once, "/certificate/budget").row_shape, ElementsAre(4));
   EXPECT_THAT(dataset(stepwise, "/certificate/budget").row_shape, ElementsAre(4, 4));
   EXPECT_THAT(dataset(stepwise, "/certificate/budget").axes,
@@ -63,6 +67,7 @@ TEST(CertificateDatasets, what_is_appended_is_read_back) {
   EXPECT_THAT(read.doubles("/certificate/value"), ElementsAre(0.25));
   EXPECT_THAT(read.doubles("/certificate/surrogate"), ElementsAre(0.5));
   EXPECT_THAT(read.doubles("/certificate/smoothed"), ElementsAre(1.0));
+  EXPECT_THAT(read.doubles("/certificate/conditioned"), ElementsAre(1.0));
   EXPECT_THAT(read.doubles("/certificate/unsafe_mass"), ElementsAre(0.0));
   EXPECT_THAT(read.texts("/certificate/kind"), ElementsAre("c2"));
 }

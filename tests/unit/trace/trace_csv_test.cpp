@@ -76,6 +76,41 @@ TEST(TraceCsv, has_a_line_for_every_stage_of_every_plan) {
   EXPECT_DOUBLE_EQ(std::stod(rows[2][0]), trace.steps[0].time + trace.scenario.time_step);
 }
 
+/// The example with an obstacle that moves behind one that stands.
+Trace moving_trace() {
+  Trace trace = testing::example_trace({.steps = 2});
+  controller::Obstacle walker(controller::DiscShape{.centre = {5.0, 2.0}, .radius = 0.3});
+  walker.motion = models::ObstacleMotion{.ways = {models::steady_way({0.0, 1.0})}};
+  trace.scenario.safe_set.obstacles = {trace.scenario.safe_set.obstacles.front(), walker};
+  for (StepRecord& step : trace.steps) {
+    step.obstacles = Eigen::Vector3d(0.0, step.time, 0.5);
+    step.obstacles_seen = Eigen::Vector2d(0.01, step.time - 0.02);
+  }
+  trace.final_obstacles = Eigen::Vector3d(0.0, 0.2, 0.5);
+  return trace;
+}
+
+TEST(TraceCsv, has_a_line_for_every_moving_obstacle_at_every_control_instant) {
+  const Trace trace = moving_trace();
+  const Rows rows = rows_of(obstacles_csv(EpisodeView(trace)));
+  expect_rectangular(rows);
+  ASSERT_EQ(rows.size(), 4U);  // with the head and the end
+  const auto number = [&](std::size_t row, const std::string& name) {
+    return std::stod(rows[row][column(rows, name)]);
+  };
+  EXPECT_DOUBLE_EQ(number(2, "time [s]"), 0.1);
+  EXPECT_EQ(rows[2][column(rows, "obstacle")], "1");
+  EXPECT_DOUBLE_EQ(number(2, "x [m]"), 5.0);
+  EXPECT_DOUBLE_EQ(number(2, "y [m]"), 2.1);
+  EXPECT_DOUBLE_EQ(number(2, "turn [rad]"), 0.5);
+  EXPECT_DOUBLE_EQ(number(2, "seen x [m]"), 5.01);
+  EXPECT_DOUBLE_EQ(number(2, "seen y [m]"), 2.08);
+  EXPECT_DOUBLE_EQ(number(3, "y [m]"), 2.2);
+  EXPECT_EQ(rows[3][column(rows, "seen x [m]")], "");  // after the last period nobody looks
+  const Trace still = testing::example_trace();
+  EXPECT_EQ(rows_of(obstacles_csv(EpisodeView(still))).size(), 1U);
+}
+
 TEST(TraceCsv, has_a_line_for_every_particle) {
   const Trace trace = testing::example_trace();
   const Rows rows = rows_of(particles_csv(EpisodeView(trace)));

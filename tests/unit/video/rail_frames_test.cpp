@@ -9,6 +9,7 @@
 #include "harness/video/episode_frames.hpp"
 #include "harness/video/episode_painter.hpp"
 #include "tests/support/described_trace.hpp"
+#include "tests/unit/render/render_fixture.hpp"
 
 namespace qsmpc::harness {
 namespace rail_frames_test {

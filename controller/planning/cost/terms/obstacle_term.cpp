@@ -1,4 +1,4 @@
-// The smooth penalties of obstacles, at the particles of each stage.
+// The smooth penalties of obstacles and of a road's edges, at the particles of each stage.
 #include "controller/planning/cost/cost_terms.hpp"
 #include "controller/regions/unsafe_set.hpp"
 
@@ -32,8 +32,8 @@ class ObstacleTerm final : public StageTerm {
                                  .length = penalty_.length,
                                  .adjoint = gradient};
     double value = 0.0;
-    for (const RegionPointer& obstacle : disc.obstacles()) {
-      value += obstacle->add_penalty(batch.stage, particles);
+    for (const RegionPointer& region : disc.within_walls()) {
+      value += region->add_penalty(batch.stage, particles);
     }
     return value;
   }
@@ -66,7 +66,8 @@ class ObstacleTerm final : public StageTerm {
 }  // namespace
 
 std::unique_ptr<StageTerm> make_obstacle_term(const HorizonCostTerms& terms) {
-  const bool costs = terms.penalty.obstacle != 0.0 && !terms.safe_set.obstacles.empty();
+  const bool has_any = !terms.safe_set.obstacles.empty() || terms.safe_set.road != nullptr;
+  const bool costs = terms.penalty.obstacle != 0.0 && has_any;
   if (terms.penalty.shape != PenaltyShape::kSmooth || !costs) return nullptr;
   return std::make_unique<ObstacleTerm>(terms.safe_set, terms.penalty);
 }

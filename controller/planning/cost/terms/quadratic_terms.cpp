@@ -6,6 +6,8 @@
 //     ½ E|x − r|²_Q = ½ Σ_i ρ_i |f_i − r|²_Q + ½ tr(Q Σ_w),
 // and the terminal cost likewise, without the ½. The traces, and the belief's own cost, are what no
 // decision changes.
+#include <vector>
+
 #include "controller/planning/cost/cost_terms.hpp"
 #include "controller/planning/cost/stage_kernels.hpp"
 
@@ -18,8 +20,8 @@ class QuadraticTerm : public StageTerm {
   [[nodiscard]] TermPlace place() const override { return place_; }
 
   double add(const TermBatch& batch, const Executor& /*run*/) override {
-    return weighted_quadratic(form_, factor_, batch.points, batch.weights, batch.range,
-                              batch.gradient,
+    return weighted_quadratic(form_at(batch.stage), factor_, batch.points, batch.weights,
+                              batch.range, batch.gradient,
                               batch.blank ? GradientUse::kOverwrite : GradientUse::kAdd);
   }
 
@@ -28,12 +30,24 @@ class QuadraticTerm : public StageTerm {
                 const Eigen::VectorXd& centre)
       : place_(place), factor_(factor), form_(weight, centre) {}
 
-  [[nodiscard]] QuadraticForm& form() { return form_; }
+  [[nodiscard]] const QuadraticForm& form_at(Eigen::Index stage) const {
+    return stage_forms_.empty() ? form_ : stage_forms_[static_cast<std::size_t>(stage)];
+  }
+
+  /// Takes the targets as they are now.
+  void place_at(const QuadraticCost& cost) {
+    form_.centre = cost.target;
+    stage_forms_.resize(static_cast<std::size_t>(cost.stage_targets.cols()), form_);
+    for (std::size_t k = 0; k < stage_forms_.size(); ++k) {
+      stage_forms_[k].centre = cost.target_at(static_cast<Eigen::Index>(k));
+    }
+  }
 
  private:
   TermPlace place_;
   double factor_;
   QuadraticForm form_;
+  std::vector<QuadraticForm> stage_forms_;  // where the target moves
 };
 
 class InputTerm final : public QuadraticTerm {
@@ -52,12 +66,12 @@ class StateTerm final : public QuadraticTerm {
   }
 
   void freeze(const FrozenHorizon& frozen) override {
-    form().centre = cost_.target;
+    place_at(cost_);
     const Points& points = frozen.belief.locations;
     unused_.resize(points.rows(), points.cols());
     double belief = 0.0;
     for (Eigen::Index i = 0; i < points.cols(); i += kChunk) {
-      belief += weighted_quadratic(form(), 0.5, points, frozen.belief.weights,
+      belief += weighted_quadratic(form_at(0), 0.5, points, frozen.belief.weights,
                                    chunk_range(static_cast<int>(i / kChunk), points.cols()),
                                    unused_, GradientUse::kOverwrite);
     }
@@ -84,7 +98,7 @@ class TerminalTerm final : public QuadraticTerm {
   }
 
   void freeze(const FrozenHorizon& frozen) override {
-    form().centre = cost_.target;
+    place_at(cost_);
     fixed_ = cost_.terminal.cwiseProduct(frozen.noise_covariance).sum();
   }
 

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -123,33 +124,49 @@ struct Pairs {
       noise;  ///< of the step that leads to the stage; at 0 what the belief drew
 };
 
-inline Pairs simulate_pairs(const controller::PredictedMotion& motion,
-                            const std::vector<controller::SurrogateStage>& stages,
-                            Generator& generator) {
+/// What enters at the stages 0 … horizon.
+inline std::vector<controller::Points> draw_noise(const controller::PredictedMotion& motion,
+                                                  Generator& generator) {
   NormalSampler belief(motion.belief.covariance);
   NormalSampler noise(motion.noise_covariance);
+  std::vector<controller::Points> result;
+  for (Eigen::Index k = 0; k <= motion.policy.horizon(); ++k) {
+    controller::Points draws(motion.belief.mean.size(), kSamples);
+    for (int i = 0; i < kSamples; ++i) draws.col(i) = (k == 0 ? belief : noise)(generator);
+    result.push_back(draws);
+  }
+  return result;
+}
+
+/// shifts: the noise's mean at every stage, which the stages' laws have in theirs; none: zero.
+inline Pairs pairs_under(const controller::PredictedMotion& motion,
+                         const std::vector<controller::SurrogateStage>& stages,
+                         std::vector<controller::Points> noise,
+                         const std::vector<Eigen::VectorXd>& shifts = {}) {
   const Eigen::Index dim = motion.belief.mean.size();
-  const auto draws = [&](NormalSampler& sampler) {
-    controller::Points result(dim, kSamples);
-    for (int i = 0; i < kSamples; ++i) result.col(i) = sampler(generator);
-    return result;
-  };
   Pairs pairs;
-  pairs.noise.push_back(draws(belief));
+  pairs.noise = std::move(noise);
   pairs.state.push_back(pairs.noise[0].colwise() + motion.belief.mean);
   pairs.surrogate.push_back(pairs.state[0]);
   for (Eigen::Index k = 0; k < motion.policy.horizon(); ++k) {
-    pairs.noise.push_back(draws(noise));
     controller::Points inputs(motion.policy.inputs.rows(), kSamples);
     controller::Points next(dim, kSamples);
     controller::policy_inputs(motion.policy, k, pairs.state[k], inputs);
     motion.dynamics.step(pairs.state[k], inputs, next);
-    pairs.state.push_back(next + pairs.noise.back());
+    pairs.state.push_back(next + pairs.noise[k + 1]);
     const controller::Points offset = pairs.surrogate[k].colwise() - stages[k].law.mean;
-    pairs.surrogate.push_back(((stages[k].transition * offset).colwise() + stages[k + 1].law.mean) +
-                              pairs.noise.back());
+    Eigen::VectorXd centre = stages[k + 1].law.mean;
+    if (!shifts.empty()) centre -= shifts[k + 1];
+    pairs.surrogate.push_back(((stages[k].transition * offset).colwise() + centre) +
+                              pairs.noise[k + 1]);
   }
   return pairs;
+}
+
+inline Pairs simulate_pairs(const controller::PredictedMotion& motion,
+                            const std::vector<controller::SurrogateStage>& stages,
+                            Generator& generator) {
+  return pairs_under(motion, stages, draw_noise(motion, generator));
 }
 
 inline Eigen::VectorXd root_mean_squares(const controller::Points& values) {

@@ -144,9 +144,9 @@ TEST(LinearTransportProbability, is_never_below_the_exact_worst_case) {
 
 TEST(ThesisProbability, takes_the_norm_of_the_face_distances_and_ignores_obstacles) {
   const SafeSet room{
-      .bounds = {.lower = Eigen::Vector2d(0.0, 0.0), .upper = Eigen::Vector2d(8.0, 10.0)},
-      .obstacles = {Box{.lower = Eigen::Vector2d(3.0, 4.0), .upper = Eigen::Vector2d(3.5, 4.5)}}};
-  const DiscreteMeasure point{.locations = Eigen::Vector2d(3.0, 4.0),
+      .bounds = {.lower = Eigen::Vector2d(-2.0, 1.0), .upper = Eigen::Vector2d(6.0, 11.0)},
+      .obstacles = {Box{.lower = Eigen::Vector2d(1.0, 5.0), .upper = Eigen::Vector2d(1.5, 5.5)}}};
+  const DiscreteMeasure point{.locations = Eigen::Vector2d(1.0, 5.0),
                               .weights = Eigen::VectorXd::Ones(1)};
   // Distance 5 as printed, spent linearly: 1/5; the point is in fact on an obstacle.
   EXPECT_NEAR(thesis_probability(point, room.bounds, 1.0), 0.2, kRounding);

@@ -28,6 +28,7 @@ struct Case {
   bool closed_loop;
   bool tight_bounds;  // so tight that most particles saturate
   std::string propagator;
+  bool moving_target = false;  // another one at each stage
 };
 
 class GradientCase {
@@ -38,6 +39,9 @@ class GradientCase {
                       .input = random_spd(generator, 1),
                       .terminal = random_spd(generator, 3),
                       .target = random_matrix(generator, 3, 1)};
+    if (options.moving_target) {
+      settings_.cost.stage_targets = random_matrix(generator, 3, options.horizon + 1);
+    }
     const double bound = options.tight_bounds ? 0.4 : 50.0;
     settings_.bounds = {.lower = Eigen::VectorXd::Constant(1, -bound),
                         .upper = Eigen::VectorXd::Constant(1, 0.8 * bound)};
@@ -63,6 +67,11 @@ class GradientCase {
   }
 
   [[nodiscard]] const Eigen::MatrixXd& inputs() const { return policy_.inputs; }
+  /// The target at every stage.
+  void repeat_target() {
+    settings_.cost.stage_targets = settings_.cost.target.replicate(1, policy_.horizon() + 1);
+  }
+  void move_target(Eigen::Index stage) { settings_.cost.stage_targets.col(stage).array() += 0.3; }
   [[nodiscard]] HorizonCost cost() const {
     return {{.dynamics = *car_,
              .safe_set = settings_.safe_set,
@@ -150,6 +159,9 @@ std::vector<Case> every_case() {
       }
     }
   }
+  for (const bool closed_loop : {false, true}) {
+    cases.push_back({8, closed_loop, false, "mixture", true});
+  }
   return cases;
 }
 
@@ -158,8 +170,39 @@ INSTANTIATE_TEST_SUITE_P(cases, HorizonCostGradient, ::testing::ValuesIn(every_c
                            const Case& options = information.param;
                            return std::string(options.closed_loop ? "closed" : "open") +
                                   (options.tight_bounds ? "_tight_" : "_wide_") +
-                                  options.propagator + "_" + std::to_string(options.horizon);
+                                  options.propagator + "_" + std::to_string(options.horizon) +
+                                  (options.moving_target ? "_moving" : "");
                          });
+
+TEST(HorizonCost, of_the_same_target_at_every_stage_is_that_of_one_target) {
+  Generator generator(17);
+  GradientCase problem(
+      {.horizon = 6, .closed_loop = true, .tight_bounds = false, .propagator = "mixture"},
+      generator);
+  Eigen::MatrixXd gradient(1, 6);
+  Eigen::MatrixXd same(1, 6);
+  const double value = problem.cost().evaluate(problem.inputs(), gradient);
+  problem.repeat_target();
+  EXPECT_EQ(problem.cost().evaluate(problem.inputs(), same), value);
+  EXPECT_EQ(same, gradient);
+}
+
+TEST(HorizonCost, of_each_stage_is_about_its_own_target) {
+  Generator generator(19);
+  GradientCase problem(
+      {.horizon = 3, .closed_loop = false, .tight_bounds = false, .propagator = "mixture"},
+      generator);
+  Eigen::MatrixXd gradient(1, 3);
+  problem.repeat_target();
+  HorizonCost still = problem.cost();
+  const double before = still.evaluate(problem.inputs(), gradient);
+  const CostParts parts = still.parts();
+  problem.move_target(3);  // the last one counts in the terminal cost alone
+  HorizonCost moved = problem.cost();
+  EXPECT_NE(moved.evaluate(problem.inputs(), gradient), before);
+  EXPECT_EQ(moved.parts()[cost_part("state")], parts[cost_part("state")]);
+  EXPECT_NE(moved.parts()[cost_part("terminal")], parts[cost_part("terminal")]);
+}
 
 /// E[(x − r)ᵀQ(x − r)] for x with this law.
 double expected_square(const Gaussian& law, const Eigen::MatrixXd& matrix,

@@ -85,7 +85,7 @@ TEST(Rollouts, cost_the_quadratic_cost_and_the_unsafe_cost_of_every_stage) {
   const UnsafeCost cost{.collision = 70.0, .proximity = 11.0, .margin = 0.4};
   Rollouts rollouts(*car, problem, cost);
   const Eigen::Vector3d start(0.0, 0.36, 0.15);  // past the block, or into it
-  rollouts.place(start, problem.cost.target);
+  rollouts.place(start, problem.cost);
   SampleChunk chunk = random_chunk(*car, problem.horizon, 5);
   Eigen::MatrixXd path = Eigen::MatrixXd::Zero(3, problem.horizon + 1);
   for (const bool noisy : {false, true}) {

@@ -1,0 +1,62 @@
+// A change of measure for the noise along a plan: what the law of the path becomes where one or
+// more linear functionals of it are held near a place. A standard normal variable's density is at
+// most (1 + δ) Σ ρ_i N(c_i, w²), so that a probability of the path is at most (1 + δ) Σ ρ_i times
+// that under the tilted laws, under which everything stays Gaussian with smaller deviations.
+// Derivation: docs/theory/conditioning.md.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/prediction/prediction.hpp"
+
+namespace qsmpc::controller {
+
+/// Functionals a = Σ_j Λ_jᵀ ξ_j of the path's noise (ξ_0 = x_0 − its mean, ξ_{j+1} = w_j), r of
+/// them, uncorrelated and of variance 1.
+struct PathFunctionals {
+  std::vector<Eigen::MatrixXd> weights;  ///< horizon + 1, n x r: Λ_j; empty where r is 0
+  std::vector<Eigen::MatrixXd> moves;    ///< the same: Γ_j = Cov(ξ_j, a) = Cov(ξ_j) Λ_j
+
+  /// r
+  [[nodiscard]] Eigen::Index count() const { return weights.empty() ? 0 : weights[0].cols(); }
+};
+
+/// The law under which a ~ N(centre, diag(spreads²)), and what is independent of a has stayed as it
+/// was.
+struct PathTilt {
+  PathFunctionals functionals{};
+  Eigen::VectorXd centre{};   ///< r
+  Eigen::VectorXd spreads{};  ///< r; w, each in (0, 1)
+
+  [[nodiscard]] bool empty() const { return functionals.count() == 0; }
+};
+
+/// Adds a functional with these weights to `functionals`, made uncorrelated with those there are
+/// and scaled to the variance 1. False, and nothing is added, where nothing is left of it by then.
+[[nodiscard]] bool add_functional(const PredictedMotion& motion,
+                                  const std::vector<Eigen::VectorXd>& weights,
+                                  PathFunctionals& functionals);
+
+/// Covariance of the part of ξ_block that is independent of all other blocks under the tilt.
+/// covariance: of ξ_block without it.
+[[nodiscard]] Eigen::MatrixXd independent_part(const Eigen::MatrixXd& covariance,
+                                               const PathTilt& tilt, Eigen::Index block);
+
+/// Whether ξ_block is independent of all functionals, but for its coordinate `axis` (−1: none).
+[[nodiscard]] bool concerns_only(const PathTilt& tilt, Eigen::Index block, Eigen::Index axis);
+
+/// Places and weights of tilted laws: Σ ρ_i N(c_i, diag(w²)) is at least (1 − δ) N(0, I)
+/// everywhere.
+struct TiltGrid {
+  Eigen::MatrixXd centres{};  ///< r x count
+  Eigen::VectorXd weights{};  ///< count
+  double left_out = 0.0;      ///< Σ ρ_i of the places that are too far to be listed
+  double factor = 1.0;        ///< 1 / (1 − δ)
+};
+
+/// The grid for r functionals with these spreads, 0 < w < 1.
+[[nodiscard]] TiltGrid tilt_grid(const Eigen::VectorXd& spreads);
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,180 @@
+// What the regions of shapes are made of, whether they stand still or move: the convex parts of a
+// shape, grown, with circles about them that tell quickly that a part is far away.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "controller/regions/planar/convex_bound.hpp"
+#include "controller/regions/planar/convex_surface.hpp"
+#include "controller/regions/unsafe_region.hpp"
+
+namespace qsmpc::controller {
+
+/// A part with a circle about it.
+struct BoundedPart {
+  ConvexPart part;
+  Circle circle;
+};
+
+/// A turn of the plane about a point, and then a shift.
+struct PlaneMotion {
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  Eigen::Vector2d shift = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();  ///< a rotation
+
+  [[nodiscard]] Eigen::Vector2d of(const Eigen::Vector2d& point) const {
+    return centre + shift + turn * (point - centre);
+  }
+  /// What is moved to `point`.
+  [[nodiscard]] Eigen::Vector2d back(const Eigen::Vector2d& point) const {
+    return centre + turn.transpose() * (point - centre - shift);
+  }
+  [[nodiscard]] BoundedPart of(const BoundedPart& one) const;
+};
+
+/// Where parts are: moved so, and by a Gaussian of this covariance in the plane besides.
+struct PlacedAs {
+  PlaneMotion motion{};
+  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
+};
+
+/// Whether the point is at least `distance` away from the circle.
+[[nodiscard]] inline bool is_beyond(const Circle& circle, const Eigen::Vector2d& point,
+                                    double distance) {
+  const double reach = circle.radius + distance;
+  return reach <= 0.0 || (point - circle.centre).squaredNorm() >= reach * reach;
+}
+
+class ShapeParts {
+ public:
+  /// The shape with all that is within `growth` of it. `shape` must be one that check_planar_shape
+  /// takes.
+  ShapeParts(const PlanarShape& shape, double growth);
+
+  [[nodiscard]] const std::vector<BoundedPart>& all() const { return parts_; }
+
+  /// The surface of the nearest part of those that are nearer than `enough`; else one at least as
+  /// far.
+  [[nodiscard]] SurfacePoint nearest(const Eigen::Vector2d& point, double enough) const;
+
+  /// Bounds of P(z + e in the parts).
+  [[nodiscard]] RegionProbability probability(const SurrogateLaw& state, PlaneAxes axes) const;
+  /// Bounds of P(z + e in the parts where they are), which is independent of the state.
+  [[nodiscard]] RegionProbability probability(const SurrogateLaw& state, PlaneAxes axes,
+                                              const PlacedAs& where) const;
+
+ private:
+  /// The sum over the parts, of which `far` bounds those that are far away and `near` all others,
+  /// or what `near` makes of the hull.
+  template <class Far, class Near>
+  [[nodiscard]] RegionProbability sum_of(double worthwhile, const Far& far, const Near& near) const;
+
+  std::vector<BoundedPart> parts_;
+  std::optional<BoundedPart> hull_;  ///< of several parts
+};
+
+/// At least E(1 − d(y, part)²/t²)₊ for y ~ N(centre, covariance): where it is near 1 all the same,
+/// as for a part that is much nearer than t, it is 1, which takes no time.
+[[nodiscard]] double soft_probability_of(const ConvexPart& part, const Eigen::Vector2d& centre,
+                                         const Eigen::Matrix2d& covariance, double t);
+
+/// Parts as Gaussians of one covariance about many centres see them.
+class SoftShape final : public SoftRegion {
+ public:
+  /// `covariance`: in the plane. Refers to the parts and the centres.
+  SoftShape(const std::vector<BoundedPart>& parts, PlaneAxes axes, const GaussianCentres& centres,
+            const Eigen::Matrix2d& covariance);
+
+  void add(double t, Eigen::Index begin, Eigen::Index count, double* totals) const override;
+
+ private:
+  const std::vector<BoundedPart>& parts_;
+  PlaneAxes axes_;
+  const Points& centres_;
+  Eigen::Matrix2d covariance_;
+  double deviation_;
+  std::vector<double> gaps_;  ///< least distances of a centre from each part's circle
+};
+
+/// A Gaussian's mean and covariance in the plane.
+[[nodiscard]] inline Eigen::Vector2d plane_point(const Eigen::Ref<const Eigen::VectorXd>& state,
+                                                 PlaneAxes axes) {
+  return {state[axes.x], state[axes.y]};
+}
+[[nodiscard]] Eigen::Matrix2d plane_covariance(const Eigen::Ref<const Eigen::MatrixXd>& covariance,
+                                               PlaneAxes axes);
+
+/// The covariance with variances of at least what counts as certain, `largest` being the largest of
+/// the whole law: in one that is less there is no standard deviation to count in.
+[[nodiscard]] Eigen::Matrix2d uncertain(Eigen::Matrix2d covariance, double largest);
+
+/// Beyond so many standard deviations a tail is 0 in doubles.
+inline constexpr double kNoTail = 39.0;
+
+/// An outline in the plane of coordinates x and y of the state, of which two are `axes`: as it is
+/// where they are, and else from where to where it is.
+[[nodiscard]] Outline outline_in(const Eigen::Matrix2Xd& corners, PlaneAxes axes, Eigen::Index x,
+                                 Eigen::Index y);
+
+/// The penalty h of planning/cost/penalty.hpp of a distance, in lengths, and its derivative.
+struct Hinge {
+  double value = 0.0;
+  double slope = 0.0;
+};
+[[nodiscard]] Hinge hinge(double ratio);
+
+/// The largest variance in any direction.
+[[nodiscard]] double largest_variance(const Eigen::Matrix2d& covariance);
+
+/// What the questions about many points share. `nearest(point, enough)` is the surface of what is
+/// nearest, where that is nearer than `enough`; else one at least as far.
+///
+/// Lowers `least` (n) to the distances of the points.
+template <class Nearest>
+void lower_distances(const Nearest& nearest, PlaneAxes axes, const Points& points,
+                     Eigen::ArrayXd& least) {
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector2d at(points(axes.x, i), points(axes.y, i));
+    least[i] = std::min(least[i], nearest(at, least[i]).distance);
+  }
+}
+
+/// The same with the slopes.
+template <class Nearest>
+void lower_faces(const Nearest& nearest, PlaneAxes axes, const Points& points,
+                 NearestFaces& faces) {
+  for (Eigen::Index i = 0; i < points.cols(); ++i) {
+    const Eigen::Vector2d at(points(axes.x, i), points(axes.y, i));
+    const SurfacePoint surface = nearest(at, faces.distance[i]);
+    if (!(surface.distance < faces.distance[i])) continue;
+    faces.distance[i] = surface.distance;
+    faces.slope.col(i).setZero();
+    faces.slope(axes.x, i) = surface.outward.x();
+    faces.slope(axes.y, i) = surface.outward.y();
+  }
+}
+
+/// `scale` times the penalty of the batch's particles, whose derivatives it adds to the adjoint.
+template <class Nearest>
+double add_penalty_of(const Nearest& nearest, PlaneAxes axes, double scale,
+                      const PenaltyBatch& batch) {
+  double value = 0.0;
+  for (Eigen::Index i = batch.range.begin; i < batch.range.end; ++i) {
+    const Eigen::Vector2d at(batch.locations(axes.x, i), batch.locations(axes.y, i));
+    const SurfacePoint surface = nearest(at, batch.length);
+    const Hinge push = hinge(surface.distance / batch.length);
+    if (push.value == 0.0) continue;
+    const double weight = scale * batch.weights[i];
+    value += weight * push.value;
+    const double slope = weight * push.slope / batch.length;
+    batch.adjoint(axes.x, i) += slope * surface.outward.x();
+    batch.adjoint(axes.y, i) += slope * surface.outward.y();
+  }
+  return value;
+}
+
+}  // namespace qsmpc::controller

@@ -1,0 +1,113 @@
+#include "controller/certification/conditioned_bounds.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "controller/certification/surrogate_bounds.hpp"
+#include "tests/support/executors.hpp"
+#include "tests/support/simulated_truth.hpp"
+#include "tests/unit/controller/certification/surrogate_cases.hpp"
+
+namespace qsmpc::controller {
+namespace conditioned_bounds_test {
+
+using namespace testing;
+
+constexpr int kPaths = 20000;
+
+/// Unsafe are the highest `share` of the paths in this coordinate at the last stage.
+SafeSet unsafe_at_the_end(const Case& one, Eigen::Index axis, double share) {
+  Generator generator(217);
+  std::vector<Points> states;
+  SafeSet safe_set = unbounded_safe_set(one.dynamics->state_dim());
+  (void)simulate(one.motion(), safe_set, kPaths, generator, &states);
+  Eigen::VectorXd last = states.back().row(axis);
+  std::sort(last.begin(), last.end());
+  safe_set.bounds.upper[axis] = last[static_cast<Eigen::Index>((1.0 - share) * kPaths)];
+  return safe_set;
+}
+
+SurrogateBounds plain_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe) {
+  return surrogate_bounds(motion, unsafe, CertificateEffort::kEvery, run_in_turn);
+}
+
+/// A case, where it is unsafe, and what C5 must be at most at the last stage, in relation to the
+/// truth and to C4.
+struct Hard {
+  Case one;
+  Eigen::Index axis;
+  double over_truth;
+  double of_plain;
+};
+
+std::vector<Hard> hard_cases() {
+  const auto gain = [](const Eigen::MatrixXd& matrix) {
+    return Feedback{.closed_loop = true, .gain = matrix};
+  };
+  return {
+      // A heading that is hardly known.
+      {.one = dubins({}, 0.0, 1.0), .axis = 1, .over_truth = 1.2, .of_plain = 0.5},
+      // A feedback that is clamped as often as not.
+      {.one = double_integrator(gain(Eigen::RowVector2d(-6.0, -4.0)), 0.5, 0.3),
+       .axis = 0,
+       .over_truth = 2.0,
+       .of_plain = 0.1},
+      // A pole that has fallen by much or little.
+      {.one = cart_pole({}, 6.0), .axis = 2, .over_truth = 1.3, .of_plain = 0.2},
+  };
+}
+
+TEST(ConditionedBounds, are_near_the_truth_where_c4_is_not) {
+  Generator generator(216);
+  for (const Hard& hard : hard_cases()) {
+    const PredictedMotion motion = hard.one.motion();
+    const SafeSet safe_set = unsafe_at_the_end(hard.one, hard.axis, 0.01);
+    const UnsafeSet unsafe(safe_set);
+    const SurrogateBounds plain = plain_bounds(motion, unsafe);
+    const double bound = conditioned_bounds(motion, unsafe, plain, run_in_turn).back();
+    const UnsafeCounts counts = simulate(motion, safe_set, kPaths, generator);
+    const double truth = static_cast<double>(counts.stages.back()) / kPaths;
+    EXPECT_GE(bound, truth - 5.0 * std::sqrt(truth / kPaths)) << hard.one.name;
+    EXPECT_LE(bound, hard.over_truth * truth) << hard.one.name;
+    EXPECT_LE(bound, hard.of_plain * plain.bounds.back().smooth) << hard.one.name;
+  }
+}
+
+TEST(ConditionedBounds, do_not_depend_on_the_order_of_the_work) {
+  const Case one = dubins({}, 0.0, 1.0);
+  const PredictedMotion motion = one.motion();
+  const SafeSet safe_set = unsafe_at_the_end(one, 1, 0.01);
+  const UnsafeSet unsafe(safe_set);
+  const SurrogateBounds plain = plain_bounds(motion, unsafe);
+  const std::vector<double> bounds = conditioned_bounds(motion, unsafe, plain, run_in_turn);
+  EXPECT_LT(*std::min_element(bounds.begin(), bounds.end()), 1.0);
+  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain, run_backwards), bounds);
+  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain, run_on_threads), bounds);
+}
+
+TEST(ConditionedBounds, are_not_worked_out_where_there_is_nothing_to_gain) {
+  // The step is affine and nothing is clamped: C4 is the probability itself.
+  const Case one = double_integrator({});
+  const SafeSet safe_set = unsafe_at_the_end(one, 0, 0.01);
+  const UnsafeSet unsafe(safe_set);
+  const PredictedMotion motion = one.motion();
+  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn),
+            std::vector<double>(8, 1.0));
+}
+
+TEST(ConditionedBounds, say_nothing_of_a_plant_with_a_model_error) {
+  const Case one = dubins({}, 0.0, 1.0);
+  const SafeSet safe_set = unsafe_at_the_end(one, 1, 0.01);
+  const UnsafeSet unsafe(safe_set);
+  const ModelError error = model_error_of_size(Eigen::Vector3d::Constant(1e-3));
+  PredictedMotion motion = one.motion();
+  motion.model_error = &error;
+  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn),
+            std::vector<double>(8, 1.0));
+}
+
+}  // namespace conditioned_bounds_test
+}  // namespace qsmpc::controller

@@ -1,0 +1,55 @@
+// What the shipped scenarios' first plans are certified with, beside simulated paths.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "harness/prediction/prediction_report.hpp"
+#include "harness/scenario/scenario_file.hpp"
+#include "harness/scenario/shipped_files.hpp"
+#include "tests/support/effort.hpp"
+
+namespace qsmpc::harness {
+namespace shipped_predictions_test {
+
+using ::testing::IsEmpty;
+
+const int kPaths = testing::by_effort(4000, 20000, 100000);
+// A truth that is certainly below it is not to be certified with 1.
+constexpr double kSmall = 0.01;
+
+/// Those without obstacles that move, which are not predicted.
+std::vector<std::string> predictable() {
+  std::vector<std::string> names;
+  for (const std::string& name : shipped_scenario_names()) {
+    const Scenario scenario = load_scenario(name);
+    bool moves = false;
+    for (const controller::Obstacle& obstacle : scenario.safe_set.obstacles) {
+      moves = moves || obstacle.motion.has_value();
+    }
+    if (!moves) names.push_back(name);
+  }
+  return names;
+}
+
+class ShippedPredictions : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ShippedPredictions, are_certified_above_the_truth_and_below_one_where_it_is_small) {
+  PredictionOptions options;
+  options.monte_carlo.samples = kPaths;
+  const PredictionReport report = predict_scenario(load_scenario(GetParam()), options);
+  EXPECT_THAT(contradicted_stages(report), IsEmpty());
+  ASSERT_TRUE(report.monte_carlo.has_value());
+  for (std::size_t k = 0; k < report.certificates.size(); ++k) {
+    const SimulatedRate rate = simulated_rate(report.monte_carlo->stages[k], kPaths);
+    if (rate.limits.upper >= kSmall) continue;
+    EXPECT_LT(report.certificates[k].value, 1.0) << "stage " << k + 1 << ", rate " << rate.rate;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, ShippedPredictions, ::testing::ValuesIn(predictable()),
+                         [](const auto& tested) { return tested.param; });
+
+}  // namespace shipped_predictions_test
+}  // namespace qsmpc::harness
