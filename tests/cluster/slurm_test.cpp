@@ -86,13 +86,17 @@ TEST_F(Slurm, cancels_what_runs_what_waits_and_what_depends_on_them) {
 }
 
 TEST_F(Slurm, warns_workers_before_their_time_is_over) {
-  // Slurm takes times in whole minutes: a limit of one is 60 s from the beginning.
+  // Slurm takes times in whole minutes, looks every 30 s who is to be warned, and warns of what
+  // ends before it looks again: with a limit of one minute that can be before the script's first
+  // line.
   const std::string record =
-      start("trap 'exit 130' TERM; sleep 600 & wait", "true", 1, {.on = "slurm", .time = "1"});
-  ASSERT_TRUE(soon([&] {
-    return states(record).front().condition != TaskCondition::kRunning &&
-           states(record).front().condition != TaskCondition::kWaiting;
-  }));
+      start("trap 'exit 130' TERM; sleep 600 & wait", "true", 1, {.on = "slurm", .time = "2"});
+  ASSERT_TRUE(soon(
+      [&] {
+        return states(record).front().condition != TaskCondition::kRunning &&
+               states(record).front().condition != TaskCondition::kWaiting;
+      },
+      90));
   const auto end = harness::read_task_end(harness::launch_record_of(record), 1);
   ASSERT_TRUE(end.has_value());
   EXPECT_EQ(end->condition, TaskCondition::kCancelled);

@@ -15,13 +15,16 @@ namespace {
 // Lets the worker end its episodes: 60 s before the limit of time, the script gets SIGTERM.
 constexpr const char* kWarning = "B:TERM@60";
 
-// SIGTERM is passed on; `wait` that it interrupts is not the worker's end.
+// SIGTERM is passed on, also one that comes before there is a worker, or before it listens; `wait`
+// that it interrupts is not the worker's end.
 constexpr const char* kWorkerBody = R"(
+told=
+worker=
+trap 'told=1; [ -z "$worker" ] || kill -s TERM "$worker"' TERM
 rm -f "$end"
 {} --task "$SLURM_ARRAY_TASK_ID" </dev/null &
 worker=$!
-told=
-trap 'told=1; kill -s TERM "$worker"' TERM
+[ -z "$told" ] || kill -s TERM "$worker"
 wait "$worker"
 status=$?
 while [ -n "$told" ]; do
@@ -31,7 +34,7 @@ while [ -n "$told" ]; do
 done
 case $status in
   0) word="done" ;;
-  130) word="cancelled exit code 130" ;;
+  130 | 143) word="cancelled exit code $status" ;;
   *) word="failed exit code $status" ;;
 esac
 echo "$word" >"$end.partial" && mv "$end.partial" "$end"

@@ -59,7 +59,7 @@ TEST(SlurmScript, is_refused_for_folders_that_slurm_cannot_name) {
 
 /// Runs the script of a worker `sh -c SHELL` for task 3; returns the end it leaves.
 std::string end_of_script(const std::string& shell, int expected_exit,
-                          const std::string& meanwhile = ":") {
+                          const std::string& meanwhile = ":", const std::string& before = ":") {
   const qsmpc::testing::TemporaryFolder folder;
   const std::string launch = begin_launch(folder.path());
   const std::string script = folder.file(
@@ -67,8 +67,9 @@ std::string end_of_script(const std::string& shell, int expected_exit,
                               {.on = "slurm"}, launch));
   const CommandResult result =
       run_command({"bash", "-c",
-                   "cd '" + folder.path() + "'; SLURM_ARRAY_TASK_ID=3 bash script & job=$!; " +
-                       meanwhile + "; wait \"$job\""});
+                   "cd '" + folder.path() + "' && " + before +
+                       "; export SLURM_ARRAY_TASK_ID=3; bash script & job=$!; " + meanwhile +
+                       "; wait \"$job\""});
   EXPECT_EQ(result.exit_code, expected_exit) << result.errors;
   return qsmpc::testing::text_of(ends_folder(folder.path(), launch) + "/3");
 }
@@ -84,6 +85,14 @@ TEST(SlurmScript, passes_sigterm_on_and_waits_for_the_worker) {
   EXPECT_EQ(end_of_script("trap 'sleep 0.2; exit 130' TERM; : >ready; while :; do sleep 0.05; done",
                           130, "until [ -e ready ]; do sleep 0.02; done; kill -s TERM \"$job\""),
             "cancelled exit code 130\n");
+}
+
+TEST(SlurmScript, passes_a_sigterm_on_that_comes_before_the_worker_runs) {
+  // `rm` is what the script calls before it starts the worker, which would sleep for a minute.
+  EXPECT_EQ(end_of_script("exec sleep 60", 143, ":",
+                          "printf '#!/bin/sh\\nkill -s TERM \"$PPID\"\\n' >rm && chmod +x rm && "
+                          "PATH=$PWD:$PATH"),
+            "cancelled exit code 143\n");
 }
 
 }  // namespace
