@@ -76,21 +76,31 @@ void RiskModel::hold(const PredictedMotion& motion, const std::vector<SurrogateS
     held.by_gain.resize(0, 0);
     if (held.transition.size() > 0) held.by_gain = response_to_gains(motion, k, surrogates[k]);
     leaving_[k] = stage.leaving;
-    held.reach.clear();
-    held.turn.clear();
-    for (const DiscView& disc : unsafe_.discs()) {
-      const DiscPlacement& placement = disc.placement;
-      const Eigen::Index dim = stage.law.mean.size();
-      held.turn.push_back(Eigen::MatrixXd::Identity(dim, dim));
-      held.reach.push_back(placement.reach());
-      if (placement.at_position()) continue;
-      const int heading = placement.heading();
-      const double angle = stage.law.mean[heading] + placement.bearing();
-      const double variance = std::max(0.0, stage.law.covariance(heading, heading));
-      held.reach.back() *= std::exp(-0.5 * variance);
-      held.turn.back()(placement.x(), heading) -= held.reach.back() * std::sin(angle);
-      held.turn.back()(placement.y(), heading) += held.reach.back() * std::cos(angle);
-    }
+    hold_discs(stage.law, held);
+  }
+}
+
+/// How the discs lie about a surrogate of this law, and their laws.
+void RiskModel::hold_discs(const Gaussian& law, Held& held) const {
+  held.reach.clear();
+  held.turn.clear();
+  held.laws.clear();
+  held.finite = law.covariance.allFinite();
+  for (const DiscView& disc : unsafe_.discs()) {
+    const DiscPlacement& placement = disc.placement;
+    const Eigen::Index dim = law.mean.size();
+    held.turn.push_back(Eigen::MatrixXd::Identity(dim, dim));
+    held.reach.push_back(placement.reach());
+    held.laws.push_back(law);
+    if (placement.at_position()) continue;
+    const int heading = placement.heading();
+    const double angle = law.mean[heading] + placement.bearing();
+    const double variance = std::max(0.0, law.covariance(heading, heading));
+    held.reach.back() *= std::exp(-0.5 * variance);
+    held.turn.back()(placement.x(), heading) -= held.reach.back() * std::sin(angle);
+    held.turn.back()(placement.y(), heading) += held.reach.back() * std::cos(angle);
+    held.laws.back().covariance.noalias() =
+        held.turn.back() * law.covariance.lazyProduct(held.turn.back().transpose());
   }
 }
 
@@ -156,8 +166,9 @@ void RiskModel::roll_out(const Eigen::VectorXd& z) {
     path_.col(k + 1) = next_;
     Evaluated& stage = stages_[k];
     stage.mean = next_.col(0) + held_[k].shift;
-    if (!with_gains || held_[k].by_gain.size() == 0) {
-      stage.covariance = held_[k].covariance;
+    stage.by_gains = with_gains && held_[k].by_gain.size() > 0;
+    if (!stage.by_gains) {
+      if (with_gains) stage.covariance = held_[k].covariance;
       continue;
     }
     const Eigen::Map<const Eigen::MatrixXd> change(z.data() + inputs_ * horizon(), inputs_, dim);
@@ -167,48 +178,59 @@ void RiskModel::roll_out(const Eigen::VectorXd& z) {
   }
 }
 
-/// Tails of stage k + 1 with their derivatives by its mean and covariance.
+/// Tails of stage k + 1 with their derivatives by its mean and, where the gains change it, by its
+/// covariance.
 void RiskModel::add_tails(Eigen::Index k) {
   Evaluated& stage = stages_[k];
-  const Held& held = held_[k];
   const Eigen::Index dim = stage.mean.size();
   stage.tails = 0.0;
   stage.by_mean.setZero(dim);
-  stage.by_covariance.setZero(dim, dim);
-  if (!stage.mean.allFinite() || !stage.covariance.allFinite()) {
+  if (stage.by_gains) stage.by_covariance.setZero(dim, dim);
+  const bool finite = stage.by_gains ? stage.covariance.allFinite() : held_[k].finite;
+  if (!finite || !stage.mean.allFinite()) {
     stage.tails = std::numeric_limits<double>::quiet_NaN();
     return;
   }
-  for (std::size_t d = 0; d < unsafe_.discs().size(); ++d) {
-    const DiscView& disc = unsafe_.discs()[d];
-    const DiscPlacement& placement = disc.placement;
-    disc_law_.mean = stage.mean;
-    double cosine = 1.0;
-    double sine = 0.0;
+  for (std::size_t d = 0; d < unsafe_.discs().size(); ++d) add_disc_tails(k, d);
+}
+
+void RiskModel::add_disc_tails(Eigen::Index k, std::size_t d) {
+  Evaluated& stage = stages_[k];
+  Held& held = held_[k];
+  const DiscView& disc = unsafe_.discs()[d];
+  const DiscPlacement& placement = disc.placement;
+  Gaussian& law = stage.by_gains ? changed_law_ : held.laws[d];
+  law.mean = stage.mean;
+  double cosine = 1.0;
+  double sine = 0.0;
+  if (!placement.at_position()) {
+    const double angle = stage.mean[placement.heading()] + placement.bearing();
+    cosine = std::cos(angle);
+    sine = std::sin(angle);
+    law.mean[placement.x()] += held.reach[d] * cosine;
+    law.mean[placement.y()] += held.reach[d] * sine;
+  }
+  if (stage.by_gains) {
     if (placement.at_position()) {
-      disc_law_.covariance = stage.covariance;
+      law.covariance = stage.covariance;
     } else {
-      const double angle = stage.mean[placement.heading()] + placement.bearing();
-      cosine = std::cos(angle);
-      sine = std::sin(angle);
-      disc_law_.mean[placement.x()] += held.reach[d] * cosine;
-      disc_law_.mean[placement.y()] += held.reach[d] * sine;
-      disc_law_.covariance.noalias() =
+      law.covariance.noalias() =
           held.turn[d] * stage.covariance.lazyProduct(held.turn[d].transpose());
     }
-    tails_.clear(dim);
-    for (const RegionPointer& region : disc.regions) {
-      region->add_tail(k + 1, disc_law_, tails_);
-    }
-    stage.tails += tails_.value();
-    stage.by_mean += tails_.by_mean();
-    if (placement.at_position()) {
-      stage.by_covariance += tails_.by_covariance();
-      continue;
-    }
+  }
+  tails_.clear(stage.mean.size());
+  for (const RegionPointer& region : disc.regions) region->add_tail(k + 1, law, tails_);
+  stage.tails += tails_.value();
+  stage.by_mean += tails_.by_mean();
+  if (!placement.at_position()) {
     stage.by_mean[placement.heading()] +=
         held.reach[d] *
         (cosine * tails_.by_mean()[placement.y()] - sine * tails_.by_mean()[placement.x()]);
+  }
+  if (!stage.by_gains) return;
+  if (placement.at_position()) {
+    stage.by_covariance += tails_.by_covariance();
+  } else {
     stage.by_covariance.noalias() +=
         held.turn[d].transpose() * tails_.by_covariance().lazyProduct(held.turn[d]);
   }
@@ -235,13 +257,13 @@ void RiskModel::pull_back_gains(const Eigen::VectorXd& weights, Eigen::VectorXd&
   Eigen::Map<Eigen::MatrixXd> by_change(gradient.data() + inputs_ * horizon(), inputs_, dim);
   Eigen::MatrixXd by_covariance = Eigen::MatrixXd::Zero(dim, dim);
   for (Eigen::Index k = horizon() - 1; k >= 0; --k) {
-    by_covariance += weights[k] * factors_[k] * stages_[k].by_covariance;
     const Held& held = held_[k];
-    if (held.by_gain.size() == 0) {
+    if (!stages_[k].by_gains) {
       // The covariance after this step was held.
       by_covariance.setZero();
       continue;
     }
+    by_covariance += weights[k] * factors_[k] * stages_[k].by_covariance;
     const Eigen::MatrixXd step = held.transition + held.by_gain * change;
     const Eigen::MatrixXd& before = k == 0 ? first_covariance_ : stages_[k - 1].covariance;
     by_change += 2.0 * held.by_gain.transpose() * by_covariance * step * before;

@@ -54,6 +54,8 @@ class RiskModel {
     Eigen::MatrixXd by_gain;            ///< of the step: B times the slopes of the clamps
     std::vector<double> reach;          ///< of each disc, shrunk by the heading's spread
     std::vector<Eigen::MatrixXd> turn;  ///< of each disc: its law's covariance is turn S turnᵀ
+    std::vector<Gaussian> laws;         ///< of each disc, about whatever mean
+    bool finite = true;                 ///< whether their covariances are
   };
   /// What a risk is made of at the decision at hand.
   struct Evaluated {
@@ -62,10 +64,13 @@ class RiskModel {
     Eigen::VectorXd by_mean;
     Eigen::MatrixXd by_covariance;
     double tails = 0.0;
+    bool by_gains = false;  ///< whether the covariance depends on the decision
   };
 
+  void hold_discs(const Gaussian& law, Held& held) const;
   void roll_out(const Eigen::VectorXd& z);
   void add_tails(Eigen::Index k);
+  void add_disc_tails(Eigen::Index k, std::size_t disc);
   void pull_back_gains(const Eigen::VectorXd& weights, Eigen::VectorXd& gradient);
 
   const models::Dynamics& dynamics_;
@@ -84,7 +89,7 @@ class RiskModel {
   models::StateBatch path_;  // the noise-free path, a column a stage
   Eigen::VectorXd risks_;
   TailSum tails_;
-  Gaussian disc_law_;
+  Gaussian changed_law_;  // of a disc, where the gains change it
   // Scratch of the backward pass, of one column.
   models::StateBatch state_;
   models::StateBatch input_;
