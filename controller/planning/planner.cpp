@@ -199,6 +199,16 @@ const Plan& Planner::prescribe(const Gaussian& belief,
   return prescribed_;
 }
 
+const Plan& Planner::price(const Gaussian& belief, const Plan& plan) {
+  prescribed_ = {};
+  evaluator_.take_belief(belief);
+  prescribed_.belief = evaluator_.belief();
+  prescribed_.policy = plan.policy;
+  prescribed_.gain_change = plan.gain_change;
+  evaluator_.predict_and_evaluate(prescribed_);
+  return prescribed_;
+}
+
 void Planner::prepare(const Eigen::MatrixXd& covariance) {
   GaussianQuantisation unused;
   evaluator_.quantiser().quantise(

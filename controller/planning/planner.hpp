@@ -65,6 +65,11 @@ class Planner {
   /// the inputs are of another size, not finite or not within the bounds.
   const Plan& prescribe(const Gaussian& belief, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
+  /// The policy of `plan`, another planner's for the same belief and system, as this one predicts
+  /// and evaluates it. It stays valid as that of `prescribe`. Throws std::invalid_argument as
+  /// `plan`.
+  const Plan& price(const Gaussian& belief, const Plan& plan);
+
   /// Quantises a Gaussian of this covariance (state_dim x state_dim), so that the quantiser's slow
   /// first call for beliefs like it is over before a control loop starts. No plan depends on it.
   /// Throws std::invalid_argument as `plan`.

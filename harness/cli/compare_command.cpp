@@ -124,6 +124,7 @@ int compare(CompareArguments& arguments) {
   const std::string folder = arguments.out.empty()
                                  ? default_folder(scenario.name, "compare", arguments.overrides)
                                  : arguments.out;
+  settle_points(scenario, arguments.quiet);
   refuse_other_result(folder, scenario, arguments.force);
 
   Progress progress("comparing", arguments.quiet);

@@ -153,6 +153,7 @@ int predict(const PredictArguments& arguments) {
   const std::string folder = arguments.out.empty()
                                  ? default_folder(scenario.name, "predict", arguments.overrides)
                                  : arguments.out;
+  settle_points(scenario, arguments.quiet);
   refuse_other_result(folder, scenario, arguments.force);
   make_output_folder(folder);
 

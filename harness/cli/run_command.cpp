@@ -94,6 +94,7 @@ int run(const RunArguments& arguments) {
       arguments.out.empty()
           ? default_folder(scenario.name, fmt::format("{}", seed), arguments.overrides)
           : arguments.out;
+  settle_points(scenario, arguments.quiet);
   refuse_other_result(folder, scenario, arguments.force);
   if (const auto problem = plant_problem(scenario, arguments.scenario, arguments.overrides)) {
     throw InputError(*problem);

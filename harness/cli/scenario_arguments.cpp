@@ -1,7 +1,11 @@
 #include "harness/cli/scenario_arguments.hpp"
 
+#include <algorithm>
+#include <iostream>
+
 #include <fmt/format.h>
 
+#include "harness/assembly/chosen_points.hpp"
 #include "harness/assembly/memory_need.hpp"
 #include "harness/errors.hpp"
 #include "harness/scenario/scenario_file.hpp"
@@ -48,6 +52,17 @@ void refuse_motion(const Scenario& scenario, const std::string& path_or_name,
   where.found = "an obstacle with a motion";
   where.expected = fmt::format("obstacles that stand, for {}", command);
   throw InputError(where);
+}
+
+void settle_points(Scenario& scenario, bool quiet) {
+  const Scenario::Quantisation asked = scenario.controller.quantisation;
+  const auto choice = choose_points(scenario);
+  if (!choice || quiet) return;
+  std::cerr << fmt::format(
+      "qsmpc: {} of {} points for the belief, {} of {} kept: plans from {} place{} cost at most "
+      "{:.2g} % more\n",
+      choice->state_points, asked.state, choice->compressed_points, asked.compressed,
+      choice->places, choice->places == 1 ? "" : "s", 100.0 * std::max(choice->gap, 0.0));
 }
 
 }  // namespace qsmpc::harness

@@ -31,4 +31,8 @@ void refuse_beyond_memory(const Scenario& scenario, const std::string& path_or_n
 void refuse_motion(const Scenario& scenario, const std::string& path_or_name,
                    const std::vector<std::string>& overrides, const std::string& command);
 
+/// Chooses the points of a scenario that leaves them to the program, and says so on standard error
+/// unless `quiet`.
+void settle_points(Scenario& scenario, bool quiet);
+
 }  // namespace qsmpc::harness

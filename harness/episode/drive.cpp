@@ -15,6 +15,7 @@
 #include "controller/estimation/estimator.hpp"
 #include "controller/regions/unsafe_set.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/assembly/chosen_points.hpp"
 #include "harness/episode/moving_obstacles.hpp"
 #include "harness/episode/true_unsafe_set.hpp"
 #include "harness/errors.hpp"
@@ -339,7 +340,8 @@ struct Drive::Parts {
   std::optional<Outcome> unsafe_outcome;  // what the first unsafe state of it makes of it
 };
 
-Drive::Drive(const Scenario& scenario) : parts_(std::make_unique<Parts>(scenario)) {
+Drive::Drive(const Scenario& scenario)
+    : parts_(std::make_unique<Parts>(with_chosen_points(scenario))) {
   parts_->outcome = Outcome::kInterrupted;  // none has begun
 }
 Drive::Drive(Drive&&) noexcept = default;

@@ -7,6 +7,7 @@
 
 #include "controller/certification/error_budget.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/assembly/chosen_points.hpp"
 #include "harness/assembly/first_decision.hpp"
 #include "harness/errors.hpp"
 #include "harness/mismatch/measured_error.hpp"
@@ -235,7 +236,7 @@ std::vector<int> exceeded_stages(const std::vector<HorizonStage>& horizon,
 
 std::optional<Comparison> compare_plants(const Scenario& scenario,
                                          const ComparisonOptions& options) {
-  return Comparing(scenario, options).run();
+  return Comparing(with_chosen_points(scenario), options).run();
 }
 
 }  // namespace qsmpc::harness

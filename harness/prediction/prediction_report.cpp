@@ -7,6 +7,7 @@
 
 #include "controller/planning/planner.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/assembly/chosen_points.hpp"
 #include "harness/assembly/first_decision.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/version.hpp"
@@ -64,11 +65,12 @@ void judge(const controller::PredictedMotion& motion, const PredictionOptions& o
 
 }  // namespace
 
-PredictionReport predict_scenario(const Scenario& scenario, const PredictionOptions& options) {
+PredictionReport predict_scenario(const Scenario& asked, const PredictionOptions& options) {
   if (!options.methods.empty() && options.monte_carlo.samples < kKeptPaths) {
     throw std::invalid_argument("prediction: too few simulated paths to compare methods with");
   }
   for (const std::string& name : options.methods) (void)controller::law_method(name);
+  const Scenario scenario = with_chosen_points(asked);
   const std::unique_ptr<const models::Dynamics> model = model_of(scenario);
   PredictionReport report;
   report.scenario = scenario;

@@ -90,6 +90,9 @@ struct Scenario {
     int noise = 100;                    ///< points of the process noise
     int compressed = 100;               ///< points kept after each step
     std::string quantiser = "product";  ///< of the belief; a name from `qsmpc list quantisers`
+    /// Where above 0, the numbers of the belief and of those kept are chosen, and are at most
+    /// these: what plans may then cost more, relative.
+    double tolerance = 0.0;
   };
   struct Cost {
     Eigen::MatrixXd state;     ///< Q, state_dim x state_dim

@@ -125,6 +125,8 @@ class ScenarioReader {
     }
     if (key.read != nullptr) {
       key.read(reading_, section, about);
+    } else if (!key.word.empty() && section.holds_text(about.name)) {
+      if (section.name(about.name, "", {key.word}) == key.word) key.say(reading_.scenario);
     } else if (!key.keys.empty()) {
       Section inner = section.section(about.name);
       for (const ScenarioKey& inner_key : key.keys) read_key(inner, inner_key);

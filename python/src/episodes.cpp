@@ -18,6 +18,7 @@
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
+#include "harness/assembly/chosen_points.hpp"
 #include "harness/cli/artefacts.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
@@ -73,9 +74,10 @@ struct RunSettings {
   std::string out{};
 };
 
-Trace drive(const Scenario& scenario, const RunSettings& settings,
+Trace drive(const Scenario& asked, const RunSettings& settings,
             const std::optional<harness::ControllerObject>& object,
             const std::function<void(std::size_t, double)>& on_step) {
+  const Scenario scenario = harness::with_chosen_points(asked);
   harness::EpisodeOptions options{.seed = settings.seed, .plant_seed = settings.plant_seed};
   if (on_step) {
     options.on_step = [&](const Trace& trace) {

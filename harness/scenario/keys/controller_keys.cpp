@@ -20,7 +20,6 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr WholeValue kHorizonRange{1, kMostStages};
-constexpr WholeValue kPointsRange{1, 100'000};
 constexpr WholeValue kIterationsRange{1, 100'000};
 constexpr WholeValue kThreadsRange{1, 256};
 // s; the longest is well within what a clock can count.
@@ -89,13 +88,6 @@ void check_input_bounding(const ScenarioReading& reading, Section& section) {
   if (!controller::solver_entry(controller.solver).chooses_bounding &&
       controller.input_bounding != defaults().input_bounding) {
     section.note("input_bounding", defaults().input_bounding + ", or controller.solver: lbfgs");
-  }
-}
-
-void check_propagator(const ScenarioReading& reading, Section& section) {
-  const Scenario::Controller& controller = reading.scenario.controller;
-  if (!controller.propagate_noise && controller.propagator != defaults().propagator) {
-    section.note("propagator", defaults().propagator + ", or controller.propagate_noise: true");
   }
 }
 
@@ -225,51 +217,6 @@ std::vector<ScenarioKey> plan_keys() {
        .check = check_input_bounding}};
 }
 
-ScenarioKey points_key(const char* name, const char* words, int& (*member)(Scenario& scenario)) {
-  return {.about = {.name = name, .values = {kPointsRange}, .words = words}, .member = member};
-}
-
-ScenarioKey quantisation_key() {
-  return {
-      .about = {.name = "quantisation"},
-      .keys =
-          {points_key(
-               "state", "points that stand for the belief",
-               [](Scenario& scenario) -> int& { return scenario.controller.quantisation.state; }),
-           points_key(
-               "noise",
-               "points that stand for the disturbance, {range}; with `mixture` the parts that one "
-               "point's noise is cut into at most",
-               [](Scenario& scenario) -> int& { return scenario.controller.quantisation.noise; }),
-           points_key("compressed", "points kept after each step of the prediction",
-                      [](Scenario& scenario) -> int& {
-                        return scenario.controller.quantisation.compressed;
-                      }),
-           {.about = {.name = "quantiser",
-                      .values = {NameValue{quantiser_names()}},
-                      .words = "what finds the points of the belief, a name from `qsmpc list "
-                               "quantisers`",
-                      .see = "[below](#how-noise-is-predicted)"},
-            .member = [](Scenario& scenario) -> std::string& {
-              return scenario.controller.quantisation.quantiser;
-            }}},
-      .layout = SectionLayout::kFlow};
-}
-
-std::vector<ScenarioKey> propagation_keys() {
-  return {
-      {.about = {.name = "propagate_noise",
-                 .values = {FlagValue{}},
-                 .words = "whether the prediction includes the disturbance"},
-       .member = [](Scenario& scenario) -> bool& { return scenario.controller.propagate_noise; }},
-      {.about = {.name = "propagator",
-                 .values = {NameValue{propagator_names()}},
-                 .words = "how it does: {names}",
-                 .see = "[below](#how-noise-is-predicted)"},
-       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.propagator; },
-       .check = check_propagator}};
-}
-
 ScenarioKey cost_key() {
   return {.about = {.name = "cost"},
           .keys = {{.about = {.name = "state",
@@ -397,8 +344,7 @@ ScenarioKey controller_key() {
   append(keys, outside_controller_keys());
   for (ScenarioKey (*make)() : {chance_key, shield_key}) keys.push_back(make());
   append(keys, plan_keys());
-  keys.push_back(quantisation_key());
-  append(keys, propagation_keys());
+  append(keys, prediction_keys());
   for (ScenarioKey (*make)() : {cost_key, penalty_key, input_bounds_key}) keys.push_back(make());
   append(keys, effort_keys());
   return {.about = {.name = "controller"},

@@ -60,6 +60,9 @@ struct ScenarioKey {
   std::optional<std::string> (*write)(const Scenario&, const models::SystemDescription&) = nullptr;
   bool (*is_written)(const Scenario&) = nullptr;  ///< nullptr: always
   std::vector<ScenarioKey> keys{};                ///< of a section
+  /// Of a section: a word that may stand in its place, and what it says.
+  std::string word{};
+  void (*say)(Scenario&) = nullptr;
   SectionLayout layout = SectionLayout::kBlock;
   ReadAfter after = ReadAfter::kNothing;  ///< at the top level
   std::string table{};                    ///< of docs/scenario.md, at the top level
@@ -86,7 +89,9 @@ struct ScenarioKey {
 [[nodiscard]] ScenarioKey risk_key();
 [[nodiscard]] ScenarioKey estimator_key();
 [[nodiscard]] ScenarioKey controller_key();
-/// Within it, those of controllers that sample.
+/// Within it, those of what it predicts with.
+[[nodiscard]] std::vector<ScenarioKey> prediction_keys();
+/// Those of controllers that sample.
 [[nodiscard]] ScenarioKey mppi_key();
 /// Within it, those of controllers that are no part of the program.
 [[nodiscard]] std::vector<ScenarioKey> outside_controller_keys();

@@ -31,7 +31,12 @@ KeyDescription describe(const ScenarioKey& key) {
       section.keys.push_back(describe(inner));
       description.required = description.required || inner.about.required;
     }
-    description.values = {std::move(section)};
+    if (key.word.empty()) {
+      description.values = {std::move(section)};
+    } else {
+      description.values = {TextValue{.what = key.word, .pattern = "^" + key.word + "$"},
+                            std::move(section)};
+    }
   }
   if (description.fallback.empty() && !description.required) {
     description.fallback = default_text(key);

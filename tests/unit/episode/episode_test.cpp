@@ -41,6 +41,30 @@ void expect_equal_steps(const StepRecord& a, const StepRecord& b) {
   }
 }
 
+TEST(Episode, points_left_to_a_tolerance_are_those_that_the_trace_says) {
+  const Scenario asked = small_scenario({"controller.quantisation.tolerance=0.01"});
+  const Trace chosen = run_episode(asked, {.seed = 7});
+  const Scenario::Quantisation& points = chosen.scenario.controller.quantisation;
+  EXPECT_EQ(points.tolerance, 0.0);
+  EXPECT_LT(points.compressed, 20);
+  EXPECT_EQ(points.noise, 20);
+  EXPECT_EQ(chosen.scenario_text, to_yaml(chosen.scenario));
+  const Trace given = run_episode(chosen.scenario, {.seed = 7});
+  ASSERT_EQ(given.steps.size(), chosen.steps.size());
+  for (std::size_t k = 0; k < given.steps.size(); ++k) {
+    expect_equal_steps(given.steps[k], chosen.steps[k]);
+  }
+}
+
+TEST(Episode, points_of_controllers_without_particles_are_left_as_they_are) {
+  const Trace trace = run_episode(
+      small_scenario({"controller.quantisation.tolerance=0.01", "controller.kind=nominal"}),
+      {.seed = 7});
+  const Scenario::Quantisation& points = trace.scenario.controller.quantisation;
+  EXPECT_EQ(points.state, 20);
+  EXPECT_EQ(points.compressed, 20);
+}
+
 TEST(Episode, the_same_seed_gives_the_same_trace_on_every_plant) {
   for (const char* kind : {"analytic", "mujoco"}) {
     const Scenario scenario = small_scenario({std::string("plant.kind=") + kind});

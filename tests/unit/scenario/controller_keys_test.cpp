@@ -200,5 +200,20 @@ TEST(ControllerKeys, every_propagator_of_noise_and_every_quantiser_can_be_named)
   }
 }
 
+TEST(ControllerKeys, points_are_given_or_left_to_a_tolerance) {
+  EXPECT_EQ(minimal_with({}).controller.quantisation.tolerance, 0.0);
+  EXPECT_THAT(to_yaml(minimal_with({})), Not(HasSubstr("tolerance")));
+  const Scenario by_word = minimal_with({"controller.quantisation=auto"});
+  EXPECT_EQ(by_word.controller.quantisation.tolerance, 1e-3);
+  EXPECT_EQ(by_word.controller.quantisation.state, 100);
+  expect_round_trip(by_word);
+  const Scenario by_number =
+      minimal_with({"controller.quantisation={state: 50, tolerance: 0.02, compressed: 60}"});
+  EXPECT_EQ(by_number.controller.quantisation.tolerance, 0.02);
+  EXPECT_EQ(by_number.controller.quantisation.state, 50);
+  EXPECT_EQ(by_number.controller.quantisation.compressed, 60);
+  expect_round_trip(by_number);
+}
+
 }  // namespace controller_keys_test
 }  // namespace qsmpc::harness

@@ -93,6 +93,7 @@ inline void expect_equal(const Scenario::Controller& a, const Scenario::Controll
   EXPECT_EQ(a.quantisation.noise, b.quantisation.noise);
   EXPECT_EQ(a.quantisation.compressed, b.quantisation.compressed);
   EXPECT_EQ(a.quantisation.quantiser, b.quantisation.quantiser);
+  EXPECT_EQ(a.quantisation.tolerance, b.quantisation.tolerance);
   EXPECT_EQ(a.propagate_noise, b.propagate_noise);
   EXPECT_EQ(a.propagator, b.propagator);
   EXPECT_EQ(a.cost.state, b.cost.state);

@@ -1,0 +1,163 @@
+#include "controller/planning/points_choice.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "controller/planning/planner.hpp"
+#include "controller/regions/unsafe_set.hpp"
+
+namespace qsmpc::controller {
+namespace {
+
+// The ladder. Between two numbers hardly anything changes.
+constexpr double kLadderStep = 1.25;
+// Of one period's noise, by which a state is elsewhere.
+constexpr double kDeviations = 3.0;
+
+/// What is planned from, and the plan with the most points.
+struct Place {
+  Gaussian belief;
+  Plan plan;
+};
+
+PlannerSettings with_points(PlannerSettings settings, int points) {
+  settings.state_points = std::min(settings.state_points, points);
+  settings.compressed_points = std::min(settings.compressed_points, points);
+  return settings;
+}
+
+class PointsComparison {
+ public:
+  PointsComparison(const models::Dynamics& dynamics, const Gaussian& belief,
+                   const PointsSearch& search, PlannerSettings settings)
+      : dynamics_(dynamics),
+        settings_(without_deadline(std::move(settings))),
+        search_(search),
+        unsafe_(settings_.safe_set),
+        judge_(dynamics, settings_) {
+    find_places(belief);
+  }
+
+  [[nodiscard]] PointsChoice choose() {
+    const int most = std::max(settings_.state_points, settings_.compressed_points);
+    for (int points = fewest(); points < most;
+         points = static_cast<int>(std::ceil(points * kLadderStep))) {
+      const PlannerSettings fewer = with_points(settings_, points);
+      const double gap = worst_gap(fewer);
+      if (gap <= search_.tolerance) return choice_of(fewer, gap);
+    }
+    return choice_of(settings_, 0.0);
+  }
+
+ private:
+  /// As many as the unscented transform has: with fewer, some coordinate does not vary at all.
+  [[nodiscard]] int fewest() const { return 2 * dynamics_.state_dim() + 1; }
+
+  static PlannerSettings without_deadline(PlannerSettings settings) {
+    settings.deadline = std::numeric_limits<double>::infinity();
+    return settings;
+  }
+
+  [[nodiscard]] PointsChoice choice_of(const PlannerSettings& settings, double gap) const {
+    return {.state_points = settings.state_points,
+            .compressed_points = settings.compressed_points,
+            .gap = gap,
+            .places = static_cast<int>(places_.size())};
+  }
+
+  /// Follows plans with the most points from end to end, and looks aside at each.
+  void find_places(Gaussian belief) {
+    for (int n = 0; n < search_.stretches; ++n) {
+      if (!add_place(belief)) return;
+      const Plan& plan = places_.back().plan;
+      const Eigen::VectorXd end = plan.policy.states.rightCols<1>();
+      const std::optional<Eigen::VectorXd> aside = nearest_to_unsafe(plan.prediction.stages.back());
+      if (aside) add_place({.mean = *aside, .covariance = settings_.noise_covariance});
+      if (is_noise(end - belief.mean)) return;
+      belief = {.mean = end, .covariance = settings_.noise_covariance};
+    }
+  }
+
+  /// Plans with the most points. Returns whether that can be compared.
+  bool add_place(const Gaussian& belief) {
+    if (!belief.mean.allFinite()) return false;
+    judge_.reset();
+    const Plan& plan = judge_.plan(belief);
+    if (!std::isfinite(plan.cost.total())) return false;
+    places_.push_back({belief, plan});
+    return true;
+  }
+
+  /// The safe point that is nearest to the unsafe set, where there is any.
+  [[nodiscard]] std::optional<Eigen::VectorXd> nearest_to_unsafe(
+      const DiscreteMeasure& measure) const {
+    std::optional<Eigen::VectorXd> nearest;
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& point : measure.locations.colwise()) {
+      const double distance = clearance(point, unsafe_);
+      if (!(distance > 0.0) || !(distance < least)) continue;
+      least = distance;
+      nearest = point;
+    }
+    return nearest;
+  }
+
+  /// Whether one period's noise moves the state as far as that: a plan that stays where it is.
+  [[nodiscard]] bool is_noise(const Eigen::VectorXd& way) const {
+    const Eigen::ArrayXd deviations = settings_.noise_covariance.diagonal().array().sqrt();
+    return (way.array().abs() <= kDeviations * deviations).all();
+  }
+
+  /// How far `fewer` points mislead at the place where it is the most; ends early where that is too
+  /// far.
+  double worst_gap(const PlannerSettings& fewer) {
+    Planner planner(dynamics_, fewer);
+    double worst = -std::numeric_limits<double>::infinity();
+    for (const Place& place : places_) {
+      worst = std::max(worst, gap_at(place, planner));
+      if (worst > search_.tolerance) break;
+    }
+    return worst;
+  }
+
+  /// By how much `planner` thinks its own plan better, beside the one with the most points, than it
+  /// is.
+  double gap_at(const Place& place, Planner& planner) {
+    planner.reset();
+    const Plan& plan = planner.plan(place.belief);
+    const double own = plan.cost.total();
+    const Plan& judged = judge_.price(place.belief, plan);
+    if (!std::isfinite(judged.cost.total()) || (plan.risk.kept && !judged.risk.kept)) {
+      return std::numeric_limits<double>::infinity();
+    }
+    const double best = place.plan.cost.total();
+    const double best_seen = planner.price(place.belief, place.plan).cost.total();
+    // No cost is below 0, and only that of a drive without noise that is over is 0.
+    return ((judged.cost.total() - best) - (own - best_seen)) /
+           std::max(best, std::numeric_limits<double>::min());
+  }
+
+  const models::Dynamics& dynamics_;
+  PlannerSettings settings_;
+  PointsSearch search_;
+  UnsafeSet unsafe_;
+  Planner judge_;
+  std::vector<Place> places_;
+};
+
+}  // namespace
+
+PointsChoice choose_points(const models::Dynamics& dynamics, const Gaussian& belief,
+                           const PointsSearch& search, const PlannerSettings& settings) {
+  if (!(search.tolerance > 0.0) || search.stretches < 1) {
+    throw std::invalid_argument("points: a tolerance above 0 and at least one stretch are needed");
+  }
+  return PointsComparison(dynamics, belief, search, settings).choose();
+}
+
+}  // namespace qsmpc::controller

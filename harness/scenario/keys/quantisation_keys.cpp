@@ -1,0 +1,95 @@
+// The keys of a controller's prediction: its points, and what takes them on.
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "harness/scenario/keys/scenario_key.hpp"
+#include "harness/scenario/known_names.hpp"
+
+namespace qsmpc::harness {
+namespace {
+
+constexpr WholeValue kPointsRange{1, 100'000};
+constexpr const char* kAutoWord = "auto";
+constexpr double kAutoTolerance = 1e-3;
+
+/// Its default stands in every resolved scenario, where it need have no effect.
+void check_propagator(const ScenarioReading& reading, Section& section) {
+  const Scenario::Controller& controller = reading.scenario.controller;
+  const std::string fallback = Scenario::Controller{}.propagator;
+  if (!controller.propagate_noise && controller.propagator != fallback) {
+    section.note("propagator", fallback + ", or controller.propagate_noise: true");
+  }
+}
+
+ScenarioKey points_key(const char* name, const char* words, int& (*member)(Scenario& scenario)) {
+  return {.about = {.name = name, .values = {kPointsRange}, .words = words}, .member = member};
+}
+
+ScenarioKey quantisation_key() {
+  return {
+      .about = {.name = "quantisation",
+                .words =
+                    "how many points there are: the keys below, or `auto`, which is `tolerance` "
+                    "with " +
+                    fmt::format("{:g}", kAutoTolerance),
+                .see = "[below](#how-many-points)"},
+      .keys =
+          {points_key(
+               "state", "points that stand for the belief",
+               [](Scenario& scenario) -> int& { return scenario.controller.quantisation.state; }),
+           points_key(
+               "noise",
+               "points that stand for the disturbance, {range}; with `mixture` the parts that one "
+               "point's noise is cut into at most",
+               [](Scenario& scenario) -> int& { return scenario.controller.quantisation.noise; }),
+           points_key("compressed", "points kept after each step of the prediction",
+                      [](Scenario& scenario) -> int& {
+                        return scenario.controller.quantisation.compressed;
+                      }),
+           {.about = {.name = "quantiser",
+                      .values = {NameValue{quantiser_names()}},
+                      .words = "what finds the points of the belief, a name from `qsmpc list "
+                               "quantisers`",
+                      .see = "[below](#how-noise-is-predicted)"},
+            .member = [](Scenario& scenario) -> std::string& {
+              return scenario.controller.quantisation.quantiser;
+            }},
+           {.about = {.name = "tolerance",
+                      .values = {NumberValue{{.least = 0.0, .most = 1.0}}},
+                      .words =
+                          "what a plan of `quantised` may cost more than with the points above, "
+                          "as a share, {range}: as few of them stand for the belief and are "
+                          "kept as that allows; 0: all of them",
+                      .see = "[below](#how-many-points)"},
+            .member = [](Scenario& scenario) -> double& {
+              return scenario.controller.quantisation.tolerance;
+            },
+            .is_written =
+                [](const Scenario& scenario) {
+                  return scenario.controller.quantisation.tolerance > 0.0;
+                }}},
+      .word = kAutoWord,
+      .say =
+          [](Scenario& scenario) { scenario.controller.quantisation.tolerance = kAutoTolerance; },
+      .layout = SectionLayout::kFlow};
+}
+
+}  // namespace
+
+std::vector<ScenarioKey> prediction_keys() {
+  return {
+      quantisation_key(),
+      {.about = {.name = "propagate_noise",
+                 .values = {FlagValue{}},
+                 .words = "whether the prediction includes the disturbance"},
+       .member = [](Scenario& scenario) -> bool& { return scenario.controller.propagate_noise; }},
+      {.about = {.name = "propagator",
+                 .values = {NameValue{propagator_names()}},
+                 .words = "how it does: {names}",
+                 .see = "[below](#how-noise-is-predicted)"},
+       .member = [](Scenario& scenario) -> std::string& { return scenario.controller.propagator; },
+       .check = check_propagator}};
+}
+
+}  // namespace qsmpc::harness
