@@ -21,6 +21,7 @@
 #include "harness/cli/scenario_arguments.hpp"
 #include "harness/doctor/diagnosis.hpp"
 #include "harness/episode/episode.hpp"
+#include "harness/episode/trace_header.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/plant/plant_check.hpp"

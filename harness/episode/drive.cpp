@@ -17,15 +17,14 @@
 #include "harness/assembly/assembly.hpp"
 #include "harness/assembly/chosen_points.hpp"
 #include "harness/episode/moving_obstacles.hpp"
+#include "harness/episode/trace_header.hpp"
 #include "harness/episode/true_unsafe_set.hpp"
 #include "harness/errors.hpp"
 #include "harness/plant/plant_registry.hpp"
-#include "harness/scenario/scenario_file.hpp"
 #include "harness/threads/interruption.hpp"
 #include "harness/trace/ending.hpp"
 #include "harness/trace/residuals.hpp"
 #include "harness/trace/target_progress.hpp"
-#include "harness/version.hpp"
 #include "models/constants.hpp"
 #include "models/random/random_numbers.hpp"
 
@@ -36,29 +35,6 @@ using Clock = std::chrono::steady_clock;
 
 double milliseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-/// plant_digest; empty where the vehicle is not to be had.
-std::string digest_of(const Scenario& scenario) {
-  try {
-    return plant_digest(scenario);
-  } catch (const InputError&) {
-    return {};
-  }
-}
-
-Trace header_of(const Scenario& scenario, const models::SystemDescription& system,
-                std::uint64_t seed, const std::vector<models::NoiseSeed>& noise) {
-  Trace trace;
-  trace.scenario = scenario;
-  trace.scenario.safe_set.forecast = nullptr;  // it is the drive's
-  trace.scenario.seed = seed;
-  trace.scenario.disturbance.seeds = noise;
-  trace.scenario_text = to_yaml(trace.scenario);
-  trace.system = system;
-  trace.seed = seed;
-  trace.version = kVersion;
-  return trace;
 }
 
 Scenario with_forecast(Scenario scenario,
@@ -135,8 +111,8 @@ struct Drive::Parts {
     progress.reset();
     believed_progress.reset();
     belief = first_belief();
-    trace = header_of(scenario, model->description(), options.seed, noise());
-    if (!vehicle_digest) vehicle_digest = digest_of(scenario);
+    trace = trace_header(scenario, model->description(), options.seed, noise());
+    if (!vehicle_digest) vehicle_digest = digest_if_there(scenario);
     trace.vehicle_digest = *vehicle_digest;
     const models::GaussianSampler initial(belief.mean, belief.covariance);
     state = initial.sample({.seed = options.seed, .stream = models::RandomStream::kInitialState});
@@ -421,13 +397,6 @@ controller::Situation Drive::situation_of(const controller::Gaussian& belief, in
 StepRecord Drive::record_of(const controller::Situation& situation,
                             const controller::Decision& decision, bool certify) {
   return parts_->record_of(situation, decision, certify);
-}
-
-Trace trace_header(const Scenario& scenario, std::uint64_t seed) {
-  Trace header =
-      header_of(scenario, model_of(scenario)->description(), seed, scenario.disturbance.seeds);
-  header.vehicle_digest = digest_of(scenario);
-  return header;
 }
 
 }  // namespace qsmpc::harness

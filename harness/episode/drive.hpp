@@ -120,9 +120,6 @@ class Drive {
   std::unique_ptr<Parts> parts_;
 };
 
-/// The header of the trace of `scenario`: scenario, its text, its system, seed, version.
-[[nodiscard]] Trace trace_header(const Scenario& scenario, std::uint64_t seed);
-
 }  // namespace qsmpc::harness
 
 #pragma GCC visibility pop

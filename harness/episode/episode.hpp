@@ -18,6 +18,7 @@
 
 #include "harness/control/controller_object.hpp"
 #include "harness/episode/drive.hpp"
+#include "harness/episode/trace_header.hpp"
 #include "harness/scenario/scenario.hpp"
 #include "harness/trace/trace.hpp"
 #include "models/random/noise_seeds.hpp"

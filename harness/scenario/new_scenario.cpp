@@ -42,7 +42,7 @@ risk: {{plan: 0.02}}
 controller:
   horizon: 12                  # periods that are planned ahead
   policy: closed_loop          # feedback about the plan; or open_loop
-  quantisation: {{state: 30, noise: 30, compressed: 30}}   # points; more are slower and tighter
+  quantisation: {{state: 30, noise: 30, compressed: 30}}   # points; or auto: as few as will do
   cost: {{state: [60, 60, 1], input: [2], terminal: [60, 60, 5]}}   # weights, diagonals
 
 limit: {{steps: 150}}            # control periods, after which the drive ends

@@ -21,6 +21,7 @@
 #include "harness/assembly/chosen_points.hpp"
 #include "harness/cli/artefacts.hpp"
 #include "harness/episode/episode.hpp"
+#include "harness/episode/trace_header.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
 #include "harness/plant/plant_check.hpp"
