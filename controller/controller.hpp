@@ -15,6 +15,7 @@
 #include "controller/measure/quantisation/gaussian_quantiser.hpp"
 #include "controller/measure/wasserstein.hpp"
 #include "controller/planning/planner_settings.hpp"
+#include "controller/planning/points_choice.hpp"
 #include "controller/prediction/prediction.hpp"
 #include "controller/regions/safe_set.hpp"
 #include "controller/regions/unsafe_set.hpp"

@@ -8,6 +8,7 @@
 
 #include "controller/controller.hpp"
 #include "harness/assembly/assembly.hpp"
+#include "harness/assembly/chosen_points.hpp"
 #include "harness/assembly/first_decision.hpp"
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"

@@ -15,21 +15,24 @@
 
 namespace qsmpc::controller {
 
+/// What is asked for.
 struct PointsSearch {
   /// What plans may cost more for having fewer points, relative, > 0.
   double tolerance = 1e-3;
-  int stretches =
-      8;  ///< of the way to the target, a horizon each, that are looked at at most, >= 1
+  /// Of the way to the target, a horizon each, that are looked at at most, >= 1.
+  int stretches = 8;
 };
 
+/// What was found.
 struct PointsChoice {
-  int state_points = 0;
-  int compressed_points = 0;
+  int state_points = 0;       ///< of the belief
+  int compressed_points = 0;  ///< kept after each step of the prediction
   /// What plans cost more with them, relative, at the place where it is the most: not above the
   /// tolerance; below 0 where these points are misleading nowhere.
   double gap = 0.0;
   int places = 0;  ///< that were compared
 
+  /// Puts the numbers into `settings`.
   void apply_to(PlannerSettings& settings) const {
     settings.state_points = state_points;
     settings.compressed_points = compressed_points;
