@@ -187,11 +187,8 @@ const Plan& Planner::prescribe(const Gaussian& belief,
   require(((inputs.colwise() - bounds.lower).array() >= 0.0).all() &&
               ((inputs.colwise() - bounds.upper).array() <= 0.0).all(),
           "the inputs must be within their bounds");
+  begin_prescribed(belief, {});
   PlanStopwatch stopwatch;
-  prescribed_ = {};
-  evaluator_.take_belief(belief);
-  prescribed_.belief = evaluator_.belief();
-  stopwatch.add_to(prescribed_.timing.quantise);
   evaluator_.set_policy(inputs, Eigen::MatrixXd::Zero(dynamics_.input_dim(), dynamics_.state_dim()),
                         prescribed_);
   evaluator_.predict_and_evaluate(prescribed_);
@@ -199,13 +196,23 @@ const Plan& Planner::prescribe(const Gaussian& belief,
   return prescribed_;
 }
 
-const Plan& Planner::price(const Gaussian& belief, const Plan& plan) {
+/// A plan about which no more is known than the belief.
+void Planner::begin_prescribed(const Gaussian& belief, std::optional<double> progress) {
+  PlanStopwatch stopwatch;
   prescribed_ = {};
-  evaluator_.take_belief(belief);
+  evaluator_.take_belief(belief, progress);
   prescribed_.belief = evaluator_.belief();
+  stopwatch.add_to(prescribed_.timing.quantise);
+}
+
+const Plan& Planner::price(const Gaussian& belief, const Plan& plan,
+                           std::optional<double> progress) {
+  begin_prescribed(belief, progress);
+  PlanStopwatch stopwatch;
   prescribed_.policy = plan.policy;
   prescribed_.gain_change = plan.gain_change;
   evaluator_.predict_and_evaluate(prescribed_);
+  stopwatch.add_to(prescribed_.timing.propagate);
   return prescribed_;
 }
 

@@ -65,10 +65,10 @@ class Planner {
   /// the inputs are of another size, not finite or not within the bounds.
   const Plan& prescribe(const Gaussian& belief, const Eigen::Ref<const Eigen::MatrixXd>& inputs);
 
-  /// The policy of `plan`, another planner's for the same belief and system, as this one predicts
-  /// and evaluates it. It stays valid as that of `prescribe`. Throws std::invalid_argument as
-  /// `plan`.
-  const Plan& price(const Gaussian& belief, const Plan& plan);
+  /// The policy of `plan`, another planner's for the same belief, progress (PlanRequest) and
+  /// system, as this one predicts and evaluates it. It stays valid as that of `prescribe`. Throws
+  /// std::invalid_argument as `plan`.
+  const Plan& price(const Gaussian& belief, const Plan& plan, std::optional<double> progress = {});
 
   /// Quantises a Gaussian of this covariance (state_dim x state_dim), so that the quantiser's slow
   /// first call for beliefs like it is over before a control loop starts. No plan depends on it.
@@ -95,6 +95,7 @@ class Planner {
 
  private:
   void set_limits(const PlanRequest& request);
+  void begin_prescribed(const Gaussian& belief, std::optional<double> progress);
   void fall_back(Plan& plan);
   void settle(PlanInProgress& plan, const Gaussian& belief, const PlanRequest& request);
   [[nodiscard]] bool begin_effort(const Plan& plan);

@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "controller/planning/planner.hpp"
+#include "controller/reference/progress.hpp"
 #include "controller/regions/unsafe_set.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::controller {
 namespace {
@@ -22,6 +24,7 @@ constexpr double kDeviations = 3.0;
 /// What is planned from, and the plan with the most points.
 struct Place {
   Gaussian belief;
+  std::optional<double> progress;  // as in PlanRequest
   Plan plan;
 };
 
@@ -44,6 +47,7 @@ class PointsComparison {
   }
 
   [[nodiscard]] PointsChoice choose() {
+    if (places_.empty()) return choice_of(settings_, 0.0);  // nothing tells what fewer would do
     const int most = std::max(settings_.state_points, settings_.compressed_points);
     for (int points = fewest(); points < most;
          points = static_cast<int>(std::ceil(points * kLadderStep))) {
@@ -59,7 +63,7 @@ class PointsComparison {
   [[nodiscard]] int fewest() const { return 2 * dynamics_.state_dim() + 1; }
 
   static PlannerSettings without_deadline(PlannerSettings settings) {
-    settings.deadline = std::numeric_limits<double>::infinity();
+    settings.deadline = kInfinity;
     return settings;
   }
 
@@ -72,24 +76,37 @@ class PointsComparison {
 
   /// Follows plans with the most points from end to end, and looks aside at each.
   void find_places(Gaussian belief) {
+    std::optional<double> progress = progress_at(belief.mean, {});
     for (int n = 0; n < search_.stretches; ++n) {
-      if (!add_place(belief)) return;
+      if (!add_place(belief, progress)) return;
       const Plan& plan = places_.back().plan;
-      const Eigen::VectorXd end = plan.policy.states.rightCols<1>();
+      const Eigen::MatrixXd path = plan.policy.states;
+      if (!path.allFinite()) return;
       const std::optional<Eigen::VectorXd> aside = nearest_to_unsafe(plan.prediction.stages.back());
-      if (aside) add_place({.mean = *aside, .covariance = settings_.noise_covariance});
-      if (is_noise(end - belief.mean)) return;
-      belief = {.mean = end, .covariance = settings_.noise_covariance};
+      for (const auto& state : path.colwise()) progress = progress_at(state, progress);
+      if (aside) add_place(later(*aside), progress);
+      if (is_noise(path.rightCols<1>() - belief.mean)) return;
+      belief = later(path.rightCols<1>());
     }
   }
 
+  [[nodiscard]] std::optional<double> progress_at(const Eigen::Ref<const Eigen::VectorXd>& state,
+                                                  std::optional<double> before) const {
+    return progress_after(settings_.path, settings_.waypoints, dynamics_.description(), state,
+                          before);
+  }
+
+  /// A belief in the course of a drive.
+  [[nodiscard]] Gaussian later(const Eigen::VectorXd& mean) const {
+    return {.mean = mean, .covariance = settings_.noise_covariance};
+  }
+
   /// Plans with the most points. Returns whether that can be compared.
-  bool add_place(const Gaussian& belief) {
-    if (!belief.mean.allFinite()) return false;
+  bool add_place(const Gaussian& belief, std::optional<double> progress) {
     judge_.reset();
-    const Plan& plan = judge_.plan(belief);
+    const Plan& plan = judge_.plan(belief, {.progress = progress});
     if (!std::isfinite(plan.cost.total())) return false;
-    places_.push_back({belief, plan});
+    places_.push_back({belief, progress, plan});
     return true;
   }
 
@@ -97,7 +114,7 @@ class PointsComparison {
   [[nodiscard]] std::optional<Eigen::VectorXd> nearest_to_unsafe(
       const DiscreteMeasure& measure) const {
     std::optional<Eigen::VectorXd> nearest;
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const auto& point : measure.locations.colwise()) {
       const double distance = clearance(point, unsafe_);
       if (!(distance > 0.0) || !(distance < least)) continue;
@@ -117,7 +134,7 @@ class PointsComparison {
   /// far.
   double worst_gap(const PlannerSettings& fewer) {
     Planner planner(dynamics_, fewer);
-    double worst = -std::numeric_limits<double>::infinity();
+    double worst = -kInfinity;
     for (const Place& place : places_) {
       worst = std::max(worst, gap_at(place, planner));
       if (worst > search_.tolerance) break;
@@ -126,20 +143,19 @@ class PointsComparison {
   }
 
   /// By how much `planner` thinks its own plan better, beside the one with the most points, than it
-  /// is.
+  /// is; infinite where that cannot be told.
   double gap_at(const Place& place, Planner& planner) {
     planner.reset();
-    const Plan& plan = planner.plan(place.belief);
+    const Plan& plan = planner.plan(place.belief, {.progress = place.progress});
     const double own = plan.cost.total();
-    const Plan& judged = judge_.price(place.belief, plan);
-    if (!std::isfinite(judged.cost.total()) || (plan.risk.kept && !judged.risk.kept)) {
-      return std::numeric_limits<double>::infinity();
-    }
+    const Plan& judged = judge_.price(place.belief, plan, place.progress);
+    if (plan.risk.kept && !judged.risk.kept) return kInfinity;
     const double best = place.plan.cost.total();
-    const double best_seen = planner.price(place.belief, place.plan).cost.total();
+    const double best_seen = planner.price(place.belief, place.plan, place.progress).cost.total();
     // No cost is below 0, and only that of a drive without noise that is over is 0.
-    return ((judged.cost.total() - best) - (own - best_seen)) /
-           std::max(best, std::numeric_limits<double>::min());
+    const double gap = ((judged.cost.total() - best) - (own - best_seen)) /
+                       std::max(best, std::numeric_limits<double>::min());
+    return std::isfinite(gap) ? gap : kInfinity;
   }
 
   const models::Dynamics& dynamics_;

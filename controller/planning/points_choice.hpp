@@ -3,8 +3,8 @@
 //   PlannerSettings settings = …;               // with the most that it may have
 //   choose_points(*car, belief, {.tolerance = 1e-3}, settings).apply_to(settings);
 //
-// What the planner costs less with fewer points is time: predictions, and every evaluation of a
-// solver, take time in proportion to them.
+// Fewer points take less time: predictions, and every evaluation of a solver, take time in
+// proportion to their number.
 #pragma once
 
 #include "controller/measure/measures.hpp"
@@ -28,9 +28,9 @@ struct PointsChoice {
   int state_points = 0;       ///< of the belief
   int compressed_points = 0;  ///< kept after each step of the prediction
   /// What plans cost more with them, relative, at the place where it is the most: not above the
-  /// tolerance; below 0 where these points are misleading nowhere.
+  /// tolerance; below 0 where these points are misleading nowhere; 0 of all points.
   double gap = 0.0;
-  int places = 0;  ///< that were compared
+  int places = 0;  ///< that were compared; without any, all points are kept
 
   /// Puts the numbers into `settings`.
   void apply_to(PlannerSettings& settings) const {

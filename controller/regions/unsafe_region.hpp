@@ -47,6 +47,12 @@ struct SurrogateLaw {
 struct RegionProbability {
   double markov = 0.0;  ///< C3
   double smooth = 0.0;  ///< C4; what a region adds is never above what it adds to C3
+
+  RegionProbability& operator+=(const RegionProbability& other) {
+    markov += other.markov;
+    smooth += other.smooth;
+    return *this;
+  }
 };
 
 /// Signed distances of points, with their derivatives: unit vectors that lead away fastest.

@@ -95,11 +95,11 @@ int run(const RunArguments& arguments) {
       arguments.out.empty()
           ? default_folder(scenario.name, fmt::format("{}", seed), arguments.overrides)
           : arguments.out;
-  settle_points(scenario, arguments.quiet);
-  refuse_other_result(folder, scenario, arguments.force);
   if (const auto problem = plant_problem(scenario, arguments.scenario, arguments.overrides)) {
     throw InputError(*problem);
   }
+  settle_points(scenario, arguments.quiet);
+  refuse_other_result(folder, scenario, arguments.force);
   print_warnings(scenario_warnings(scenario));
   print_warnings(plant_warnings(scenario));
   make_output_folder(folder);

@@ -58,11 +58,17 @@ void settle_points(Scenario& scenario, bool quiet) {
   const Scenario::Quantisation asked = scenario.controller.quantisation;
   const auto choice = choose_points(scenario);
   if (!choice || quiet) return;
+  if (choice->compressed_points == asked.compressed && choice->state_points == asked.state) {
+    std::cerr << fmt::format("qsmpc: all points are needed: {} for the belief, {} kept\n",
+                             asked.state, asked.compressed);
+    return;
+  }
   std::cerr << fmt::format(
-      "qsmpc: {} of {} points for the belief, {} of {} kept: plans from {} place{} cost at most "
-      "{:.2g} % more\n",
+      "qsmpc: {} of {} points for the belief, {} of {} kept; they mislead none of {} plans tried "
+      "by "
+      "more than {:.2g} % of its cost\n",
       choice->state_points, asked.state, choice->compressed_points, asked.compressed,
-      choice->places, choice->places == 1 ? "" : "s", 100.0 * std::max(choice->gap, 0.0));
+      choice->places, 100.0 * std::max(choice->gap, 0.0));
 }
 
 }  // namespace qsmpc::harness

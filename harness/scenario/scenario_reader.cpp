@@ -125,8 +125,13 @@ class ScenarioReader {
     }
     if (key.read != nullptr) {
       key.read(reading_, section, about);
-    } else if (!key.word.empty() && section.holds_text(about.name)) {
-      if (section.name(about.name, "", {key.word}) == key.word) key.say(reading_.scenario);
+    } else if (const YamlNode* node = key.word.empty() ? nullptr : section.tree(about.name);
+               node != nullptr && node->kind != YamlNode::Kind::kMap) {
+      if (node->kind == YamlNode::Kind::kText && node->text == key.word) {
+        key.say(reading_.scenario);
+      } else {
+        section.note(about.name, key.word + ", or a mapping of keys to values");
+      }
     } else if (!key.keys.empty()) {
       Section inner = section.section(about.name);
       for (const ScenarioKey& inner_key : key.keys) read_key(inner, inner_key);

@@ -2,19 +2,15 @@
 
 #include <utility>
 
+#include "controller/reference/progress.hpp"
 #include "harness/trace/ending.hpp"
 
 namespace qsmpc::harness {
 
 void TargetProgress::advance(const Eigen::VectorXd& state) {
   if (!state.allFinite()) return;
-  if (const auto& route = scenario_.target.route) {
-    const int before = now_ ? static_cast<int>(*now_) : 0;
-    now_ = controller::waypoints_passed(*route, system_, state, before);
-  }
-  if (!scenario_.target.course) return;
-  const Eigen::Vector2d position(state[system_.position_x], state[system_.position_y]);
-  now_ = controller::progress_on(*scenario_.target.course, position, now_);
+  now_ = controller::progress_after(scenario_.target.course, scenario_.target.route, system_, state,
+                                    now_);
 }
 
 std::vector<double> progress_of(const Trace& trace) {

@@ -98,9 +98,7 @@ class RoadRegion final : public UnsafeRegion {
 
   void add_probability(Eigen::Index /*stage*/, const SurrogateLaw& state,
                        RegionProbability& sum) const override {
-    const RegionProbability bound = bound_of(0, state);
-    sum.markov += bound.markov;
-    sum.smooth += bound.smooth;
+    sum += bound_of(0, state);
   }
 
   void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {

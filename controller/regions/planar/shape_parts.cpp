@@ -91,11 +91,8 @@ RegionProbability ShapeParts::sum_of(double worthwhile, const Far& far, const Ne
   RegionProbability total;
   for (const BoundedPart& one : parts_) {
     const double beyond = far(one.circle);
-    const RegionProbability bound = beyond <= kNegligiblePart
-                                        ? RegionProbability{.markov = beyond, .smooth = beyond}
-                                        : near(one);
-    total.markov += bound.markov;
-    total.smooth += bound.smooth;
+    total += beyond <= kNegligiblePart ? RegionProbability{.markov = beyond, .smooth = beyond}
+                                       : near(one);
   }
   // Parts share edges, at which each counts what the error may do: all of them at once are better
   // where they are small.

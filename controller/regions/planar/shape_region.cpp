@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "controller/regions/planar/shape_parts.hpp"
+#include "models/constants.hpp"
 
 namespace qsmpc::controller {
 namespace {
@@ -37,9 +38,7 @@ class ShapeRegion final : public UnsafeRegion {
 
   void add_probability(Eigen::Index /*stage*/, const SurrogateLaw& state,
                        RegionProbability& sum) const override {
-    const RegionProbability bound = parts_.probability(state, axes_);
-    sum.markov += bound.markov;
-    sum.smooth += bound.smooth;
+    sum += parts_.probability(state, axes_);
   }
 
   void add_tail(Eigen::Index /*stage*/, const Gaussian& law, TailSum& sum) const override {

@@ -58,9 +58,9 @@ ScenarioKey quantisation_key() {
            {.about = {.name = "tolerance",
                       .values = {NumberValue{{.least = 0.0, .most = 1.0}}},
                       .words =
-                          "what a plan of `quantised` may cost more than with the points above, "
-                          "as a share, {range}: as few of them stand for the belief and are "
-                          "kept as that allows; 0: all of them",
+                          "share of a plan's cost by which fewer points than the above may mislead "
+                          "the controller `quantised`, {range}: as few stand for the belief and "
+                          "are kept as that allows; 0: all of them",
                       .see = "[below](#how-many-points)"},
             .member = [](Scenario& scenario) -> double& {
               return scenario.controller.quantisation.tolerance;

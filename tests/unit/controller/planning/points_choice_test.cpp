@@ -112,24 +112,61 @@ TEST(PointsChoice, depends_on_nothing_but_what_is_given) {
   EXPECT_EQ(one.gap, other.gap);
 }
 
-TEST(PointsChoice, ends_where_plans_stay_where_they_are) {
-  const auto integrator = models::make_dynamics("double_integrator", {}, 0.1);
+/// A puck, and a target where it starts.
+PlannerSettings resting_settings() {
   PlannerSettings settings;
   settings.horizon = 5;
-  const int dim = integrator->state_dim();
-  const int inputs = integrator->input_dim();
-  settings.noise_covariance = 0.01 * Eigen::MatrixXd::Identity(dim, dim);
-  settings.cost = {.state = Eigen::MatrixXd::Identity(dim, dim),
-                   .input = Eigen::MatrixXd::Identity(inputs, inputs),
-                   .terminal = Eigen::MatrixXd::Identity(dim, dim),
-                   .target = Eigen::VectorXd::Zero(dim)};
-  settings.safe_set = unbounded_safe_set(dim);
-  settings.bounds = {.lower = Eigen::VectorXd::Constant(inputs, -1.0),
-                     .upper = Eigen::VectorXd::Constant(inputs, 1.0)};
+  settings.noise_covariance = 0.01 * Eigen::Matrix4d::Identity();
+  settings.cost = {.state = Eigen::Matrix4d::Identity(),
+                   .input = Eigen::Matrix2d::Identity(),
+                   .terminal = Eigen::Matrix4d::Identity(),
+                   .target = Eigen::Vector4d::Zero()};
+  settings.safe_set = unbounded_safe_set(4);
+  settings.bounds = {.lower = Eigen::Vector2d::Constant(-5.0),
+                     .upper = Eigen::Vector2d::Constant(5.0)};
+  return settings;
+}
+
+TEST(PointsChoice, ends_where_plans_stay_where_they_are) {
+  const auto puck = models::make_dynamics("point_mass", {}, 0.1);
+  const PlannerSettings settings = resting_settings();
   const PointsChoice choice = choose_points(
-      *integrator, {.mean = Eigen::VectorXd::Zero(dim), .covariance = settings.noise_covariance},
-      {}, settings);
+      *puck, {.mean = Eigen::Vector4d::Zero(), .covariance = settings.noise_covariance}, {},
+      settings);
   EXPECT_EQ(choice.places, 1);
+}
+
+TEST(PointsChoice, keeps_all_points_where_no_plan_can_be_compared) {
+  FragileCar car;
+  car.broken = true;
+  const PointsChoice all = choose_points(car, dubins_belief(), {}, dubins_settings());
+  EXPECT_EQ(all.places, 0);
+  EXPECT_EQ(all.state_points, dubins_settings().state_points);
+  EXPECT_EQ(all.compressed_points, dubins_settings().compressed_points);
+  EXPECT_EQ(all.gap, 0.0);
+}
+
+TEST(PointsChoice, goes_on_to_the_next_waypoint) {
+  // A way back over the first waypoint, at which a search that knew no other would end.
+  const auto puck = models::make_dynamics("point_mass", {}, 0.1);
+  PlannerSettings settings = resting_settings();
+  settings.horizon = 20;
+  settings.cost.state *= 100.0;
+  settings.cost.terminal *= 100.0;
+  Waypoints route;
+  route.states = Eigen::MatrixXd::Zero(4, 2);
+  route.states.row(0) << 2.0, -4.0;
+  route.radius = 0.5;
+  const Gaussian start{.mean = Eigen::Vector4d::Zero(), .covariance = settings.noise_covariance};
+  const auto places = [&](const Waypoints& waypoints) {
+    PlannerSettings with = settings;
+    with.waypoints = waypoints;
+    with.cost.target = waypoints.states.rightCols<1>();
+    return choose_points(*puck, start, {.stretches = 8}, with).places;
+  };
+  Waypoints first_alone = route;
+  first_alone.states = route.states.leftCols<1>().eval();
+  EXPECT_GT(places(route), places(first_alone));
 }
 
 TEST(PointsChoice, refuses_a_search_for_nothing) {
