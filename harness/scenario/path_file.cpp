@@ -71,8 +71,8 @@ class PathLines {
       return note(number, fmt::format("a row of {} numbers", words.size()),
                   fmt::format("{} numbers, as in the rows before", width_));
     }
-    if (lines_.size() == kMostPathPoints) {
-      return note(number, "one more", fmt::format("at most {} points", kMostPathPoints));
+    if (lines_.size() == kMostPathRows) {
+      return note(number, "one more", fmt::format("at most {} points", kMostPathRows));
     }
     numbers_.insert(numbers_.end(), numbers.begin(), numbers.end());
     lines_.push_back(number);

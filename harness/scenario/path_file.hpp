@@ -13,7 +13,7 @@
 
 namespace qsmpc::harness {
 
-inline constexpr std::size_t kMostPathPoints = 5000;
+inline constexpr std::size_t kMostPathRows = 5000;
 
 /// The points of a path.
 struct PathRows {

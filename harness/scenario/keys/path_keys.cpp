@@ -65,7 +65,7 @@ void read_listed_path(ScenarioReading& reading, Section& section) {
                                .words = "[x, y], or [x, y, right width, left width]",
                                .name = "points",
                                .least = 0,
-                               .most = kMostPathPoints});
+                               .most = kMostPathRows});
   if (!rows) return;
   take_rows(reading, section, {.rows = matrix_of(*rows)},
             [&](Eigen::Index row, std::string found, const std::string& expected) {
@@ -173,7 +173,7 @@ std::optional<std::string> if_followed(const Scenario& scenario, Value&& value) 
 }
 
 ListValue path_rows_value() {
-  return list_of_values(VectorValue{.size = Dimension::kAny}, {.most = kMostPathPoints});
+  return list_of_values(VectorValue{.size = Dimension::kAny}, {.most = kMostPathRows});
 }
 
 ScenarioKey speed_key() {
@@ -246,7 +246,7 @@ std::vector<ScenarioKey> path_keys() {
                      "`[x, y]` or `[x, y, right width, left width]`, or the path of a text file "
                      "of them, absolute or relative to the scenario's folder. With widths, "
                      "what is off the road is unsafe",
-                     kMostPathPoints),
+                     kMostPathRows),
                  .see = "[below](#paths)",
                  .unit = "m",
                  .fallback_words = "none"},
