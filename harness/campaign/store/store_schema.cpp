@@ -254,6 +254,10 @@ void with_store_errors(const std::string& path, const std::function<void()>& wor
   try {
     work();
   } catch (const SQLite::Exception& error) {
+    // Without a code it is this program that found something wrong, in rows that SQLite could read.
+    if (error.getErrorCode() < 0) {
+      throw IoError(printable(path, 400) + ": damaged: " + error.what());
+    }
     throw IoError(printable(path, 400) + ": " + error.getErrorStr() +
                   (error.getErrorStr() == std::string(error.what())
                        ? ""
