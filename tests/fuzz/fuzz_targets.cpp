@@ -23,6 +23,7 @@
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 #include "models/dynamics/equations/expression.hpp"
+#include "tests/fuzz/edited_files.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace qsmpc::testing {
@@ -193,6 +194,8 @@ const std::vector<FuzzTarget>& fuzz_targets() {
       {.name = "mapping", .read = read_mapping},
       {.name = "answer", .read = read_controller_answer},
       {.name = "hosts", .read = read_hosts},
+      {.name = "trace", .read = read_edited_trace},
+      {.name = "store", .read = read_edited_store},
   };
   return targets;
 }

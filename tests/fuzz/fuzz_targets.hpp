@@ -1,6 +1,6 @@
-// What is fuzzed: every reader of text that comes from outside of the program. Bytes are given to
-// one; it reads them or refuses them in the way that it states, and whatever else happens is a
-// finding.
+// What is fuzzed: every reader of what comes from outside of the program. Bytes are given to one;
+// it reads them or refuses them in the way that it states, and whatever else happens is a finding.
+// Readers of binary files are given what edits make of a sound one (edited_files.hpp).
 #pragma once
 
 #include <string>
