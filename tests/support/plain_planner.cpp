@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "controller/planning/cost/expected_bounds.hpp"
 #include "controller/prediction/moment_matching.hpp"
 #include "tests/support/plain_penalty.hpp"
 
@@ -15,6 +14,34 @@ Eigen::VectorXd step(const models::Dynamics& dynamics, const Eigen::VectorXd& st
   models::StateBatch next(state.size(), 1);
   dynamics.step(models::StateBatch(state), models::StateBatch(input), next);
   return next.col(0);
+}
+
+/// x̄_0, and x̄_{k+1} = f(x̄_k, v_k).
+Eigen::MatrixXd nominal(const models::Dynamics& dynamics, const Eigen::VectorXd& start,
+                        const Eigen::MatrixXd& inputs) {
+  Eigen::MatrixXd states(start.size(), inputs.cols() + 1);
+  states.col(0) = start;
+  for (Eigen::Index k = 0; k < inputs.cols(); ++k) {
+    states.col(k + 1) = step(dynamics, states.col(k), inputs.col(k));
+  }
+  return states;
+}
+
+/// sat(v_k + K_k (x − x̄_k)).
+Eigen::VectorXd input_at(const controller::Policy& policy, Eigen::Index k,
+                         const Eigen::VectorXd& state) {
+  Eigen::VectorXd input = policy.inputs.col(k) + policy.gains[k] * (state - policy.states.col(k));
+  for (Eigen::Index a = 0; a < input.size(); ++a) {
+    input[a] = std::clamp(input[a], policy.bounds.lower[a], policy.bounds.upper[a]);
+  }
+  return input;
+}
+
+/// 1 − θ² of what particles stand for (docs/theory/planning.md).
+double lost_share(Eigen::Index count, Eigen::Index dim) {
+  const double width =
+      1.5 / std::pow(static_cast<double>(count), 1.0 / static_cast<double>(dim + 4));
+  return std::min(1.0, width * width);
 }
 
 /// Σ share · stepped + offset for each destination.
@@ -120,7 +147,7 @@ class PlainHorizon {
 
   PlainCost run(const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& gain_change) {
     policy_.inputs = inputs;
-    policy_.states = controller::nominal_states(terms_.dynamics, policy_.states.col(0), inputs);
+    policy_.states = nominal(terms_.dynamics, policy_.states.col(0), inputs);
     for (Eigen::MatrixXd& gain : policy_.gains) gain += gain_change;
     forward();
     backward();
@@ -185,7 +212,7 @@ class PlainHorizon {
   void evaluate_bounds(Eigen::Index k, const PlainPenalty& penalty) {
     Stage& stage = stages_[k];
     const auto count = static_cast<Eigen::Index>(stage.stepped.size());
-    const double smoothing = prediction_.compressed ? controller::smoothing_of(count, dim_) : 0.0;
+    const double smoothing = prediction_.compressed ? lost_share(count, dim_) : 0.0;
     const double share = std::sqrt(1.0 - smoothing);
     Eigen::VectorXd weights(count);
     Eigen::MatrixXd stepped(dim_, count);
@@ -318,8 +345,7 @@ PlainPrediction plain_predict(const models::Dynamics& dynamics,
     std::vector<Eigen::VectorXd> stepped;
     std::vector<double> weights;
     for (const PlainParticle& particle : prediction.stages[k]) {
-      stepped.push_back(
-          step(dynamics, particle.state, controller::policy_input(policy, k, particle.state)));
+      stepped.push_back(step(dynamics, particle.state, input_at(policy, k, particle.state)));
       weights.push_back(particle.weight);
     }
     const Taken taken = take_up_noise(stepped, weights, noise);

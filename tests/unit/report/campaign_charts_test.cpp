@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "harness/figures/plot_frame.hpp"
@@ -343,7 +344,16 @@ TEST(ErrorBars, reach_from_end_to_end_and_widen_the_axis) {
                           .lower = {0.0, 0.4},
                           .upper = {1.0, 0.6}}}};
   const std::string svg = chart_drawing(chart);
-  EXPECT_TRUE(testing::contains(svg, "M75.0 244.0h6m-3 0V10.0m-3 0h6")) << "from foot to top";
+  const PlotFrame frame = frame_of(chart);
+  EXPECT_NEAR(frame.up(0.0), kChartHeight - kChartBottom, 0.5) << "from foot";
+  EXPECT_NEAR(frame.up(1.0), kChartTop, 0.5) << "to top";
+  for (const std::size_t i : {0, 1}) {
+    const Series& series = chart.series[0];
+    const std::string bar =
+        fmt::format("M{:.1f} {:.1f}h6m-3 0V{:.1f}m-3 0h6", frame.across(series.x[i]) - 3.0,
+                    frame.up(series.lower[i]), frame.up(series.upper[i]));
+    EXPECT_TRUE(testing::contains(svg, bar)) << bar;
+  }
   chart.series[0].upper[0] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(testing::contains(chart_drawing(chart), "nan"));
   EXPECT_EQ(testing::occurrences(chart_drawing(chart), "h6m-3 0V"), 1);
@@ -357,7 +367,9 @@ TEST(LogarithmicAxis, may_be_the_one_across) {
                     .series = {{.name = "line", .x = {1e-4, 1e-2, 1.0}, .y = {0, 1, 2}}}};
   const std::string svg = chart_drawing(chart);
   EXPECT_TRUE(testing::contains(svg, ">10⁻²<"));
-  EXPECT_TRUE(testing::contains(svg, "L272.0 ")) << "10⁻² is halfway";
+  const PlotFrame frame = frame_of(chart);
+  EXPECT_NEAR(frame.across(1e-2), 0.5 * (frame.across(1e-4) + frame.across(1.0)), 1e-9);
+  EXPECT_TRUE(testing::contains(svg, fmt::format("L{:.1f} ", frame.across(1e-2))));
 }
 
 }  // namespace campaign_charts_test

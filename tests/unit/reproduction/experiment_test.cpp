@@ -3,6 +3,7 @@
 #include "harness/reproduction/experiment.hpp"
 
 #include <cmath>
+#include <limits>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "harness/errors.hpp"
+#include "harness/figures/svg_figure.hpp"
 #include "harness/reproduction/published_way.hpp"
 #include "tests/support/effort.hpp"
 
@@ -21,6 +23,7 @@ using namespace testing;
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 std::vector<std::string> all_names() {
@@ -61,6 +64,25 @@ TEST(Experiments, have_names_of_their_own) {
 
 constexpr const char* kArrival = "target reached in";  // not within a few periods
 
+bool is_about(const ResultRow& row, const std::string& what) {
+  return row.quantity.find(what) != std::string::npos ||
+         (row.place && (row.place->table.find(what) != std::string::npos ||
+                        row.place->row.find(what) != std::string::npos));
+}
+
+/// Whether the number can be what its row says that it is.
+void expect_possible(const ResultRow& row) {
+  EXPECT_TRUE(std::isfinite(row.here)) << row.quantity;
+  EXPECT_GE(row.here, 0.0) << row.quantity;
+  if (is_about(row, "P(unsafe)") || is_about(row, "drives that")) {
+    EXPECT_LE(row.here, 1.0) << row.quantity;
+  }
+  if (row.unit != "s" && row.unit != "ms") return;
+  const double seconds = row.unit == "s" ? row.here : 1e-3 * row.here;
+  EXPECT_GT(seconds, 1e-7) << row.quantity;
+  EXPECT_LT(seconds, 600.0) << row.quantity;
+}
+
 class EveryExperiment : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryExperiment, fills_each_row_that_has_a_published_value) {
@@ -72,12 +94,15 @@ TEST_P(EveryExperiment, fills_each_row_that_has_a_published_value) {
   for (const ResultRow& row : result.rows) {
     EXPECT_TRUE(quantities.insert(row.quantity).second) << row.quantity << " stands there twice";
     if (row.quantity.find(kArrival) != std::string::npos) continue;
-    EXPECT_TRUE(std::isfinite(row.here)) << row.quantity;
+    expect_possible(row);
   }
   std::set<std::string> files;
   for (const ResultFigure& figure : result.figures) {
     EXPECT_TRUE(files.insert(figure.file).second) << figure.file;
     EXPECT_FALSE(figure.panels.empty()) << figure.file;
+    const std::string svg = svg_figure(figure.panels);
+    EXPECT_THAT(svg, Not(HasSubstr("No finite values to draw."))) << figure.file;
+    EXPECT_THAT(svg, Not(HasSubstr("nan"))) << figure.file;
   }
   for (const Claim& claim : result.claims) EXPECT_FALSE(claim.evidence.empty()) << claim.statement;
 }
@@ -88,6 +113,39 @@ INSTANTIATE_TEST_SUITE_P(Thesis, EveryExperiment, ::testing::ValuesIn(all_names(
                            for (char& c : name) c = c == '-' ? '_' : c;
                            return name;
                          });
+
+/// The row of that kind and column in a table of the thesis's own shape.
+double number_of(const ExperimentResult& result, const std::string& row,
+                 const std::string& column) {
+  for (const ResultRow& each : result.rows) {
+    if (each.place && each.place->row == row && each.place->column == column) return each.here;
+  }
+  ADD_FAILURE() << "no " << row << " of " << column;
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST(Experiments, of_five_steps_count_points_and_lose_the_spread_as_compressions_do) {
+  Laboratory laboratory({.seeds = 2, .truth_samples = 20'000});
+  const ExperimentResult steps = do_experiment("figure-4-2", laboratory);
+  const std::string all = "nothing compressed";
+  const std::string soft = "the thesis’s soft compression";
+  const std::string mixture = "this program’s mixture";
+  // A hundred points, and eight of the noise in each of five steps.
+  EXPECT_EQ(number_of(steps, "points", all), 100.0 * std::pow(8.0, 5.0));
+  const double everything = number_of(steps, "variance over the true one", all);
+  for (const std::string& compressed : {soft, std::string("hard compression"), mixture}) {
+    EXPECT_EQ(number_of(steps, "points", compressed), 100.0) << compressed;
+    EXPECT_LT(number_of(steps, "distance of the mean from the true one", compressed), 0.01);
+    // Means of groups vary less than what is grouped; a mixture keeps what its points stand for.
+    const double kept = number_of(steps, "variance over the true one", compressed);
+    if (compressed == mixture) {
+      EXPECT_NEAR(kept, 1.0, 0.05);
+    } else {
+      EXPECT_LT(kept, everything) << compressed;
+    }
+  }
+  EXPECT_LT(number_of(steps, "variance over the true one", soft), 0.5 * everything);
+}
 
 /// With --slow as `qsmpc reproduce` does them, else few and short.
 bool slow() { return by_effort(false, false, true); }
