@@ -74,7 +74,7 @@ struct Input {
 struct Parameter {
   const char* name;
   const char* unit;
-  double value;  ///< unless the scenario says another one
+  double value;  ///< unless the scenario gives another
 };
 
 /// What a system is called, and what it has. Texts must outlive the library: use literals.

@@ -14,8 +14,8 @@
 
 namespace qsmpc::controller {
 
-/// Constraints c ≤ 0 in groups of which all are alike, so that of those that are violated a solver
-/// looks at the worst first. Every function takes the stage, 1 … horizon, and its particles
+/// Constraints c ≤ 0, in groups whose members are alike: of those in a group that are violated, a
+/// solver looks at the worst first. Every function takes the stage, 1 … horizon, and its particles
 /// (state_dim x n).
 class StageConstraint {
  public:
@@ -40,7 +40,7 @@ struct StageConstraintEntry {
   std::unique_ptr<const StageConstraint> (*make)(const SafeSet& safe_set) = nullptr;
 };
 
-/// The table of constraints, all of which solvers keep that take any.
+/// The table of constraints. A solver that takes any keeps all of them.
 [[nodiscard]] const std::vector<StageConstraintEntry>& stage_constraints();
 
 // The makers of the table.

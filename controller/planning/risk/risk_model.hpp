@@ -2,7 +2,7 @@
 // gradient: what the optimiser limits between two certifications. Derivation:
 // docs/theory/planning.md, "Risk".
 //
-// Held are, from the surrogate of a plan: at each stage how far the mean is from the noise-free
+// Of the surrogate of a plan it holds, at each stage, how far the mean is from the noise-free
 // path, the covariance (a function of a change of the gains, where these are decided), the turn of
 // each disc, and the factor that makes the tails what was certified. The noise-free path moves.
 #pragma once
