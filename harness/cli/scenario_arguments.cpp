@@ -64,9 +64,8 @@ void settle_points(Scenario& scenario, bool quiet) {
     return;
   }
   std::cerr << fmt::format(
-      "qsmpc: {} of {} points for the belief, {} of {} kept; they mislead none of {} plans tried "
-      "by "
-      "more than {:.2g} % of its cost\n",
+      "qsmpc: {} of {} points for the belief, {} of {} kept; "
+      "they mislead none of {} plans tried by more than {:.2g} % of its cost\n",
       choice->state_points, asked.state, choice->compressed_points, asked.compressed,
       choice->places, 100.0 * std::max(choice->gap, 0.0));
 }

@@ -1,3 +1,4 @@
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <sstream>
@@ -162,6 +163,11 @@ void show(const std::string& folder) {
   (void)status_json(status);
   const StoreReader store(folder);
   const CampaignStatistics statistics = campaign_statistics(store);
+  (void)campaign_table(statistics);
+  (void)campaign_json(statistics);
+  (void)variants_csv(statistics);
+  (void)differences_csv(statistics);
+  (void)calibration_csv(statistics);
   (void)campaign_page(statistics);
   store.verify();
 }
