@@ -121,6 +121,7 @@ class SurrogateRecursion {
   [[nodiscard]] SurrogateStage stage() const {
     const Eigen::Index dim = law_.mean.size();
     SurrogateStage stage{.law = law_,
+                         .with_last = tilted_.with_last(),
                          .transition = {},
                          .error = error_.mean_square(),
                          .higher = {},

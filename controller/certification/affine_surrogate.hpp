@@ -22,6 +22,7 @@ namespace qsmpc::controller {
 /// 1 − leaving; it shrinks from stage to stage.
 struct SurrogateStage {
   Gaussian law;                ///< of z
+  Eigen::MatrixXd with_last;   ///< Cov(z, z of the stage before); empty at the first
   Eigen::MatrixXd transition;  ///< A, to the next stage; empty at the last and once all is lost
   Eigen::VectorXd error;       ///< bounds √E[(x_i − z_i)²; inside], coordinate by coordinate
   HigherNorms higher;          ///< the same for (E[|x_i − z_i|^p; inside])^{1/p}

@@ -32,6 +32,12 @@ const std::vector<CertificateEntry>& certificate_entries() {
        .meaning = "c5: the same given what bends the motion most, summed; 1 where no need; sound",
        .in_control = false,
        .prepare = conditioned_bound},
+      {.key = "entry",
+       .dataset = "entry",
+       .meaning = "entry: what a stage adds to the probability of being unsafe at any stage so far;"
+                  " the sum over stages is sound, a single one bounds nothing",
+       .is_bound = false,
+       .prepare = first_entry_bound},
       {.key = "thesis",
        .dataset = "thesis",
        .meaning = "the reference algorithm as printed; not sound",
@@ -106,9 +112,13 @@ std::vector<StageCertificate> certify(const PredictedMotion& motion, const Unsaf
 }
 
 double horizon_bound(const std::vector<StageCertificate>& certificates) {
-  double sum = 0.0;
-  for (const StageCertificate& certificate : certificates) sum += certificate.value;
-  return std::min(1.0, sum);
+  double stages = 0.0;
+  double entries = 0.0;
+  for (const StageCertificate& certificate : certificates) {
+    stages += certificate.value;
+    entries += certificate.of("entry");
+  }
+  return std::min({1.0, stages, entries});
 }
 
 }  // namespace qsmpc::controller

@@ -72,8 +72,8 @@ struct StageCertificate {
     const PredictedMotion& motion, const UnsafeSet& unsafe, const std::vector<StageBudget>& budgets,
     CertificateEffort effort = CertificateEffort::kLeast, const Executor& run = run_in_turn);
 
-/// Upper bound of the probability that the state is unsafe at any of the stages: their sum, at
-/// most 1.
+/// Upper bound of the probability that the state is unsafe at any of the stages: the sum of the
+/// stages' bounds or of what each adds ("entry"), whichever is less, at most 1. 0 for no stages.
 [[nodiscard]] double horizon_bound(const std::vector<StageCertificate>& certificates);
 
 }  // namespace qsmpc::controller

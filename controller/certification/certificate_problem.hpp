@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 
 #include "controller/certification/certificate.hpp"
+#include "controller/certification/conditioned_bounds.hpp"
 #include "controller/certification/surrogate_bounds.hpp"
 
 namespace qsmpc::controller {
@@ -30,6 +31,11 @@ class CertificateProblem {
   /// C3 and C4 of stages 1 … horizon, which come from one search. Worked out by the first who asks;
   /// not to be asked side by side.
   [[nodiscard]] const SurrogateBounds& surrogate_bounds() const;
+  /// C5 of the same; likewise.
+  [[nodiscard]] const ConditionedBounds& conditioned_bounds() const;
+  /// What stages 1 … horizon add to the probability of being unsafe at any of them: by C3 and C4 as
+  /// they are, or, with every effort, conditioned, whichever is less in all. Likewise.
+  [[nodiscard]] const std::vector<double>& first_entries() const;
 
  private:
   const PredictedMotion& motion_;
@@ -39,6 +45,8 @@ class CertificateProblem {
   const Executor& run_;
   std::vector<Eigen::VectorXd> clearances_;
   mutable std::optional<SurrogateBounds> surrogate_bounds_;
+  mutable std::optional<ConditionedBounds> conditioned_bounds_;
+  mutable std::optional<std::vector<double>> first_entries_;
 };
 
 }  // namespace qsmpc::controller

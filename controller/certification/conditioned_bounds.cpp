@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "controller/certification/affine_surrogate.hpp"
+#include "controller/certification/first_entry.hpp"
 #include "controller/certification/surrogate_bounds.hpp"
 #include "models/constants.hpp"
 
@@ -194,13 +195,38 @@ TiltedSums tilted_sums(const PredictedMotion& motion, const UnsafeSet& unsafe, c
   return {.bounds = sum(tilted), .without_errors = sum(without_errors)};
 }
 
+/// First entries of all stages under the tilted laws of a grid, summed.
+std::vector<double> tilted_entries(const PredictedMotion& motion, const UnsafeSet& unsafe,
+                                   const Held& held, const Executor& run) {
+  const TiltGrid grid = tilt_grid(held.spreads);
+  Eigen::MatrixXd entries(motion.policy.horizon(), grid.centres.cols());
+  const auto place = [&](int i) {
+    const PathTilt tilt{
+        .functionals = held.functionals, .centre = grid.centres.col(i), .spreads = held.spreads};
+    const std::vector<double> found = first_entry_bounds(
+        unsafe, surrogate_bounds(motion, unsafe, CertificateEffort::kEvery, run_in_turn, tilt));
+    // Of one law all stages so far are at most 1.
+    double before = 0.0;
+    for (Eigen::Index k = 0; k < entries.rows(); ++k) {
+      const double sum = std::min(1.0, before + found[static_cast<std::size_t>(k)]);
+      entries(k, i) = sum - before;
+      before = sum;
+    }
+  };
+  run(static_cast<int>(grid.centres.cols()), place);
+  Eigen::VectorXd sum = grid.factor * (entries * grid.weights);
+  sum[0] += grid.factor * grid.left_out;
+  return {sum.begin(), sum.end()};
+}
+
 }  // namespace
 
-std::vector<double> conditioned_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
-                                       const SurrogateBounds& plain, const Executor& run) {
+ConditionedBounds conditioned_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
+                                     const SurrogateBounds& plain, const Executor& run) {
   const auto horizon = static_cast<Eigen::Index>(plain.bounds.size());
-  std::vector<double> bounds(plain.bounds.size(), 1.0);
-  if (motion.model_error != nullptr || motion.belief_error != nullptr) return bounds;
+  ConditionedBounds result{.stages = std::vector<double>(plain.bounds.size(), 1.0), .entries = {}};
+  std::vector<double>& bounds = result.stages;
+  if (motion.model_error != nullptr || motion.belief_error != nullptr) return result;
   // What each stage's bound is, and would be without any error.
   Eigen::VectorXd least(horizon);
   Eigen::VectorXd lowest(horizon);
@@ -232,7 +258,10 @@ std::vector<double> conditioned_bounds(const PredictedMotion& motion, const Unsa
       lowest[k] = sums.without_errors[k];
     }
   }
-  return bounds;
+  if (held.spreads.size() > 0 && lowest.maxCoeff() <= kHopeless) {
+    result.entries = tilted_entries(motion, unsafe, held, run);
+  }
+  return result;
 }
 
 }  // namespace qsmpc::controller

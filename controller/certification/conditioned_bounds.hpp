@@ -11,11 +11,16 @@
 
 namespace qsmpc::controller {
 
-/// Bounds of stages 1 … horizon, at most 1. 1 where `plain`, the motion's C3 and C4, is hardly
+struct ConditionedBounds {
+  std::vector<double> stages;   ///< of stages 1 … horizon, at most 1
+  std::vector<double> entries;  ///< as first_entry_bounds; empty where nothing was conditioned
+};
+
+/// C5 and first entries. A stage's bound is 1 where `plain`, the motion's C3 and C4, is hardly
 /// larger than it would be without errors, and everywhere if the motion has a model error.
-[[nodiscard]] std::vector<double> conditioned_bounds(const PredictedMotion& motion,
-                                                     const UnsafeSet& unsafe,
-                                                     const SurrogateBounds& plain,
-                                                     const Executor& run);
+[[nodiscard]] ConditionedBounds conditioned_bounds(const PredictedMotion& motion,
+                                                   const UnsafeSet& unsafe,
+                                                   const SurrogateBounds& plain,
+                                                   const Executor& run);
 
 }  // namespace qsmpc::controller

@@ -22,7 +22,7 @@ struct TurnShares {
 }  // namespace
 
 DiscSurrogate disc_surrogate(const SurrogateStage& stage, const DiscPlacement& placement) {
-  DiscSurrogate disc{.law = stage.law, .error = stage.error, .higher = stage.higher};
+  DiscSurrogate disc{.law = stage.law, .turn = {}, .error = stage.error, .higher = stage.higher};
   if (placement.at_position()) return disc;
   const int heading = placement.heading();
   const double reach = placement.reach();
@@ -37,6 +37,7 @@ DiscSurrogate disc_surrogate(const SurrogateStage& stage, const DiscPlacement& p
   turn(placement.y(), heading) += fitted * std::cos(mean);
   disc.law.covariance = turn * stage.law.covariance * turn.transpose();
   disc.law.covariance = 0.5 * (disc.law.covariance + disc.law.covariance.transpose()).eval();
+  disc.turn = std::move(turn);
 
   const Eigen::Matrix2d moments = residual_moments(mean, variance, mean, variance, variance);
   const double turned = reach * std::min(kMostTurn, stage.error[heading]);

@@ -17,6 +17,7 @@ namespace qsmpc::controller {
 
 struct DiscSurrogate {
   Gaussian law;           ///< of the Gaussian
+  Eigen::MatrixXd turn;   ///< it is turn · z + a constant; empty where that is z itself
   Eigen::VectorXd error;  ///< bounds √E[|difference|²; inside], coordinate by coordinate
   HigherNorms higher;     ///< the same for the norms of higher order
 };

@@ -18,6 +18,7 @@ constexpr double kNegligibleAtStart = 1e-9;
 double initial_risk(const Gaussian& belief, const UnsafeSet& unsafe) {
   const Eigen::Index dim = belief.mean.size();
   const SurrogateStage start{.law = belief,
+                             .with_last = {},
                              .transition = {},
                              .error = Eigen::VectorXd::Zero(dim),
                              .higher = constant_norms(dim, 0.0),

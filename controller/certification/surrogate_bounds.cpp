@@ -16,13 +16,22 @@ constexpr double kWorthwhile = 1e-4;
 // From where on another core, which alone costs some 1e-2, may help.
 constexpr double kTryNarrow = 0.03;
 
-/// C3 and C4 of one stage. C4 takes the better of the two for every part of the unsafe set.
+Eigen::Index region_count(const UnsafeSet& unsafe) {
+  std::size_t count = 0;
+  for (const DiscView& disc : unsafe.discs()) count += disc.regions.size();
+  return static_cast<Eigen::Index>(count);
+}
+
+/// C3 and C4 of one stage, and what each region adds to C4. C4 takes the better of the two for
+/// every part of the unsafe set.
 RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const UnsafeSet& unsafe,
                                       CertificateEffort effort, Eigen::Index stage,
-                                      const SurrogateStage& surrogate, const PathTilt& tilt) {
+                                      const SurrogateStage& surrogate, const PathTilt& tilt,
+                                      Eigen::VectorXd& shares) {
   if (surrogate.leaving >= 1.0) return {.markov = 1.0, .smooth = 1.0};
   const bool every = effort == CertificateEffort::kEvery;
   RegionProbability sum{.markov = surrogate.leaving, .smooth = surrogate.leaving};
+  Eigen::Index part = 0;
   for (const DiscView& disc : unsafe.discs()) {
     const std::function<Eigen::MatrixXd(const std::vector<Eigen::Index>&)> smoothing =
         [&](const std::vector<Eigen::Index>& axes) {
@@ -35,7 +44,9 @@ RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const Unsaf
                              .smoothing = smoothing,
                              .worthwhile = every ? kNegligible : kWorthwhile};
     for (const RegionPointer& region : disc.regions) {
+      const double before = sum.smooth;
       region->add_probability(stage, state, sum);
+      shares[part++] = sum.smooth - before;
     }
   }
   return {.markov = std::min(1.0, sum.markov), .smooth = std::min(1.0, sum.smooth)};
@@ -69,16 +80,20 @@ double surrogate_law_bound(const UnsafeSet& unsafe, Eigen::Index stage,
 SurrogateBounds surrogate_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe,
                                  CertificateEffort effort, const Executor& run,
                                  const PathTilt& tilt, std::vector<RegionProbability> known) {
-  SurrogateBounds result{.surrogates = {}, .bounds = std::move(known)};
+  SurrogateBounds result{.surrogates = {}, .bounds = std::move(known), .shares = {}};
   std::vector<RegionProbability>& least = result.bounds;
-  if (least.empty()) least.assign(motion.policy.horizon(), {.markov = 1.0, .smooth = 1.0});
+  const Eigen::Index horizon = motion.policy.horizon();
+  if (least.empty()) least.assign(horizon, {.markov = 1.0, .smooth = 1.0});
   for (const double core : {kWideCore, kNarrowCore}) {
     std::vector<SurrogateStage> surrogates = affine_surrogates(motion, core, tilt);
+    Eigen::MatrixXd shares = Eigen::MatrixXd::Ones(region_count(unsafe), horizon);
     const auto stage = [&](int k) {
       // Neither bound can be less than the probability of leaving, nor C3 less than C4.
       if (least[k].markov <= surrogates[k + 1].leaving) return;
+      Eigen::VectorXd added = shares.col(k);
       const RegionProbability bounds = bounds_of_surrogate(
-          motion, unsafe, effort, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1], tilt);
+          motion, unsafe, effort, static_cast<Eigen::Index>(k) + 1, surrogates[k + 1], tilt, added);
+      shares.col(k) = added;
       least[k] = {.markov = std::min(least[k].markov, bounds.markov),
                   .smooth = std::min(least[k].smooth, bounds.smooth)};
     };
@@ -86,7 +101,10 @@ SurrogateBounds surrogate_bounds(const PredictedMotion& motion, const UnsafeSet&
     double largest = 0.0;
     for (const RegionProbability& bounds : least) largest = std::max(largest, bounds.smooth);
     const bool in_use = surrogates.back().leaving > 0.0;
-    if (result.surrogates.empty()) result.surrogates = std::move(surrogates);
+    if (result.surrogates.empty()) {
+      result.surrogates = std::move(surrogates);
+      result.shares = std::move(shares);
+    }
     // Without a core in use the narrow one changes nothing.
     if (largest < kTryNarrow || !in_use) break;
   }

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "controller/certification/affine_surrogate.hpp"
 #include "controller/certification/certificate.hpp"
 #include "controller/parallel.hpp"
@@ -14,6 +16,9 @@ namespace qsmpc::controller {
 struct SurrogateBounds {
   std::vector<SurrogateStage> surrogates;  ///< stages 0 … horizon, with the wide core
   std::vector<RegionProbability> bounds;   ///< stages 1 … horizon, at most 1
+  /// parts x horizon: what each region of each disc adds to C4 of `surrogates`, disc by disc, the
+  /// probability of leaving aside; 1 where that was not worked out.
+  Eigen::MatrixXd shares;
 };
 
 /// Needs neither particles nor their distances: of the motion its prediction may be empty. Where

@@ -1,5 +1,7 @@
 #include "controller/certification/tilted_covariance.hpp"
 
+#include <utility>
+
 namespace qsmpc::controller {
 
 TiltedCovariance::TiltedCovariance(const PathTilt& tilt)
@@ -13,12 +15,15 @@ void TiltedCovariance::start(Gaussian& law) {
 
 void TiltedCovariance::step(Eigen::Index stage, const Eigen::MatrixXd& transition,
                             const Eigen::MatrixXd& noise_covariance, Gaussian& law) {
-  covariance_ = transition * covariance_ * transition.transpose() + noise_covariance;
+  with_last_ = transition * covariance_;
+  covariance_ = with_last_ * transition.transpose() + noise_covariance;
   covariance_ = 0.5 * (covariance_ + covariance_.transpose()).eval();
   law.covariance = covariance_;
   if (tilt_.empty()) return;
   const auto block = static_cast<std::size_t>(stage) + 1;
-  with_ = (transition * with_ + tilt_.functionals.moves[block]).eval();
+  const Eigen::MatrixXd with_before = std::move(with_);
+  with_ = transition * with_before + tilt_.functionals.moves[block];
+  with_last_ -= with_ * shares_.asDiagonal() * with_before.transpose();
   tilt_law(stage + 1, law);
 }
 

@@ -23,6 +23,8 @@ class TiltedCovariance {
             const Eigen::MatrixXd& noise_covariance, Gaussian& law);
 
   [[nodiscard]] bool is_tilted() const { return !tilt_.empty(); }
+  /// Covariance, with the tilt, of z with z of the stage before; empty before the first step.
+  [[nodiscard]] const Eigen::MatrixXd& with_last() const { return with_last_; }
   /// S
   [[nodiscard]] const Eigen::MatrixXd& covariance() const { return covariance_; }
   /// Row `axis` of s diag(1 − w²)^½: the products of two of these are what the tilt takes off
@@ -38,6 +40,7 @@ class TiltedCovariance {
   Eigen::VectorXd shares_;      ///< 1 − w²
   Eigen::MatrixXd covariance_;  ///< S, n x n
   Eigen::MatrixXd with_;        ///< s, n x r
+  Eigen::MatrixXd with_last_;
 };
 
 }  // namespace qsmpc::controller

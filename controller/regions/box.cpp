@@ -1,5 +1,6 @@
 // A closed box: an obstacle.
 #include <algorithm>
+#include <cmath>
 
 #include "controller/regions/box_part.hpp"
 #include "controller/regions/distance_kernels.hpp"
@@ -66,6 +67,22 @@ class BoxRegion final : public UnsafeRegion {
   [[nodiscard]] std::unique_ptr<const SoftRegion> soften(
       Eigen::Index /*stage*/, const GaussianCentres& centres) const override {
     return soft_box(part_.box, centres);
+  }
+
+  [[nodiscard]] std::vector<HalfSpace> half_space_cover(
+      Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& towards) const override {
+    double least = 0.0;
+    double squares = 0.0;
+    Eigen::VectorXd beyond = towards;
+    for (const AxisInterval& interval : core_intervals_) {
+      const double along = towards[interval.axis];
+      if (along != 0.0) least += along * (along > 0.0 ? interval.lower : interval.upper);
+      squares += along * along;
+      beyond[interval.axis] = 0.0;
+    }
+    const double offset = least - radius_ * std::sqrt(squares);
+    if (!beyond.isZero(0.0) || !std::isfinite(offset)) return {};
+    return {{.normal = towards, .offset = offset}};
   }
 
   [[nodiscard]] Outline outline(Eigen::Index /*stage*/, Eigen::Index x,

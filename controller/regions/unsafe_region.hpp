@@ -55,6 +55,12 @@ struct RegionProbability {
   }
 };
 
+/// {x: normal · x ≥ offset}
+struct HalfSpace {
+  Eigen::VectorXd normal;  ///< state_dim
+  double offset = 0.0;
+};
+
 /// Signed distances of points, with their derivatives: unit vectors that lead away fastest.
 struct NearestFaces {
   Eigen::ArrayXd distance;  ///< n
@@ -123,6 +129,12 @@ class UnsafeRegion {
   /// The same for many; refers to the region and the centres.
   [[nodiscard]] virtual std::unique_ptr<const SoftRegion> soften(
       Eigen::Index stage, const GaussianCentres& centres) const = 0;
+
+  /// Half-spaces that together hold the region: its own where it is made of such, else the one with
+  /// the normal `towards` (state_dim). As many at every stage, in the same order; none at one where
+  /// no direction ends the region, or where it is uncertain where it is.
+  [[nodiscard]] virtual std::vector<HalfSpace> half_space_cover(
+      Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& towards) const = 0;
 
   /// In the plane of coordinates x and y, -1 standing for one that the system lacks.
   [[nodiscard]] virtual Outline outline(Eigen::Index stage, Eigen::Index x,

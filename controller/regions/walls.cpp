@@ -79,6 +79,21 @@ class Walls final : public UnsafeRegion {
     return soft_walls(bounds_, centres);
   }
 
+  [[nodiscard]] std::vector<HalfSpace> half_space_cover(
+      Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& towards) const override {
+    std::vector<HalfSpace> faces;
+    const auto add = [&](Eigen::Index axis, double sign, double end) {
+      if (std::isinf(end)) return;
+      const Eigen::VectorXd normal = sign * Eigen::VectorXd::Unit(towards.size(), axis);
+      faces.push_back({.normal = normal, .offset = sign * end});
+    };
+    for (const AxisInterval& interval : intervals_) {
+      add(interval.axis, -1.0, interval.lower);
+      add(interval.axis, 1.0, interval.upper);
+    }
+    return faces;
+  }
+
   [[nodiscard]] Outline outline(Eigen::Index /*stage*/, Eigen::Index x,
                                 Eigen::Index y) const override {
     return {.corners = rectangle_corners(bounds_, x, y), .unsafe_inside = false};

@@ -28,6 +28,7 @@ Json certificate_json(const controller::StageCertificate& certificate) {
   return {{"value", certificate.value},
           {"kind", certificate.kind},
           {"all", all},
+          {"entry", certificate.of("entry")},
           {"thesis", certificate.of("thesis")}};
 }
 

@@ -22,6 +22,10 @@ namespace qsmpc::controller {
 /// over these places; 1 where the motion has a model error, and where C4 leaves little to gain.
 [[nodiscard]] StageFigure conditioned_bound(const CertificateProblem& problem);
 
+/// What a stage adds to the probability of being unsafe at any so far (first_entry.hpp): the sum
+/// over stages is a bound, this is NOT one.
+[[nodiscard]] StageFigure first_entry_bound(const CertificateProblem& problem);
+
 /// What the thesis would say (published_certificate.hpp): NOT a bound.
 [[nodiscard]] StageFigure published_probability(const CertificateProblem& problem);
 

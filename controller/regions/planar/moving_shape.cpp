@@ -162,6 +162,14 @@ class MovingShape final : public UnsafeRegion {
     return soft;
   }
 
+  [[nodiscard]] std::vector<HalfSpace> half_space_cover(
+      Eigen::Index stage, const Eigen::Ref<const Eigen::VectorXd>& towards) const override {
+    // How uncertain places of two stages depend on each other is not known here.
+    const std::span<const ObstaclePlace> places = forecast_->at(index_, stage);
+    if (places.size() != 1 || !places[0].covariance.isZero(0.0)) return {};
+    return parts_.half_space_cover(towards, axes_, motion(places[0]));
+  }
+
   [[nodiscard]] Outline outline(Eigen::Index stage, Eigen::Index x, Eigen::Index y) const override {
     const PlaneMotion where = motion(forecast_->likeliest(index_, stage));
     Eigen::Matrix2Xd corners = outline_;

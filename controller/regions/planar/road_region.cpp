@@ -129,6 +129,12 @@ class RoadRegion final : public UnsafeRegion {
     return std::make_unique<const SoftRoad>(*this, centres);
   }
 
+  /// Walls that bend are in no half-space that says anything.
+  [[nodiscard]] std::vector<HalfSpace> half_space_cover(
+      Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& /*towards*/) const override {
+    return {};
+  }
+
   [[nodiscard]] Outline outline(Eigen::Index /*stage*/, Eigen::Index x,
                                 Eigen::Index y) const override {
     Outline road = outline_in(walls_->outline(), axes_, x, y);

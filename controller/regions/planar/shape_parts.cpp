@@ -75,6 +75,27 @@ ShapeParts::ShapeParts(const PlanarShape& shape, double growth) {
   }
 }
 
+std::vector<HalfSpace> ShapeParts::half_space_cover(
+    const Eigen::Ref<const Eigen::VectorXd>& towards, PlaneAxes axes,
+    const PlaneMotion& motion) const {
+  Eigen::Vector2d direction = plane_point(towards, axes);
+  if (towards.squaredNorm() > direction.squaredNorm()) return {};
+  Eigen::Vector2d unmoved = motion.turn.transpose() * direction;
+  const bool is_half_plane = parts_.size() == 1 && parts_[0].part.corners.cols() == 0;
+  if (is_half_plane) {
+    unmoved = -parts_[0].part.normals.col(0);
+    direction = motion.turn * unmoved;
+  }
+  double least = kInfinity;
+  for (const BoundedPart& one : parts_) least = std::min(least, -support(one.part, -unmoved));
+  least += direction.dot(motion.of(Eigen::Vector2d::Zero()));
+  if (!std::isfinite(least)) return {};
+  HalfSpace space{.normal = Eigen::VectorXd::Zero(towards.size()), .offset = least};
+  space.normal[axes.x] = direction.x();
+  space.normal[axes.y] = direction.y();
+  return {space};
+}
+
 SurfacePoint ShapeParts::nearest(const Eigen::Vector2d& point, double enough) const {
   SurfacePoint least{.distance = kInfinity};
   for (const BoundedPart& one : parts_) {

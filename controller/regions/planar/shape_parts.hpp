@@ -67,6 +67,12 @@ class ShapeParts {
   [[nodiscard]] RegionProbability probability(const SurrogateLaw& state, PlaneAxes axes,
                                               const PlacedAs& where) const;
 
+  /// The half-space with the normal `towards` (state_dim), or that of a half-plane itself, that
+  /// holds the parts, moved; none where there is none, or where `towards` is not in the plane.
+  [[nodiscard]] std::vector<HalfSpace> half_space_cover(
+      const Eigen::Ref<const Eigen::VectorXd>& towards, PlaneAxes axes,
+      const PlaneMotion& motion) const;
+
  private:
   /// The sum over the parts, of which `far` bounds those that are far away and `near` all others,
   /// or what `near` makes of the hull.

@@ -73,6 +73,11 @@ class ShapeRegion final : public UnsafeRegion {
                                              plane_covariance(centres.covariance, axes_));
   }
 
+  [[nodiscard]] std::vector<HalfSpace> half_space_cover(
+      Eigen::Index /*stage*/, const Eigen::Ref<const Eigen::VectorXd>& towards) const override {
+    return parts_.half_space_cover(towards, axes_, {});
+  }
+
   [[nodiscard]] Outline outline(Eigen::Index /*stage*/, Eigen::Index x,
                                 Eigen::Index y) const override {
     return outline_in(outline_, axes_, x, y);

@@ -67,7 +67,8 @@ TEST(PredictionJson, keys_are_the_documented_ones) {
                                           "certificate", "monte_carlo"));
   EXPECT_THAT(keys_of(stage["budget"]),
               ElementsAre("belief", "noise", "compression", "model", "dynamics"));
-  EXPECT_THAT(keys_of(stage["certificate"]), ElementsAre("value", "kind", "all", "thesis"));
+  EXPECT_THAT(keys_of(stage["certificate"]),
+              ElementsAre("value", "kind", "all", "entry", "thesis"));
   EXPECT_THAT(keys_of(stage["certificate"]["all"]), ElementsAre("c1", "c2", "c3", "c4", "c5"));
   EXPECT_THAT(keys_of(stage["monte_carlo"]), ElementsAre("rate", "lower", "upper", "samples"));
   EXPECT_THAT(keys_of(json["horizon"]), ElementsAre("value", "monte_carlo"));

@@ -67,7 +67,7 @@ TEST(ConditionedBounds, are_near_the_truth_where_c4_is_not) {
     const SafeSet safe_set = unsafe_at_the_end(hard.one, hard.axis, 0.01);
     const UnsafeSet unsafe(safe_set);
     const SurrogateBounds plain = plain_bounds(motion, unsafe);
-    const double bound = conditioned_bounds(motion, unsafe, plain, run_in_turn).back();
+    const double bound = conditioned_bounds(motion, unsafe, plain, run_in_turn).stages.back();
     const UnsafeCounts counts = simulate(motion, safe_set, kPaths, generator);
     const double truth = static_cast<double>(counts.stages.back()) / kPaths;
     EXPECT_GE(bound, truth - 5.0 * std::sqrt(truth / kPaths)) << hard.one.name;
@@ -82,10 +82,13 @@ TEST(ConditionedBounds, do_not_depend_on_the_order_of_the_work) {
   const SafeSet safe_set = unsafe_at_the_end(one, 1, 0.01);
   const UnsafeSet unsafe(safe_set);
   const SurrogateBounds plain = plain_bounds(motion, unsafe);
-  const std::vector<double> bounds = conditioned_bounds(motion, unsafe, plain, run_in_turn);
-  EXPECT_LT(*std::min_element(bounds.begin(), bounds.end()), 1.0);
-  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain, run_backwards), bounds);
-  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain, run_on_threads), bounds);
+  const ConditionedBounds bounds = conditioned_bounds(motion, unsafe, plain, run_in_turn);
+  EXPECT_LT(*std::min_element(bounds.stages.begin(), bounds.stages.end()), 1.0);
+  for (const Executor& run : {Executor(run_backwards), Executor(run_on_threads)}) {
+    const ConditionedBounds again = conditioned_bounds(motion, unsafe, plain, run);
+    EXPECT_EQ(again.stages, bounds.stages);
+    EXPECT_EQ(again.entries, bounds.entries);
+  }
 }
 
 TEST(ConditionedBounds, are_not_worked_out_where_there_is_nothing_to_gain) {
@@ -94,8 +97,10 @@ TEST(ConditionedBounds, are_not_worked_out_where_there_is_nothing_to_gain) {
   const SafeSet safe_set = unsafe_at_the_end(one, 0, 0.01);
   const UnsafeSet unsafe(safe_set);
   const PredictedMotion motion = one.motion();
-  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn),
-            std::vector<double>(8, 1.0));
+  const ConditionedBounds none =
+      conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn);
+  EXPECT_EQ(none.stages, std::vector<double>(8, 1.0));
+  EXPECT_TRUE(none.entries.empty());
 }
 
 TEST(ConditionedBounds, say_nothing_of_a_plant_with_a_model_error) {
@@ -105,8 +110,10 @@ TEST(ConditionedBounds, say_nothing_of_a_plant_with_a_model_error) {
   const ModelError error = model_error_of_size(Eigen::Vector3d::Constant(1e-3));
   PredictedMotion motion = one.motion();
   motion.model_error = &error;
-  EXPECT_EQ(conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn),
-            std::vector<double>(8, 1.0));
+  const ConditionedBounds none =
+      conditioned_bounds(motion, unsafe, plain_bounds(motion, unsafe), run_in_turn);
+  EXPECT_EQ(none.stages, std::vector<double>(8, 1.0));
+  EXPECT_TRUE(none.entries.empty());
 }
 
 }  // namespace conditioned_bounds_test

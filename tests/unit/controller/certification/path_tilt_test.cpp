@@ -157,6 +157,14 @@ TEST(PathTilt, surrogate_has_the_law_and_the_error_of_simulated_paths) {
         const Eigen::MatrixXd covariance =
             sample_covariance(pairs.surrogate[k], pairs.surrogate[k]);
         const double five = 5.0 / std::sqrt(kSamples);
+        if (k > 0) {
+          const Eigen::VectorXd before = stages[k - 1].law.covariance.diagonal().cwiseSqrt();
+          const Eigen::MatrixXd apart =
+              sample_covariance(pairs.surrogate[k], pairs.surrogate[k - 1]) - stages[k].with_last;
+          const Eigen::ArrayXXd allowed =
+              (1.5 * five * deviation * before.transpose()).array() + 1e-12;
+          EXPECT_TRUE((apart.array().abs() <= allowed).all()) << one.name << k;
+        }
         const Eigen::VectorXd distance = root_mean_squares(pairs.state[k] - pairs.surrogate[k]);
         for (Eigen::Index i = 0; i < mean.size(); ++i) {
           EXPECT_NEAR(mean[i], law.mean[i], five * deviation[i] + 1e-12) << one.name << k;
