@@ -91,6 +91,10 @@ void PlanEvaluator::hold_risk(const Policy& policy) {
   if (risk_) risk_->hold(gaussian_, policy);
 }
 
+void PlanEvaluator::count_entries(Plan& plan) {
+  (void)risk_->count_entries(gaussian_, plan.policy, plan.risk);
+}
+
 double PlanEvaluator::excess_of(const Plan& plan, Policy& policy) {
   policies_.make(gaussian_.mean, plan.policy.inputs, plan.gain_change, policy);
   return risk_->excess(gaussian_, policy);

@@ -65,6 +65,8 @@ class PlanEvaluator {
   /// there must be: log(certificate / limit) of the limit that is exceeded most. `policy` is room
   /// for theirs.
   [[nodiscard]] double excess_of(const Plan& plan, Policy& policy);
+  /// Judges a plan that exceeds the limits, which there must be, by first entries.
+  void count_entries(Plan& plan);
   /// Holds the surrogate of this policy for the belief at hand; without limits, nothing.
   void hold_risk(const Policy& policy);
 

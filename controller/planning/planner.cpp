@@ -99,6 +99,7 @@ void Planner::settle(PlanInProgress& plan, const Gaussian& belief, const PlanReq
   if (usable && !plan.current->risk.kept && !plan.late()) {
     if (kept_inputs_.size() > 0) try_tail(plan, false);
     if (!plan.current->risk.kept) choose_effort(plan);
+    evaluator_.count_entries(*plan.current);
     if (!plan.current->risk.kept && plan.current->risk.severity > 0.0 && !errorless_) {
       rounds_.reduce_risk(plan);
     }
@@ -109,6 +110,7 @@ void Planner::settle(PlanInProgress& plan, const Gaussian& belief, const PlanReq
     if (exceeded && settings_.otherwise == RiskOtherwise::kBrake) rounds_.brake(plan);
   }
   if (errorless_) plan_without_error(plan, belief, request);
+  if (usable && !plan.late()) evaluator_.count_entries(*plan.current);
   if (!plan.current->risk.kept) {
     if (!plan.stopped()) plan.status = SolverStatus::kRiskExceeded;
   } else {

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <vector>
 
+#include "controller/certification/first_entry.hpp"
 #include "controller/certification/surrogate_bounds.hpp"
 #include "models/constants.hpp"
 
@@ -19,6 +20,10 @@ double log_ratio(double risk, double limit) {
   if (!(risk > 0.0)) return kLeastLog;
   // Of a limit of 0 nothing but 0 is within.
   return std::max(kLeastLog, std::log(risk) - std::log(std::max(limit, 1e-300)));
+}
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
 void take_stages(const SurrogateBounds& bounds, std::vector<double>& out) {
@@ -78,7 +83,7 @@ void RiskConstraint::certify(const Gaussian& belief, const Policy& policy, PlanR
       surrogate_bounds(motion, unsafe_, CertificateEffort::kLeast, settings_.run);
   model_.hold(motion, bounds.surrogates);
   take_stages(bounds, out.stages);
-  out.plan = std::min(1.0, std::accumulate(out.stages.begin(), out.stages.end(), 0.0));
+  out.plan = std::min(1.0, sum_of(out.stages));
   model_.calibrate(out.stages);
   const Eigen::VectorXd z = policy.inputs.reshaped();
   const double margin = margin_;
@@ -98,7 +103,26 @@ double RiskConstraint::excess(const Gaussian& belief, const Policy& policy) cons
   return excess(stages);
 }
 
+bool RiskConstraint::count_entries(const Gaussian& belief, const Policy& policy,
+                                   PlanRisk& risk) const {
+  if (risk.kept || !std::isfinite(limits_.plan) || !(risk.plan > limits_.plan)) return risk.kept;
+  const double entries = sum_of(
+      first_entry_bounds(unsafe_, surrogate_bounds(motion_of(belief, policy), unsafe_,
+                                                   CertificateEffort::kLeast, settings_.run)));
+  const double certified = excess(risk.stages, entries);
+  if (!(certified <= 0.0)) return false;
+  risk.plan = entries;
+  risk.kept = true;
+  risk.severity = certified;
+  return true;
+}
+
 double RiskConstraint::excess(const std::vector<double>& stages) const {
+  return excess(stages, sum_of(stages));
+}
+
+/// plan: what is certified of any stage.
+double RiskConstraint::excess(const std::vector<double>& stages, double plan) const {
   double excess = kLeastLog;
   if (std::isfinite(limits_.first)) {
     excess = std::max(excess, log_ratio(stages.front(), limits_.first));
@@ -108,8 +132,7 @@ double RiskConstraint::excess(const std::vector<double>& stages) const {
     excess = std::max(excess, log_ratio(most, limits_.stage));
   }
   if (std::isfinite(limits_.plan)) {
-    const double sum = std::accumulate(stages.begin(), stages.end(), 0.0);
-    excess = std::max(excess, log_ratio(sum, limits_.plan));
+    excess = std::max(excess, log_ratio(plan, limits_.plan));
   }
   return excess;
 }

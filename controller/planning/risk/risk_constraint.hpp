@@ -29,6 +29,9 @@ class RiskConstraint final : public SummedConstraints {
 
   /// Certifies `policy` from `belief`, and holds its surrogate, calibrated, from now on.
   void certify(const Gaussian& belief, const Policy& policy, PlanRisk& out);
+  /// Where `risk`, certified for `policy`, exceeds its limits by the sum of the stages: judges it
+  /// by first entries (first_entry.hpp), which are less. Returns whether it is within its limits.
+  bool count_entries(const Gaussian& belief, const Policy& policy, PlanRisk& risk) const;
   /// log(certificate / limit) of the limit that `policy` exceeds most; holds nothing.
   [[nodiscard]] double excess(const Gaussian& belief, const Policy& policy) const;
   /// The same of a policy that has been certified (stages 1 … horizon).
@@ -55,6 +58,7 @@ class RiskConstraint final : public SummedConstraints {
 
  private:
   [[nodiscard]] PredictedMotion motion_of(const Gaussian& belief, const Policy& policy) const;
+  [[nodiscard]] double excess(const std::vector<double>& stages, double plan) const;
   void judge(PlanRisk& out) const;
 
   const models::Dynamics& dynamics_;

@@ -14,7 +14,7 @@ namespace qsmpc::controller {
 struct RiskLimits {
   double first = std::numeric_limits<double>::infinity();  ///< of the next stage alone
   double stage = std::numeric_limits<double>::infinity();  ///< of each stage
-  double plan = std::numeric_limits<double>::infinity();   ///< of any stage: of their sum
+  double plan = std::numeric_limits<double>::infinity();   ///< of any stage
 
   [[nodiscard]] bool any() const;
 };
@@ -42,7 +42,7 @@ struct RiskOtherwiseEntry {
 /// The certificates of a plan, as the planner works them out: by C3 and C4.
 struct PlanRisk {
   std::vector<double> stages;  ///< of stages 1 … horizon; empty where there are no limits
-  double plan = 1.0;           ///< their sum, at most 1
+  double plan = 1.0;           ///< of any stage: their sum, or what was less, at most 1
   bool kept = true;            ///< whether all limits are, by what is certified
   /// log(certificate / limit) of the limit that is exceeded most, as far as certificates are made
   /// of what the plan can change: −infinity where none is. Deep inside the unsafe set, where

@@ -43,7 +43,7 @@ ScenarioKey risk_key() {
                    [](Scenario& scenario) -> double& { return scenario.risk.stage; },
                    [](const Scenario& scenario) { return std::isfinite(scenario.risk.stage); }),
                limit_of(
-                   "plan", "the same of any stage of a plan, their sum",
+                   "plan", "the same of any stage of a plan",
                    [](Scenario& scenario) -> double& { return scenario.risk.plan; },
                    [](const Scenario& scenario) { return std::isfinite(scenario.risk.plan); }),
                limit_of(

@@ -2,6 +2,7 @@
 // derivatives by inputs and gains.
 #include "controller/planning/risk/risk_model.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -168,6 +169,46 @@ TEST(RiskConstraint, is_the_logarithm_of_the_risk_over_its_limit) {
   // A limit of 1 is none.
   constraint.set_limits({.first = 1.0, .plan = 0.5}, 0);
   EXPECT_EQ(constraint.count(), 1);
+}
+
+TEST(RiskConstraint, counts_once_what_stays_unsafe_where_the_sum_exceeds_the_limit) {
+  const auto car = dubins_car();
+  PlannerSettings settings = block_settings();
+  settings.safe_set = unbounded_safe_set(3);
+  settings.safe_set.bounds.upper[1] = 0.5;  // beside the way
+  settings.risk = {.plan = 0.1};
+  RiskConstraint constraint(*car, settings);
+  const Gaussian belief{.mean = Eigen::Vector3d::Zero(),
+                        .covariance = Eigen::Vector3d(0.01, 0.04, 1e-4).asDiagonal()};
+  Policy policy{.inputs = Eigen::MatrixXd::Zero(1, settings.horizon),
+                .states = {},
+                .gains = {},
+                .bounds = settings.bounds};
+  policy.states = nominal_states(*car, belief.mean, policy.inputs);
+  policy.gains.assign(settings.horizon, Eigen::MatrixXd::Zero(1, 3));
+  PlanRisk by_sum;
+  constraint.certify(belief, policy, by_sum);
+  constraint.set_limits({.plan = 0.5 * by_sum.plan}, 0);
+  PlanRisk risk;
+  constraint.certify(belief, policy, risk);
+  ASSERT_FALSE(risk.kept);
+  EXPECT_EQ(risk.plan, by_sum.plan);
+  EXPECT_TRUE(constraint.count_entries(belief, policy, risk));
+  EXPECT_TRUE(risk.kept);
+  EXPECT_LE(risk.severity, 0.0);
+  EXPECT_LT(risk.plan, 0.5 * by_sum.plan);
+  EXPECT_GE(risk.plan, *std::max_element(risk.stages.begin(), risk.stages.end()) - 1e-6);
+  // Neither of these is within its limits by first entries.
+  for (const RiskLimits& limits :
+       {RiskLimits{.plan = 0.9 * risk.plan},
+        RiskLimits{.stage = 0.5 * risk.stages.back(), .plan = 0.5 * by_sum.plan}}) {
+    constraint.set_limits(limits, 0);
+    PlanRisk exceeded;
+    constraint.certify(belief, policy, exceeded);
+    EXPECT_FALSE(constraint.count_entries(belief, policy, exceeded));
+    EXPECT_FALSE(exceeded.kept);
+    EXPECT_EQ(exceeded.plan, by_sum.plan);
+  }
 }
 
 }  // namespace risk_model_test
