@@ -10,6 +10,7 @@
 #include "tests/support/executors.hpp"
 #include "tests/support/simulated_truth.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
+#include "tests/unit/controller/certification/unsafe_ends.hpp"
 
 namespace qsmpc::controller {
 namespace conditioned_bounds_test {
@@ -17,18 +18,6 @@ namespace conditioned_bounds_test {
 using namespace testing;
 
 constexpr int kPaths = 20000;
-
-/// Unsafe are the highest `share` of the paths in this coordinate at the last stage.
-SafeSet unsafe_at_the_end(const Case& one, Eigen::Index axis, double share) {
-  Generator generator(217);
-  std::vector<Points> states;
-  SafeSet safe_set = unbounded_safe_set(one.dynamics->state_dim());
-  (void)simulate(one.motion(), safe_set, kPaths, generator, &states);
-  Eigen::VectorXd last = states.back().row(axis);
-  std::sort(last.begin(), last.end());
-  safe_set.bounds.upper[axis] = last[static_cast<Eigen::Index>((1.0 - share) * kPaths)];
-  return safe_set;
-}
 
 SurrogateBounds plain_bounds(const PredictedMotion& motion, const UnsafeSet& unsafe) {
   return surrogate_bounds(motion, unsafe, CertificateEffort::kEvery, run_in_turn);

@@ -16,6 +16,7 @@
 #include "tests/support/executors.hpp"
 #include "tests/support/simulated_truth.hpp"
 #include "tests/unit/controller/certification/surrogate_cases.hpp"
+#include "tests/unit/controller/certification/unsafe_ends.hpp"
 
 namespace qsmpc::controller {
 namespace first_entry_test {
@@ -50,18 +51,6 @@ std::vector<double> rates_so_far(const PredictedMotion& motion, const SafeSet& s
 
 /// Five standard deviations below what was simulated.
 double surely(double rate) { return rate - 5.0 * std::sqrt(rate / kPaths); }
-
-/// A wall beside the highest `share` of the paths in this coordinate, at the last stage.
-SafeSet walled(const Case& one, Eigen::Index axis, double share) {
-  Generator generator(301);
-  std::vector<Points> states;
-  SafeSet safe_set = unbounded_safe_set(one.dynamics->state_dim());
-  (void)simulate(one.motion(), safe_set, kPaths, generator, &states);
-  Eigen::VectorXd last = states.back().row(axis);
-  std::sort(last.begin(), last.end());
-  safe_set.bounds.upper[axis] = last[static_cast<Eigen::Index>((1.0 - share) * kPaths)];
-  return safe_set;
-}
 
 /// A block where the paths are in the middle of the horizon, beside most of them.
 SafeSet blocked(const Case& one, double share) {
@@ -102,12 +91,12 @@ std::vector<Place> places() {
   const Feedback own{.closed_loop = true, .gain = Eigen::RowVector3d(0.2, -1.0, -1.5)};
   std::vector<Place> places;
   for (const Case& one : {dubins({}), dubins(lqr), dubins(own), bicycle({}), bicycle(lqr)}) {
-    places.push_back({one.name + " beside a wall", one, walled(one, 1, 0.03)});
+    places.push_back({one.name + " beside a wall", one, unsafe_at_the_end(one, 1, 0.03)});
     places.push_back({one.name + " past a block", one, blocked(one, 0.03)});
     places.push_back({one.name + " with a body", one, with_body(blocked(one, 0.02))});
   }
   const Case pole = cart_pole(lqr);
-  places.push_back({"cart-pole between walls", pole, walled(pole, 2, 0.02)});
+  places.push_back({"cart-pole between walls", pole, unsafe_at_the_end(pole, 2, 0.02)});
   return places;
 }
 
@@ -175,7 +164,7 @@ TEST(FirstEntry, counts_once_what_stays_unsafe) {
   // Noise that comes in early keeps the car beyond the wall.
   Case one = dubins({}, 0.0);
   const PredictedMotion motion = one.motion();
-  const SafeSet safe_set = walled(one, 1, 0.03);
+  const SafeSet safe_set = unsafe_at_the_end(one, 1, 0.03);
   const UnsafeSet unsafe(safe_set);
   const SurrogateBounds bounds = bounds_of(motion, unsafe);
   const double truth = rates_so_far(motion, safe_set, generator).back();
@@ -236,7 +225,7 @@ TEST(FirstEntry, is_never_above_the_stages_shares) {
 TEST(FirstEntry, is_what_the_horizon_is_certified_by) {
   const Case one = dubins({}, 0.0);
   const PredictedMotion motion = one.motion();
-  const SafeSet safe_set = walled(one, 1, 0.03);
+  const SafeSet safe_set = unsafe_at_the_end(one, 1, 0.03);
   for (const CertificateEffort effort : {CertificateEffort::kLeast, CertificateEffort::kEvery}) {
     const std::vector<StageCertificate> certificates =
         certify(motion, safe_set, error_budget(motion), effort);
