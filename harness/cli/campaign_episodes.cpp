@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <optional>
-#include <system_error>
 
 #include <fmt/format.h>
 
@@ -18,6 +16,7 @@
 #include "harness/episode/episode.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/plant/plant_registry.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/trace/ending.hpp"
@@ -29,11 +28,6 @@ namespace qsmpc::harness {
 namespace {
 
 constexpr const char* kVariantFolder = "variants";
-
-bool is_there(const std::string& path) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(path, ignored);
-}
 
 const StoredVariant& variant_of(const StoreReader& store, const EpisodeRow& row) {
   return *std::ranges::find(store.variants(), row.variant, &StoredVariant::id);
@@ -59,7 +53,7 @@ std::string without_seed(Scenario scenario) {
 /// the campaign changed. One that cannot be read is none.
 bool is_trace_of(const std::string& path, const EpisodeRow& row, const StoredVariant& variant,
                  const std::string& folder) {
-  if (!is_there(path)) return false;
+  if (!is_file(path)) return false;
   try {
     const Hdf5File file = Hdf5File::open(path);
     const Scenario found =
@@ -78,8 +72,7 @@ std::string folder_of(const EpisodeRow& row) {
 
 bool has_trace(const StoreReader& store, const EpisodeRow& row, const std::string& folder) {
   const std::string path = folder + "/" + folder_of(row) + "/" + kTraceFile;
-  return row.trace.empty() ? is_trace_of(path, row, variant_of(store, row), folder)
-                           : is_there(path);
+  return row.trace.empty() ? is_trace_of(path, row, variant_of(store, row), folder) : is_file(path);
 }
 
 ListedEpisode listed(const StoreReader& store, const EpisodeRow& row, const std::string& folder) {
@@ -95,7 +88,7 @@ ListedEpisode listed(const StoreReader& store, const EpisodeRow& row, const std:
   }
   episode.trace = own + "/" + kTraceFile;
   const auto list = [&](const char* file, const char* command, std::string& path) {
-    if (is_there(folder + "/" + own + "/" + file)) {
+    if (is_file(folder + "/" + own + "/" + file)) {
       path = own + "/" + file;
     } else {
       episode.commands.push_back(fmt::format("qsmpc {} {}", command, own));
@@ -156,7 +149,7 @@ std::optional<Trace> drive_again(const StoredVariant& variant, const EpisodeRow&
 /// drawn before, so that there is memory to draw.
 void make_artefacts(const EpisodeView& view, const std::string& target, bool quiet,
                     bool& has_drawn) {
-  bool with_video = is_there(target + "/" + kVideoFile);
+  bool with_video = is_file(target + "/" + kVideoFile);
   const std::string no_video = why_not_drawn(view);
   if (!no_video.empty()) {
     std::cerr << "qsmpc: no video: " << no_video << '\n';

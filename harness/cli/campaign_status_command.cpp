@@ -1,7 +1,5 @@
-#include <filesystem>
 #include <memory>
 #include <string>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
 
@@ -13,14 +11,12 @@
 #include "harness/cli/output.hpp"
 #include "harness/cluster/cluster_status.hpp"
 #include "harness/cluster/lease_plan.hpp"
+#include "harness/files/text_file.hpp"
 
 namespace qsmpc::harness {
 namespace {
 
-bool has_store(const std::string& folder) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(folder + "/" + kStoreFile, ignored);
-}
+bool has_store(const std::string& folder) { return is_file(folder + "/" + kStoreFile); }
 
 /// A contest that still searches for settings has no store but that of the search.
 std::string store_folder(const std::string& folder) {

@@ -1,8 +1,6 @@
 #include "harness/cluster/lease_plan.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -11,6 +9,7 @@
 #include "harness/cluster/shared_files.hpp"
 #include "harness/errors.hpp"
 #include "harness/files/atomic_file.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/scenario_file.hpp"
 #include "harness/text/json_text.hpp"
 #include "harness/version.hpp"
@@ -188,10 +187,7 @@ void write_lease_plan(const LeasePlan& plan, const std::string& folder) {
   write_file(cluster_path(folder, kPlanFile), json_text(plan_json(plan)));
 }
 
-bool has_lease_plan(const std::string& folder) {
-  std::error_code ignored;
-  return std::filesystem::is_regular_file(cluster_path(folder, kPlanFile), ignored);
-}
+bool has_lease_plan(const std::string& folder) { return is_file(cluster_path(folder, kPlanFile)); }
 
 LeasePlan read_lease_plan(const std::string& folder) {
   const std::string path = cluster_path(folder, kPlanFile);

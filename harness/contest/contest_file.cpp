@@ -1,7 +1,5 @@
 #include "harness/contest/contest_file.hpp"
 
-#include <filesystem>
-#include <system_error>
 #include <unordered_set>
 
 #include <fmt/format.h>
@@ -10,6 +8,7 @@
 #include "harness/campaign/plan/campaign_plan.hpp"
 #include "harness/contest/contest_plan.hpp"
 #include "harness/contest/contest_reader.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
@@ -80,8 +79,7 @@ std::vector<InputError::Where> validate_contest_file(const std::string& path_or_
 }
 
 bool is_contest_file(const std::string& path_or_name) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(path_or_name, ignored)) {
+  if (!is_file(path_or_name)) {
     return find_shipped_contest(path_or_name) && !find_shipped_scenario(path_or_name) &&
            !find_shipped_campaign(path_or_name);
   }

@@ -3,13 +3,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <string>
-#include <system_error>
 #include <vector>
 
 #include <unistd.h>
 
 #include "harness/errors.hpp"
 #include "harness/files/installation.hpp"
+#include "harness/files/text_file.hpp"
 
 namespace qsmpc::harness {
 namespace {
@@ -18,10 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kName = "qsmpc-host";
 
-bool is_program(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error) && ::access(path.c_str(), X_OK) == 0;
-}
+bool is_program(const fs::path& path) { return is_file(path) && ::access(path.c_str(), X_OK) == 0; }
 
 }  // namespace
 

@@ -44,6 +44,11 @@ std::string read_descriptor(int descriptor, const std::string& path) {
 
 }  // namespace
 
+bool is_file(const std::filesystem::path& path) {
+  std::error_code ignored;
+  return std::filesystem::is_regular_file(path, ignored);
+}
+
 std::string read_text_file(const std::string& path) {
   // Without O_NONBLOCK, opening a named pipe would wait for its writer.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);

@@ -8,6 +8,7 @@
 
 #include "harness/errors.hpp"
 #include "harness/files/installation.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 #include "harness/text/printable.hpp"
@@ -26,11 +27,6 @@ fs::path normal(const fs::path& path) {
   std::error_code error;
   fs::path canonical = fs::weakly_canonical(path, error);
   return error ? path.lexically_normal() : canonical;
-}
-
-bool is_file(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
 }
 
 // PREFIX/share/qsmpc/models; empty where nothing is installed.

@@ -1,24 +1,16 @@
 #include "harness/campaign/plan/campaign_file.hpp"
 
 #include <algorithm>
-#include <filesystem>
-#include <system_error>
 
 #include "harness/campaign/plan/campaign_expansion.hpp"
 #include "harness/campaign/plan/campaign_reader.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/shipped_files.hpp"
 #include "harness/scenario/yaml_section.hpp"
 #include "harness/scenario/yaml_tree.hpp"
 
 namespace qsmpc::harness {
 namespace {
-
-namespace fs = std::filesystem;
-
-bool is_file(const std::string& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
 
 Campaign read_file(const std::string& path, Problems& problems) {
   const YamlNode tree = parse_yaml(read_text_file(path), path);

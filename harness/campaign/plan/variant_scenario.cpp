@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <limits>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "harness/errors.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/plant/plant_check.hpp"
 #include "harness/scenario/known_names.hpp"
 #include "harness/scenario/overrides.hpp"
@@ -25,8 +25,7 @@ using Settings = std::vector<CampaignSetting>;
 
 std::optional<std::string> file_beside(const std::string& file, const std::string& name) {
   const fs::path path = fs::path(file).parent_path() / name;  // name itself where it is absolute
-  std::error_code error;
-  return fs::is_regular_file(path, error) ? std::optional(path.string()) : std::nullopt;
+  return is_file(path) ? std::optional(path.string()) : std::nullopt;
 }
 
 /// Whether a setting says what `key` is, itself or in a mapping around it.
@@ -175,8 +174,8 @@ std::optional<Scenario> PlantChecks::choose(const Scenario& resolved, const Camp
   try {
     Scenario driven = resolved;
     if (!plant.text.empty()) {
-      const bool is_file = fs::path(plant.text).extension() == ".xml";
-      const auto beside = is_file ? file_beside(draft_->file, plant.text) : std::nullopt;
+      const bool names_file = fs::path(plant.text).extension() == ".xml";
+      const auto beside = names_file ? file_beside(draft_->file, plant.text) : std::nullopt;
       driven = with_plant(std::move(driven), beside ? fs::absolute(*beside).string() : plant.text);
     }
     const std::string text = plant_text(driven);

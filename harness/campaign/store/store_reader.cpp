@@ -2,11 +2,9 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 
 #include <SQLiteCpp/SQLiteCpp.h>
 #include <fmt/format.h>
@@ -17,6 +15,7 @@
 #include "harness/campaign/store/store_rows.hpp"
 #include "harness/campaign/store/store_schema.hpp"
 #include "harness/errors.hpp"
+#include "harness/files/text_file.hpp"
 #include "harness/text/printable.hpp"
 
 namespace qsmpc::harness {
@@ -24,8 +23,7 @@ namespace {
 
 std::string existing_store(const std::string& folder) {
   std::string path = folder + "/" + kStoreFile;
-  std::error_code error;
-  if (std::filesystem::is_regular_file(path, error)) return path;
+  if (is_file(path)) return path;
   throw InputError({.file = path,
                     .found = "no store of a campaign",
                     .expected = "the folder that qsmpc campaign writes"});

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "harness/files/text_file.hpp"
 #include "harness/scenario/keys/scenario_key.hpp"
 #include "harness/scenario/outside_controllers.hpp"
 #include "harness/scenario/yaml_json.hpp"
@@ -37,11 +38,6 @@ fs::path absolute_path(const fs::path& folder, const std::string& path) {
   std::error_code error;
   fs::path normal = (fs::current_path(error) / folder / path).lexically_normal();
   return normal.has_filename() ? normal : normal.parent_path();
-}
-
-bool is_file(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
 }
 
 /// Where `words`, the value of `key`, have their files: in the scenario's folder; or, where none of
