@@ -45,7 +45,6 @@ constexpr const char* kCampaignExample =
     "the\n"
     "other, then: qsmpc campaign merge out/one out/two --out out/policies\n"
     "On many that share a folder: qsmpc campaign dubins_policies --on slurm --tasks 20 --out DIR";
-constexpr int kMostJobs = 1024;
 constexpr std::int64_t kMostShards = 1'000'000;
 
 struct CampaignArguments {
@@ -181,7 +180,7 @@ void add_campaign_options(CLI::App& command, CampaignArguments& arguments) {
   command
       .add_option("--jobs", options.jobs,
                   "episodes at the same time; default: one a core; changes nothing but timings")
-      ->check(CLI::Range(1, kMostJobs));
+      ->check(CLI::Range(1, kMostAtOnce));
   command.add_option("--shard", arguments.shard,
                      "I/N: only every N-th seed from the I-th on, for one of N machines");
   command.add_option("--out", arguments.out, "output folder; default: out/NAME-campaign");
@@ -204,7 +203,7 @@ void add_campaign_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("campaign", kCampaignHelp);
   command->footer(kCampaignExample);
   const auto arguments = std::make_shared<CampaignArguments>();
-  arguments->options.jobs = std::min(kMostJobs, available_threads());
+  arguments->options.jobs = std::min(kMostAtOnce, available_threads());
   add_campaign_options(*command, *arguments);
   add_tasks_options(*command, *arguments);
   add_campaign_status_command(*command, exit_code);

@@ -24,8 +24,6 @@
 namespace qsmpc::harness {
 namespace {
 
-constexpr int kMostWorkerJobs = 1024;
-
 struct WorkArguments {
   std::string folder;
   WorkerOptions options;
@@ -52,7 +50,7 @@ void add_work_command(CLI::App& campaign, int& exit_code) {
                                               "that has the folder, it helps the others.");
   command->footer("Example: qsmpc campaign work out/policies --task 100");
   const auto arguments = std::make_shared<WorkArguments>();
-  arguments->options.jobs = std::min(kMostWorkerJobs, available_threads());
+  arguments->options.jobs = std::min(kMostAtOnce, available_threads());
   command->add_option("folder", arguments->folder, "folder of a campaign that tasks drive")
       ->required();
   command->add_option("--task", arguments->options.task, "its number")
@@ -60,7 +58,7 @@ void add_work_command(CLI::App& campaign, int& exit_code) {
   command
       ->add_option("--jobs", arguments->options.jobs,
                    "episodes at the same time; default: one a core")
-      ->check(CLI::Range(1, kMostWorkerJobs));
+      ->check(CLI::Range(1, kMostAtOnce));
   command->callback([arguments, &exit_code] { exit_code = work(*arguments); });
 }
 

@@ -8,6 +8,9 @@ class App;
 
 namespace qsmpc::harness {
 
+/// The largest number for --jobs and --threads.
+inline constexpr int kMostAtOnce = 1024;
+
 void add_run_command(CLI::App& app, int& exit_code);
 void add_predict_command(CLI::App& app, int& exit_code);
 void add_campaign_command(CLI::App& app, int& exit_code);

@@ -51,7 +51,6 @@ constexpr const char* kCompareExample =
     "path of an MJCF file. Without --plant: analytic, and the scenario's own if it is not that.";
 constexpr int kMostEpisodes = 100'000;
 constexpr std::int64_t kMostPaths = 100'000;  // all their states are kept
-constexpr int kMostThreads = 1024;
 
 struct CompareArguments {
   std::string scenario;
@@ -173,7 +172,7 @@ void add_compare_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--threads", options.threads,
                    "that the work is divided among; default: all; changes no result")
-      ->check(CLI::Range(1, kMostThreads));
+      ->check(CLI::Range(1, kMostAtOnce));
   CLI::Option* error_file = command->add_option(
       "--write-model-error", arguments->error_file,
       "FILE (YAML): the measured model error, for the scenario's key model_error");

@@ -36,7 +36,6 @@ constexpr const char* kContestHelp =
 constexpr const char* kContestExample =
     "Example: qsmpc contest rivals --out out/rivals\n"
     "How far it is, from another terminal: qsmpc campaign status out/rivals";
-constexpr int kMostContestJobs = 1024;
 
 struct ContestArguments {
   std::string contest;
@@ -121,14 +120,14 @@ void add_contest_command(CLI::App& app, int& exit_code) {
   CLI::App* command = app.add_subcommand("contest", kContestHelp);
   command->footer(kContestExample);
   const auto arguments = std::make_shared<ContestArguments>();
-  arguments->jobs = std::min(kMostContestJobs, available_threads());
+  arguments->jobs = std::min(kMostAtOnce, available_threads());
   command->add_option("contest", arguments->contest, "a contest file, or the name of a shipped one")
       ->required();
   command
       ->add_option("--jobs", arguments->jobs,
                    "drives at the same time; default: one a core; drives that are timed are always "
                    "alone")
-      ->check(CLI::Range(1, kMostContestJobs));
+      ->check(CLI::Range(1, kMostAtOnce));
   command->add_option("--out", arguments->out, "output folder; default: out/NAME-contest");
   command->add_flag("--dry-run", arguments->dry_run, "check it and show what would be driven");
   command->add_flag("--update", arguments->update,

@@ -26,7 +26,6 @@ constexpr const char* kReproduceHelp =
     "Does the reference thesis's experiments again and lays each number beside the published one;\n"
     "writes results.json, results.md, results.html and the figures, after every experiment anew.";
 constexpr int kMostSeeds = 100'000;
-constexpr int kMostThreads = 1024;
 
 struct ReproduceArguments {
   std::vector<std::string> names;
@@ -110,7 +109,7 @@ void add_reproduce_command(CLI::App& app, int& exit_code) {
   command
       ->add_option("--threads", options.threads,
                    "that the work is divided among; default: all; changes nothing but timings")
-      ->check(CLI::Range(1, kMostThreads));
+      ->check(CLI::Range(1, kMostAtOnce));
   command->add_option("--out", arguments->out, "output folder; default: out/reproduce");
   command->add_flag("--quiet", arguments->quiet, "no progress");
   command->add_flag("--json", arguments->json, "print results.json instead of the table");
