@@ -18,7 +18,7 @@ namespace qsmpc::controller {
 namespace {
 
 // A region that all stages together add less of is left as it is.
-constexpr double kNegligible = 1e-8;
+constexpr double kNegligibleEntry = 1e-8;
 // Sizes of errors that are tried, in their norms: any of them gives a bound.
 constexpr int kSizes = 20;
 constexpr double kLeastSize = 1.2;
@@ -112,7 +112,7 @@ Crossing crossing(const DiscSurrogate& centre, const HalfSpace& space) {
     }
     if (!std::isfinite(norm)) continue;
     if (k == kHighest) try_size(kSafeSize * norm, std::pow(kSafeSize, -kHigherOrders[k]));
-    if (value <= 2.0 * kNegligible) break;
+    if (value <= 2.0 * kNegligibleEntry) break;
     double ratio = kLeastSize;
     for (const double rest : rests[k]) {
       try_size(ratio * norm, rest);
@@ -224,7 +224,7 @@ std::vector<double> first_entry_bounds(const UnsafeSet& unsafe, const SurrogateB
     DiscPath path;
     for (const RegionPointer& region : disc.regions) {
       const Eigen::VectorXd single = of.shares.row(part++).head(count);
-      if (single.sum() <= kNegligible) {
+      if (single.sum() <= kNegligibleEntry) {
         total += single;
         continue;
       }

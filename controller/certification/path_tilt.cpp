@@ -12,7 +12,7 @@ namespace qsmpc::controller {
 namespace {
 
 // Of a functional's variance, what must be left once it is uncorrelated with the others.
-constexpr double kLeastShare = 1e-6;
+constexpr double kLeastFreeShare = 1e-6;
 // The grid's spacing, in deviations of what its sum is smoothed with: δ is 2e^{−2π²/1.8²} = 0.45 %.
 constexpr double kSpacing = 1.8;
 // Places beyond this many deviations of their law are left out; they count in full.
@@ -74,7 +74,7 @@ bool add_functional(const PredictedMotion& motion, const std::vector<Eigen::Vect
   for (std::size_t j = 0; j < left.size(); ++j) {
     variance += left[j].dot(covariance_of(motion, j) * left[j]);
   }
-  if (!(variance > kLeastShare * whole) || !std::isfinite(variance)) return false;
+  if (!(variance > kLeastFreeShare * whole) || !std::isfinite(variance)) return false;
   const Eigen::Index count = functionals.count();
   functionals.weights.resize(left.size());
   functionals.moves.resize(left.size());

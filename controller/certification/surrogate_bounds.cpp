@@ -10,7 +10,7 @@ namespace qsmpc::controller {
 namespace {
 
 // What a region may add without being worked out further …
-constexpr double kNegligible = 1e-8;
+constexpr double kNegligibleBound = 1e-8;
 // … and without a search that takes long.
 constexpr double kWorthwhile = 1e-4;
 // From where on another core, which alone costs some 1e-2, may help.
@@ -42,7 +42,7 @@ RegionProbability bounds_of_surrogate(const PredictedMotion& motion, const Unsaf
                              .error = centre.error,
                              .higher = centre.higher,
                              .smoothing = smoothing,
-                             .worthwhile = every ? kNegligible : kWorthwhile};
+                             .worthwhile = every ? kNegligibleBound : kWorthwhile};
     for (const RegionPointer& region : disc.regions) {
       const double before = sum.smooth;
       region->add_probability(stage, state, sum);
@@ -71,7 +71,7 @@ double surrogate_law_bound(const UnsafeSet& unsafe, Eigen::Index stage,
                              .error = none,
                              .higher = higher,
                              .smoothing = smoothing,
-                             .worthwhile = kNegligible};
+                             .worthwhile = kNegligibleBound};
     for (const RegionPointer& region : disc.regions) region->add_probability(stage, state, sum);
   }
   return std::min(1.0, sum.smooth);

@@ -20,6 +20,8 @@
 namespace qsmpc::controller {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 // A sweep that gains less than this, relatively, is the last one.
 constexpr double kSweepSettled = 1e-6;
 // How often a step that does not pay is halved.
@@ -217,7 +219,6 @@ bool PathRegulator::improve(int& evaluations) {
 }
 
 const Decision& PathRegulator::decide(const Situation& situation) {
-  using Clock = std::chrono::steady_clock;
   const auto start = Clock::now();
   check_situation(situation, dynamics_.state_dim());
   place_target(problem_, dynamics_.description(), situation.belief.mean, situation.progress,

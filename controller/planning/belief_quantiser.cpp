@@ -7,18 +7,18 @@ namespace qsmpc::controller {
 namespace {
 
 // A message that is made only where it is needed: a control loop allocates nothing.
-void require(bool holds, const char* message) {
+void require_belief(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("belief: ") + message);
 }
 
 }  // namespace
 
 void BeliefQuantiser::quantise(const Gaussian& belief, GaussianQuantisation& out) {
-  require(belief.mean.size() == dim_, "the mean must be of the state's dimension");
-  require(belief.mean.allFinite(), "the mean must be finite");
-  require(belief.covariance.rows() == dim_ && belief.covariance.cols() == dim_ &&
-              belief.covariance.allFinite(),
-          "the covariance must be a finite matrix of states x states");
+  require_belief(belief.mean.size() == dim_, "the mean must be of the state's dimension");
+  require_belief(belief.mean.allFinite(), "the mean must be finite");
+  require_belief(belief.covariance.rows() == dim_ && belief.covariance.cols() == dim_ &&
+                     belief.covariance.allFinite(),
+                 "the covariance must be a finite matrix of states x states");
   if (covariance_.size() == 0 || covariance_ != belief.covariance) {
     const Gaussian centred{.mean = Eigen::VectorXd::Zero(dim_), .covariance = belief.covariance};
     centred_ = controller::quantise(centred, budget_, kind_);

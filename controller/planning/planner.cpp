@@ -13,7 +13,7 @@ namespace {
 using Clock = PlanInProgress::Clock;
 
 // A message that is made only where it is needed: planning allocates nothing.
-void require(bool holds, const char* message) {
+void require_plannable(bool holds, const char* message) {
   if (!holds) throw std::invalid_argument(std::string("planner: ") + message);
 }
 
@@ -31,8 +31,8 @@ Planner::Planner(const models::Dynamics& dynamics, PlannerSettings settings)
       start_(dynamics_, settings_, evaluator_),
       rounds_(dynamics_, settings_, evaluator_),
       effort_(settings_, evaluator_) {
-  require(settings_.otherwise != RiskOtherwise::kBrake || !speeds_of(dynamics_).empty(),
-          "a system without a speed among its states cannot brake");
+  require_plannable(settings_.otherwise != RiskOtherwise::kBrake || !speeds_of(dynamics_).empty(),
+                    "a system without a speed among its states cannot brake");
   if (settings_.otherwise == RiskOtherwise::kModel && settings_.model_error) {
     PlannerSettings errorless = settings_;
     errorless.model_error.reset();
@@ -183,12 +183,12 @@ void Planner::fall_back(Plan& plan) {
 const Plan& Planner::prescribe(const Gaussian& belief,
                                const Eigen::Ref<const Eigen::MatrixXd>& inputs) {
   const InputBounds& bounds = settings_.bounds;
-  require(inputs.rows() == dynamics_.input_dim() && inputs.cols() == settings_.horizon,
-          "the inputs must be a matrix of inputs x stages");
+  require_plannable(inputs.rows() == dynamics_.input_dim() && inputs.cols() == settings_.horizon,
+                    "the inputs must be a matrix of inputs x stages");
   // A comparison with NaN is false, so these are refused as well.
-  require(((inputs.colwise() - bounds.lower).array() >= 0.0).all() &&
-              ((inputs.colwise() - bounds.upper).array() <= 0.0).all(),
-          "the inputs must be within their bounds");
+  require_plannable(((inputs.colwise() - bounds.lower).array() >= 0.0).all() &&
+                        ((inputs.colwise() - bounds.upper).array() <= 0.0).all(),
+                    "the inputs must be within their bounds");
   begin_prescribed(belief, {});
   PlanStopwatch stopwatch;
   evaluator_.set_policy(inputs, Eigen::MatrixXd::Zero(dynamics_.input_dim(), dynamics_.state_dim()),

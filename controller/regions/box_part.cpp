@@ -10,7 +10,7 @@ namespace qsmpc::controller {
 namespace {
 
 // What a part of the unsafe set may add without being worked out further.
-constexpr double kNegligible = 1e-8;
+constexpr double kNegligibleTail = 1e-8;
 
 }  // namespace
 
@@ -45,10 +45,10 @@ BoxPart box_part(const Box& box) {
 void add_part_probability(const SurrogateLaw& state, const BoxPart& part, RegionProbability& sum) {
   // One value of the highest order settles the parts that are far away.
   const std::size_t highest = kHigherOrders.size() - 1;
-  double markov =
-      far_region_bound(state.law, state.higher[highest], kHigherOrders[highest], part, kNegligible);
+  double markov = far_region_bound(state.law, state.higher[highest], kHigherOrders[highest], part,
+                                   kNegligibleTail);
   double smooth = markov;
-  if (markov > kNegligible) {
+  if (markov > kNegligibleTail) {
     const Eigen::MatrixXd smoothing = state.smoothing(part.axes);
     const PerturbedGaussian perturbed{
         .law = state.law, .error = state.error, .smoothing = smoothing};

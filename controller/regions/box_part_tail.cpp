@@ -11,7 +11,7 @@ namespace {
 
 // Variances below this share of the largest, or below the square of a nanometre, are taken to be
 // it: a law that is certain has no standard deviation to count in.
-constexpr double kLeastShare = 1e-12;
+constexpr double kLeastVarianceShare = 1e-12;
 constexpr double kLeastVariance = 1e-18;
 
 /// How far a law is from a part, in standard deviations, and its derivative by the law's mean.
@@ -37,7 +37,8 @@ struct Side {
 };
 
 Side side_of(const Gaussian& law, const BoxPart& part, Eigen::Index axis) {
-  const double floor = std::max(kLeastVariance, kLeastShare * law.covariance.diagonal().maxCoeff());
+  const double floor =
+      std::max(kLeastVariance, kLeastVarianceShare * law.covariance.diagonal().maxCoeff());
   return {.axis = axis,
           .lower = part.box.lower[axis],
           .upper = part.box.upper[axis],

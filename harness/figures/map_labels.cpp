@@ -14,7 +14,7 @@ namespace qsmpc::harness {
 namespace {
 
 // View box units.
-constexpr double kTextSize = 12.0;
+constexpr double kLabelTextSize = 12.0;
 constexpr double kDescent = 2.0;  // of letters below their line
 constexpr double kNear = 9.0;     // of a text to its point
 constexpr double kBold = 1.2;     // how much wider bold letters are
@@ -39,7 +39,7 @@ struct TextPlace {
 };
 
 TextBox box_at(double left, double top, double width) {
-  return {.left = left, .right = left + width, .top = top, .bottom = top + kTextSize};
+  return {.left = left, .right = left + width, .top = top, .bottom = top + kLabelTextSize};
 }
 
 /// The places beside `at` where a text of `width` may stand, the best one first.
@@ -47,11 +47,11 @@ std::vector<TextPlace> places_beside(const MapPoint& at, double width) {
   std::vector<TextPlace> places;
   for (const double away : {kNear, 2.0 * kNear, 4.0 * kNear}) {
     const double below = at.y + away - 4.0;
-    const double above = at.y - away + 4.0 - kTextSize;
+    const double above = at.y - away + 4.0 - kLabelTextSize;
     const double right = at.x + away;
     const double left = at.x - away - width;
     const double middle = at.x - width / 2.0;
-    const double level = at.y - kTextSize / 2.0;
+    const double level = at.y - kLabelTextSize / 2.0;
     for (const TextBox& box :
          {box_at(right, below, width), box_at(right, above, width), box_at(left, below, width),
           box_at(left, above, width), box_at(middle, below + 3.0, width),
@@ -75,9 +75,9 @@ std::vector<TextPlace> places_outside(const MapCanvas& canvas, const PlacedText&
     const double x = (on.x - middle.x) / length;
     const double y = (on.y - middle.y) / length;
     // From the outline, by what the text itself reaches back, to its middle.
-    const double away = std::abs(x) * width / 2.0 + std::abs(y) * kTextSize / 2.0 + kGap;
-    places.push_back(
-        {.box = box_at(on.x + away * x - width / 2.0, on.y + away * y - kTextSize / 2.0, width)});
+    const double away = std::abs(x) * width / 2.0 + std::abs(y) * kLabelTextSize / 2.0 + kGap;
+    places.push_back({.box = box_at(on.x + away * x - width / 2.0,
+                                    on.y + away * y - kLabelTextSize / 2.0, width)});
   }
   return places;
 }
@@ -109,7 +109,7 @@ std::string texts_svg(const MapCanvas& canvas, const std::vector<PlacedText>& te
   std::string grounds;
   std::string svg;
   for (const PlacedText& text : texts) {
-    const double width = kBold * estimated_width(text.text, kTextSize);
+    const double width = kBold * estimated_width(text.text, kLabelTextSize);
     const std::vector<TextPlace> places = text.outline.empty()
                                               ? places_beside(canvas.place(text.at), width)
                                               : places_outside(canvas, text, width);

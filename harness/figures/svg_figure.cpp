@@ -18,7 +18,7 @@ constexpr double kMargin = 14.0;
 constexpr double kTitleHeight = 26.0;
 constexpr double kLineHeight = 17.0;  // of a note or an entry of the legend
 constexpr double kGap = 22.0;         // between rows of panels
-constexpr double kTextSize = 12.5;
+constexpr double kFigureText = 12.5;
 constexpr double kSmallFigureText = 14.5;  // before a figure shrinks to the columns of a paper
 constexpr double kOneColumn = 336.0;       // 3.5 inches
 constexpr double kTwoColumns = 687.0;      // 7.16 inches
@@ -116,13 +116,13 @@ std::size_t letters_in(double width, double letter) {
 }
 
 double text_size(const FigureStyle& style) {
-  return style.columns == 0 ? kTextSize : kSmallFigureText;
+  return style.columns == 0 ? kFigureText : kSmallFigureText;
 }
 
 /// Entries one beside the other while they fit `width`; a long name takes several lines.
 Head legend_svg(const std::vector<LegendEntry>& entries, double width, double letters) {
   const std::size_t columns =
-      letters_in(width - kSwatchWidth - kSwatchGap, kNameLetter * letters / kTextSize);
+      letters_in(width - kSwatchWidth - kSwatchGap, kNameLetter * letters / kFigureText);
   Head legend;
   double x = 0.0;
   double y = 0.0;  // of the line's foot

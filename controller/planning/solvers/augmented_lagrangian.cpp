@@ -13,8 +13,8 @@ constexpr double kWeightShare = 0.02;
 constexpr double kGrowth = 5.0;
 constexpr double kEnough = 0.3;
 // ρ stays within these shares of the cost.
-constexpr double kLeastShare = 1e-3;
-constexpr double kMostShare = 10.0;
+constexpr double kLeastWeightShare = 1e-3;
+constexpr double kMostWeightShare = 10.0;
 // A multiplier of a constraint that has room is worth another minimisation if it pushes for more
 // than this share of the cost.
 constexpr double kIdlePush = 1e-4;
@@ -30,7 +30,7 @@ void AugmentedLagrangian::start(SummedConstraints& constraint, double cost, bool
     weight_ = kWeightShare * scale;
     return;
   }
-  weight_ = std::clamp(weight_, kLeastShare * scale, kMostShare * scale);
+  weight_ = std::clamp(weight_, kLeastWeightShare * scale, kMostWeightShare * scale);
 }
 
 void AugmentedLagrangian::shift(Eigen::Index of_stage) {

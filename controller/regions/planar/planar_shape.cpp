@@ -11,33 +11,34 @@
 namespace qsmpc::controller {
 namespace {
 
-void require(bool holds, const char* expected) {
+void require_shape(bool holds, const char* expected) {
   if (!holds) throw std::invalid_argument(expected);
 }
 
 struct ShapeCheck {
   void operator()(const DiscShape& disc) const {
-    require(disc.centre.allFinite(), "disc: a finite centre");
-    require(disc.radius > 0.0 && std::isfinite(disc.radius), "disc: a radius above 0");
+    require_shape(disc.centre.allFinite(), "disc: a finite centre");
+    require_shape(disc.radius > 0.0 && std::isfinite(disc.radius), "disc: a radius above 0");
   }
   void operator()(const EllipseShape& ellipse) const {
-    require(ellipse.centre.allFinite() && std::isfinite(ellipse.angle),
-            "ellipse: a finite centre and angle");
-    require((ellipse.semi_axes.array() > 0.0).all() && ellipse.semi_axes.allFinite(),
-            "ellipse: semi-axes above 0");
+    require_shape(ellipse.centre.allFinite() && std::isfinite(ellipse.angle),
+                  "ellipse: a finite centre and angle");
+    require_shape((ellipse.semi_axes.array() > 0.0).all() && ellipse.semi_axes.allFinite(),
+                  "ellipse: semi-axes above 0");
   }
   void operator()(const TurnedBoxShape& box) const {
-    require(box.centre.allFinite() && std::isfinite(box.angle), "box: a finite centre and angle");
-    require((box.size.array() > 0.0).all() && box.size.allFinite(), "box: sides above 0");
+    require_shape(box.centre.allFinite() && std::isfinite(box.angle),
+                  "box: a finite centre and angle");
+    require_shape((box.size.array() > 0.0).all() && box.size.allFinite(), "box: sides above 0");
   }
   void operator()(const PolygonShape& polygon) const {
     const std::string wrong = why_no_polygon(polygon.corners);
     if (!wrong.empty()) throw std::invalid_argument("polygon: " + wrong);
   }
   void operator()(const HalfPlaneShape& half_plane) const {
-    require(half_plane.normal.allFinite() && half_plane.normal.norm() > 0.0,
-            "half_plane: a finite normal of a length above 0");
-    require(std::isfinite(half_plane.offset), "half_plane: a finite offset");
+    require_shape(half_plane.normal.allFinite() && half_plane.normal.norm() > 0.0,
+                  "half_plane: a finite normal of a length above 0");
+    require_shape(std::isfinite(half_plane.offset), "half_plane: a finite offset");
   }
 };
 
