@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <variant>
 
@@ -56,7 +57,7 @@ struct Nearness {
   bool operator()(const controller::PolygonShape& polygon) const {
     // Even and odd crossings of a ray to the right.
     bool inside = false;
-    double least = INFINITY;
+    double least = std::numeric_limits<double>::infinity();
     const Eigen::Index count = polygon.corners.cols();
     for (Eigen::Index i = 0; i < count; ++i) {
       const Eigen::Vector2d a = polygon.corners.col(i);

@@ -88,7 +88,9 @@ TEST(VehicleShapes, are_visible_ones_in_the_colours_of_the_file) {
     EXPECT_FALSE(shape.kind == ShapeKind::kEllipsoid && shape.size[0] > 0.05);
     EXPECT_FALSE(shape.kind == ShapeKind::kBox && std::abs(shape.size[1] - 0.09) < kRounding);
   }
-  const std::array<double, 4> paint{0.95F, 0.42F, 0.08F, 1.0};
+  // MuJoCo has colours in single precision.
+  const std::array<double, 4> paint{static_cast<double>(0.95F), static_cast<double>(0.42F),
+                                    static_cast<double>(0.08F), 1.0};
   const std::vector<VehicleShape> hull = of_kind(car, ShapeKind::kMesh);
   ASSERT_EQ(hull.size(), 5U);
   EXPECT_EQ(std::ranges::count(hull, paint, &VehicleShape::rgba), 4);

@@ -323,7 +323,8 @@ TEST(SolidPlant, has_a_prism_for_each_convex_part_where_the_coordinates_are_larg
     const int mesh = model->geom_dataid[geom];
     for (int i = 0; i < model->mesh_vertnum[mesh]; ++i) {
       const float* vertex = model->mesh_vert + 3 * (model->mesh_vertadr[mesh] + i);
-      const double from[3] = {vertex[0], vertex[1], vertex[2]};
+      double from[3] = {0.0, 0.0, 0.0};
+      mju_f2n(from, vertex, 3);
       double to[3] = {0.0, 0.0, 0.0};
       mju_rotVecQuat(to, from, model->geom_quat + 4 * geom);
       const Eigen::Vector2d at(to[0] + model->geom_pos[3 * geom],

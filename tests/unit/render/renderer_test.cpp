@@ -155,8 +155,7 @@ TEST(renderer, colours_are_those_of_the_file_whatever_its_lamps) {
 }
 
 TEST(renderer, terrain_makes_the_vehicle_neither_smaller_nor_hidden) {
-  const PlanarPoint ahead{0.2, 0.0};
-  const auto width_of = [&ahead](const std::string& mjcf) {
+  const auto width_of = [](const std::string& mjcf) {
     const Renderer renderer(small_picture("chase"), small_world(), mjcf);
     return renderer.locate({}, {0.0, -0.15})->x - renderer.locate({}, {0.0, 0.15})->x;
   };

@@ -166,8 +166,8 @@ TEST(EpisodeScene, of_a_system_without_a_place_in_the_plane_has_its_joints_at_ev
   // Every part of the cart and its pole has moved with the cart by 1.5 m.
   bool moved = false;
   for (std::size_t part = 0; part < parts; ++part) {
-    const double way = places[kPlace * (3 * parts + part)] - places[kPlace * part];
-    moved = moved || std::abs(way - 1.5) < 0.5;
+    const float way = places[kPlace * (3 * parts + part)] - places[kPlace * part];
+    moved = moved || std::abs(way - 1.5F) < 0.5F;
   }
   EXPECT_TRUE(moved);
 }

@@ -76,8 +76,8 @@ TEST(Motions, survive_being_written_and_loaded) {
 }
 
 TEST(Motions, target_may_be_where_something_only_stands_at_first) {
-  EXPECT_NO_THROW(parse_scenario(
-      with_obstacles("    - {disc: {centre: [5, 0], radius: 1}, motion: {velocity: [1, 0]}}\n")));
+  EXPECT_NO_THROW(static_cast<void>(parse_scenario(
+      with_obstacles("    - {disc: {centre: [5, 0], radius: 1}, motion: {velocity: [1, 0]}}\n"))));
   EXPECT_EQ(refusal_of(with_obstacles("    - {disc: {centre: [5, 0], radius: 1}}\n")).key,
             "target.state");
 }

@@ -11,7 +11,7 @@
 namespace qsmpc::harness {
 namespace episode_painter_test {
 
-constexpr VideoLayout kSmall{.width = 640, .height = 360};
+const VideoLayout kSmall{.width = 640, .height = 360};
 
 VideoLayout seen_by(const std::string& camera) {
   VideoLayout layout = kSmall;

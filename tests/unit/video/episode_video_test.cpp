@@ -18,7 +18,7 @@ namespace episode_video_test {
 
 using ::testing::HasSubstr;
 
-constexpr EpisodeVideoOptions kSmallVideo{.width = 320, .height = 180, .fps = 10};
+const EpisodeVideoOptions kSmallVideo{.width = 320, .height = 180, .fps = 10};
 
 TEST(episode_video, lasts_as_long_as_the_episode_and_a_second_more) {
   const std::string path = render::fresh_folder() / "episode.mp4";
