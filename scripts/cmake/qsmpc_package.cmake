@@ -23,7 +23,10 @@ set_target_properties(qsmpc_library PROPERTIES
   LINK_DEPENDS ${CMAKE_SOURCE_DIR}/scripts/cmake/exports.map)
 target_link_libraries(qsmpc_library PRIVATE ${qsmpc_rooms})
 target_link_options(qsmpc_library PRIVATE
-  LINKER:--version-script=${CMAKE_SOURCE_DIR}/scripts/cmake/exports.map LINKER:--no-undefined)
+  LINKER:--version-script=${CMAKE_SOURCE_DIR}/scripts/cmake/exports.map)
+if(NOT QSMPC_SANITIZE)  # whose run-time library comes with the program, by Clang
+  target_link_options(qsmpc_library PRIVATE LINKER:--no-undefined)
+endif()
 target_include_directories(qsmpc_library INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 target_compile_features(qsmpc_library INTERFACE cxx_std_20)
 target_link_libraries(qsmpc_library INTERFACE $<INSTALL_INTERFACE:Eigen3::Eigen>)
