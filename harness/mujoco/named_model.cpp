@@ -69,18 +69,19 @@ double wheel_radius(const NamedModel& named, int joint) {
   const mjModel& model = named.model;
   const int body = model.jnt_bodyid[joint];
   double radius = 0.0;
-  for (int k = 0; k < model.body_geomnum[body]; ++k) {
-    const int geom = model.body_geomadr[body] + k;
+  for (int geom = 0; geom < model.ngeom; ++geom) {
+    const bool turns_along = model.body_weldid[model.geom_bodyid[geom]] == body;
     const bool touches = model.geom_contype[geom] != 0 || model.geom_conaffinity[geom] != 0;
-    if (touches && is_round(model.geom_type[geom])) {
+    if (turns_along && touches && is_round(model.geom_type[geom])) {
       radius = std::max(radius, model.geom_size[std::ptrdiff_t{3} * geom]);
     }
   }
   if (radius > 0.0) return radius;
-  throw InputError({.file = named.file,
-                    .key = "body " + std::string(model.names + model.name_bodyadr[body]),
-                    .found = "no wheel",
-                    .expected = "a sphere, ellipsoid, cylinder or capsule that collides"});
+  throw InputError(
+      {.file = named.file,
+       .key = "joint " + std::string(model.names + model.name_jntadr[joint]),
+       .found = "no wheel that it turns",
+       .expected = "a sphere, ellipsoid, cylinder or capsule that collides, on its body"});
 }
 
 Eigen::Matrix3d body_rotation(const mjData& data, int body) {

@@ -21,8 +21,8 @@ struct NamedModel {
 /// Index of the slide or hinge joint called `name`. Throws InputError on another one.
 [[nodiscard]] int scalar_joint(const NamedModel& named, const std::string& name);
 
-/// Radius (m) of the wheel that spins about `joint`: that of the largest round geom of its body.
-/// Throws InputError on a body without one.
+/// Radius (m) of the wheel that spins about `joint`: that of the largest round geom of its body and
+/// of those fixed to it. Throws InputError where there is none.
 [[nodiscard]] double wheel_radius(const NamedModel& named, int joint);
 
 /// Orientation of a body in the world. data: with positions up to date.
