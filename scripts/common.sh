@@ -56,11 +56,12 @@ remember_objects() {
   export CCACHE_SLOPPINESS=pch_defines,time_macros
 }
 
-# name_precompiled PRESET: the names by which ccache knows the precompiled headers of a build.
+# name_precompiled PRESET: the names by which ccache knows the precompiled headers of a build, GCC's
+# and Clang's.
 name_precompiled() {
   local header
   while read -r header; do
-    echo "$1" >"$header.gch.sum"
+    echo "$1" | tee "$header.gch.sum" >"$header.pch.sum"
   done < <(find "build/$1" -name cmake_pch.hxx)
 }
 
