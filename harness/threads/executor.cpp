@@ -7,6 +7,8 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include "harness/threads/sanitizers.hpp"
+
 namespace qsmpc::harness {
 namespace {
 
@@ -14,7 +16,7 @@ namespace {
 /// orders all of this by itself, is not compiled with it.
 class Handover {
  public:
-#if defined(__SANITIZE_THREAD__)
+#if QSMPC_THREAD_SANITIZER
   Handover() { given_.store(true, std::memory_order_release); }
   void take() { (void)given_.load(std::memory_order_acquire); }
   void give_back() { done_.fetch_add(1, std::memory_order_acq_rel); }

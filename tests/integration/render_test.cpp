@@ -15,6 +15,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "harness/threads/sanitizers.hpp"
 #include "tests/integration/process.hpp"
 
 namespace qsmpc::harness {
@@ -143,7 +144,7 @@ TEST_F(Render, a_still_is_a_png_of_the_size_asked_for) {
 }
 
 // The address sanitizer takes terabytes of it for its shadow, before the program begins.
-#ifndef __SANITIZE_ADDRESS__
+#if !QSMPC_ADDRESS_SANITIZER
 TEST_F(Render, too_little_address_space_is_told_in_a_line) {
   for (const long limit : {450'000'000L, 500'000'000L, 600'000'000L, 800'000'000L}) {
     const ProcessOptions options{.address_space = limit};

@@ -6,6 +6,8 @@
 
 #include <cstdlib>
 
+#include "harness/threads/sanitizers.hpp"
+
 namespace qsmpc::testing {
 
 /// `all` where scripts/test is called with --slow, `few` where a sanitizer watches, else `usual`;
@@ -13,7 +15,7 @@ namespace qsmpc::testing {
 template <class Number>
 [[nodiscard]] Number by_effort(Number few, Number usual, Number all) {
   const bool slow = std::getenv("QSMPC_SLOW_TESTS") != nullptr;
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if QSMPC_ADDRESS_SANITIZER || QSMPC_THREAD_SANITIZER
   static_cast<void>(all);
   return slow ? usual : few;
 #else

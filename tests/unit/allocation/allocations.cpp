@@ -6,13 +6,11 @@
 
 #include <execinfo.h>
 
+#include "harness/threads/sanitizers.hpp"
+
 // Sanitizers have an allocator of their own, and tell of it; elsewhere the functions of the C
 // library, which operator new and Eigen call, are replaced by some that count and pass on to it.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define QSMPC_SANITIZED 1
-#else
-#define QSMPC_SANITIZED 0
-#endif
+#define QSMPC_SANITIZED (QSMPC_ADDRESS_SANITIZER || QSMPC_THREAD_SANITIZER)
 
 namespace {
 

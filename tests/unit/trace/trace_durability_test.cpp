@@ -17,14 +17,6 @@
 #include "tests/unit/trace/trace_folder.hpp"
 #include "tests/unit/trace/trace_matchers.hpp"
 
-#ifdef __SANITIZE_ADDRESS__
-// HDF5 itself leaks where it gives a damaged file or a full disk up.
-// NOLINTNEXTLINE(bugprone-reserved-identifier,readability-identifier-naming)
-extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions() {
-  return "leak:libhdf5";
-}
-#endif
-
 namespace qsmpc::harness {
 namespace trace_durability_test {
 
