@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <new>
 #include <vector>
 
@@ -44,7 +45,7 @@ class Arena {
   /// `count` doubles, which are whatever they were, from the beginning of a cache line on.
   double* take(std::size_t count) {
     count = (count + kLine - 1) / kLine * kLine;
-    while (at_ < slabs_.size() && used_ + count > slabs_[at_].size()) {
+    while (at_ < slabs_.size() && used_ + count > slabs_[at_].size) {
       ++at_;
       used_ = 0;
     }
@@ -52,7 +53,7 @@ class Arena {
       add_slab(count);
       used_ = 0;
     }
-    double* const begin = slabs_[at_].data() + used_;
+    double* const begin = slabs_[at_].data.get() + used_;
     used_ += count;
     given_ += count;
     return begin;
@@ -61,7 +62,7 @@ class Arena {
   void reset() {
     most_ = std::max(most_, given_);
     std::size_t room = 0;
-    for (const LineVector& slab : slabs_) room += slab.size();
+    for (const Slab& slab : slabs_) room += slab.size;
     if (room < most_ + most_ / 2) add_slab(3 * most_ - room);
     at_ = 0;
     used_ = 0;
@@ -71,9 +72,23 @@ class Arena {
  private:
   static constexpr std::size_t kLine = 64 / sizeof(double);
   static constexpr std::size_t kSlab = std::size_t{1} << 17;  // doubles
-  void add_slab(std::size_t count) { slabs_.emplace_back(std::max(kSlab, count)); }
+  struct Release {
+    void operator()(double* data) const { LineAllocator<double>{}.deallocate(data, 0); }
+  };
+  // Nothing is written to it before it is given out, so that room which no use ever needs is no
+  // more than a range of addresses.
+  struct Slab {
+    std::size_t size = 0;  // doubles
+    std::unique_ptr<double[], Release> data;
+  };
+  void add_slab(std::size_t count) {
+    const std::size_t size = std::max(kSlab, count);
+    slabs_.push_back(
+        {.size = size,
+         .data = std::unique_ptr<double[], Release>(LineAllocator<double>{}.allocate(size))});
+  }
 
-  std::vector<LineVector> slabs_;
+  std::vector<Slab> slabs_;
   std::size_t at_ = 0;
   std::size_t used_ = 0;   // of the slab at hand
   std::size_t given_ = 0;  // in all

@@ -30,6 +30,20 @@ void step_stage(const models::Dynamics& dynamics, const DiscreteMeasure& stage,
 
 }  // namespace
 
+Prediction without_shares(const Prediction& prediction) {
+  Prediction result{.stages = prediction.stages, .stepped = prediction.stepped, .maps = {}};
+  result.maps.reserve(prediction.maps.size());
+  for (const StageMap& map : prediction.maps) {
+    result.maps.push_back({.identity = map.identity,
+                           .shares = {},
+                           .offset = {},
+                           .weights = map.weights,
+                           .spread = map.spread,
+                           .compression_w2 = map.compression_w2});
+  }
+  return result;
+}
+
 void predict(const models::Dynamics& dynamics, Propagator& propagator, const DiscreteMeasure& start,
              const Policy& policy, const Executor& run, PredictionScratch& scratch,
              Prediction& out) {

@@ -22,6 +22,10 @@ struct Prediction {
   std::vector<StageMap> maps;           ///< horizon; from stepped[k] to stages[k + 1]
 };
 
+/// `prediction` without the shares and offsets of its maps, which are by far the most of it where
+/// there are many points: what certificates and reports need. It can't be evaluated again.
+[[nodiscard]] Prediction without_shares(const Prediction& prediction);
+
 /// What a prediction works on, so that the next one allocates nothing.
 struct PredictionScratch {
   std::vector<double> inputs;

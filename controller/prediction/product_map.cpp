@@ -34,8 +34,6 @@ StageMap map_to_means(const Clusters& clusters, const Eigen::VectorXd& masses) {
     map.shares.begin.push_back(static_cast<int>(map.shares.column.size()));
     ++at;
   }
-  transpose(map.shares, static_cast<int>(clusters.share.rows()), run_in_turn,
-            map.shares_transposed);
   return map;
 }
 
@@ -87,8 +85,7 @@ StageMap cluster_map(const SoftCompression& compression, const Eigen::VectorXd& 
   return map;
 }
 
-void cluster_map(const MixtureCells& cells, Eigen::Index sources, const Executor& run,
-                 StageMap& out) {
+void cluster_map(const MixtureCells& cells, const Executor& run, StageMap& out) {
   const int count = cells.cells();
   const Eigen::Index dim = static_cast<Eigen::Index>(cells.noise_mean.size()) / count;
   out.identity = false;
@@ -105,7 +102,6 @@ void cluster_map(const MixtureCells& cells, Eigen::Index sources, const Executor
       }
     }
   });
-  transpose(out.shares, static_cast<int>(sources), run, out.shares_transposed);
   out.spread.resize(0, 0);
   out.offset = Eigen::Map<const Points>(cells.noise_mean.data(), dim, count);
   out.weights = Eigen::Map<const Eigen::VectorXd>(cells.weight.data(), count);
@@ -119,7 +115,6 @@ StageMap lost_map(const DiscreteMeasure& stepped) {
   map.shares.column.resize(size);
   std::iota(map.shares.column.begin(), map.shares.column.end(), 0);
   map.shares.value.assign(stepped.weights.begin(), stepped.weights.end());
-  transpose(map.shares, size, run_in_turn, map.shares_transposed);
   map.offset = Points::Zero(stepped.dim(), 1);
   map.weights = Eigen::VectorXd::Constant(1, stepped.weights.sum());
   map.compression_w2 = std::numeric_limits<double>::infinity();

@@ -23,9 +23,9 @@ namespace qsmpc::controller {
 [[nodiscard]] StageMap cluster_map(const SoftCompression& compression,
                                    const Eigen::VectorXd& weights, const DiscreteMeasure& noise);
 
-/// The map from `sources` stepped points to the means of the cells; reuses the storage of `out`.
-void cluster_map(const MixtureCells& cells, Eigen::Index sources, const Executor& run,
-                 StageMap& out);
+/// The map from stepped points to the means of the cells that their mixture is cut into; reuses the
+/// storage of `out`.
+void cluster_map(const MixtureCells& cells, const Executor& run, StageMap& out);
 
 /// The map of stepped points that are not finite: all into one cluster, at infinite cost.
 [[nodiscard]] StageMap lost_map(const DiscreteMeasure& stepped);

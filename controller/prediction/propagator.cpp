@@ -119,7 +119,7 @@ class MixturePropagator final : public Propagator {
       return;
     }
     splitter_.split(stepped, weights, run, cells_);
-    cluster_map(cells_, stepped.cols(), run, out);
+    cluster_map(cells_, run, out);
     spread_between(cells_.covariance, cells_.whole_covariance, spread_);
     displace(out);
     // As above: the two parts of a product's way are uncorrelated.

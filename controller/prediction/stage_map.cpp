@@ -141,14 +141,14 @@ void pullback_spread(const StageMap& map, Points& adjoint) {
   HWY_DYNAMIC_DISPATCH(add_weights)(of_mean.data(), map.weights, adjoint);
 }
 
-void pullback_shares(const StageMap& map, const Points& adjoint, const PackedPoints& packed,
-                     Eigen::Index begin, Eigen::Index end, Points& stepped_adjoint) {
+void pullback_shares(const StageMap& map, const SparseMatrix& transposed, const Points& adjoint,
+                     const PackedPoints& packed, Eigen::Index begin, Eigen::Index end,
+                     Points& stepped_adjoint) {
   if (map.identity) {
     stepped_adjoint.middleCols(begin, end - begin) = adjoint.middleCols(begin, end - begin);
     return;
   }
-  multiply(map.shares_transposed, packed, static_cast<int>(begin), static_cast<int>(end),
-           stepped_adjoint);
+  multiply(transposed, packed, static_cast<int>(begin), static_cast<int>(end), stepped_adjoint);
 }
 
 void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& stepped_adjoint) {
@@ -157,7 +157,11 @@ void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& step
   PackedPoints packed;
   resize_packed(static_cast<int>(adjoint.rows()), adjoint.cols(), packed);
   pack(unspread, 0, adjoint.cols(), packed);
-  pullback_shares(map, unspread, packed, 0, stepped_adjoint.cols(), stepped_adjoint);
+  SparseMatrix transposed;
+  if (!map.identity) {
+    transpose(map.shares, static_cast<int>(stepped_adjoint.cols()), run_in_turn, transposed);
+  }
+  pullback_shares(map, transposed, unspread, packed, 0, stepped_adjoint.cols(), stepped_adjoint);
 }
 
 }  // namespace qsmpc::controller

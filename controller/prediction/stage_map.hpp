@@ -19,12 +19,11 @@ namespace qsmpc::controller {
 /// c̃_n = m + S (Σ_i A_ni f_i + b_n − m), with the weights ρ̃_n of the c̃_n and their mean
 /// m = Σ_n ρ̃_n (Σ_i A_ni f_i + b_n).
 struct StageMap {
-  bool identity = false;  ///< A = I, b = 0: the points stay as they are, and `shares` is empty
-  SparseMatrix shares;    ///< A, clusters x sources; each row sums to one
-  SparseMatrix shares_transposed;
-  Points offset;                ///< b, d x clusters
-  Eigen::VectorXd weights;      ///< clusters
-  Eigen::MatrixXd spread;       ///< S, d x d, symmetric; empty: the identity
+  bool identity = false;    ///< A = I, b = 0: the points stay as they are, and `shares` is empty
+  SparseMatrix shares;      ///< A, clusters x sources; each row sums to one
+  Points offset;            ///< b, d x clusters
+  Eigen::VectorXd weights;  ///< clusters
+  Eigen::MatrixXd spread;   ///< S, d x d, symmetric; empty: the identity
   double compression_w2 = 0.0;  ///< cost of the coupling from the products to the c̃_n
 
   [[nodiscard]] Eigen::Index clusters() const { return weights.size(); }
@@ -49,9 +48,11 @@ void pullback_stage_map(const StageMap& map, const Points& adjoint, Points& step
 void pullback_spread(const StageMap& map, Points& adjoint);
 
 /// … and that by the adjoint of the stepped points begin … end − 1, from `adjoint` also in packed
-/// form.
-void pullback_shares(const StageMap& map, const Points& adjoint, const PackedPoints& packed,
-                     Eigen::Index begin, Eigen::Index end, Points& stepped_adjoint);
+/// form. `transposed` is map.shares transposed; with the packed form, unused where the map is the
+/// identity.
+void pullback_shares(const StageMap& map, const SparseMatrix& transposed, const Points& adjoint,
+                     const PackedPoints& packed, Eigen::Index begin, Eigen::Index end,
+                     Points& stepped_adjoint);
 
 }  // namespace qsmpc::controller
 

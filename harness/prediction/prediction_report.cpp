@@ -54,7 +54,7 @@ void judge(const controller::PredictedMotion& motion, const PredictionOptions& o
            PredictionReport& report) {
   const Scenario& scenario = report.scenario;
   report.policy = motion.policy;
-  report.prediction = motion.prediction;
+  report.prediction = controller::without_shares(motion.prediction);
   report.budgets = controller::error_budget(motion);
   // All bounds are reported, so each is to be as good as it gets.
   report.certificates = controller::certify(motion, scenario.safe_set, report.budgets,

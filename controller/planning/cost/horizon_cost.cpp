@@ -41,6 +41,7 @@ HorizonCost::HorizonCost(const HorizonCostTerms& terms, const Prediction& predic
 
 void HorizonCost::freeze_assignments(const Prediction& prediction, const Policy& policy) {
   rolled_out_ = false;
+  transposed_ = 0;
   prediction_ = &prediction;
   policy_.inputs = policy.inputs;
   policy_.states = policy.states;
@@ -255,8 +256,20 @@ CostParts HorizonCost::forward_clusters(Eigen::Index k, ParticleRange range) {
   return cost;
 }
 
+/// Sees to it that the first `stages` maps have their transposes, which many a prediction that is
+/// only evaluated never needs.
+void HorizonCost::transpose_maps(Eigen::Index stages) {
+  for (; transposed_ < stages; ++transposed_) {
+    const StageMap& map = prediction_->maps[transposed_];
+    if (map.identity) continue;
+    Stage& stage = stages_[transposed_];
+    transpose(map.shares, static_cast<int>(stage.points.cols()), run_, stage.transposed);
+  }
+}
+
 /// From the adjoints of stage `from` and, with the cost, of all stages before it.
 void HorizonCost::backward(Eigen::Index from, bool with_cost, Eigen::VectorXd& gradient) {
+  transpose_maps(from);
   adjoints_at_hand_ = false;
   gradient.setZero();
   nominal_adjoint_.setZero();
@@ -289,8 +302,8 @@ void HorizonCost::backward_sources(Eigen::Index k, bool with_cost, ParticleRange
                                    Partial& partial) {
   Stage& stage = stages_[k];
   const Stage& next = stages_[k + 1];
-  pullback_shares(prediction_->maps[k], next.adjoint, next.packed_adjoint, range.begin, range.end,
-                  stage.stepped_adjoint);
+  pullback_shares(prediction_->maps[k], stage.transposed, next.adjoint, next.packed_adjoint,
+                  range.begin, range.end, stage.stepped_adjoint);
   if (with_cost) add_points(stage.state_gradient, range, stage.stepped_adjoint);
   terms_.dynamics.pullback(columns(std::as_const(stage.points), range),
                            columns(std::as_const(stage.inputs), range),

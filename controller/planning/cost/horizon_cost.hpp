@@ -71,8 +71,9 @@ class HorizonCost {
     Points points;   // c
     Points adjoint;  // of c; after a forward pass that of the terms at the particles
     PackedPoints packed_adjoint;
-    Points inputs;          // u at the points
-    Points input_gradient;  // of the terms at the inputs
+    SparseMatrix transposed;  // shares of the map to the next stage, once a gradient is asked for
+    Points inputs;            // u at the points
+    Points input_gradient;    // of the terms at the inputs
     Points input_adjoint;
     Points stepped;  // f(c, u)
     PackedPoints packed_stepped;
@@ -99,6 +100,7 @@ class HorizonCost {
     return rolled_out_ && std::equal(decision_.begin(), decision_.end(), z.begin(), z.end());
   }
   void resize_stages();
+  void transpose_maps(Eigen::Index stages);
   void set_decision(const Eigen::VectorXd& z);
   void forward(const Eigen::VectorXd& z);
   [[nodiscard]] CostParts forward_sources(Eigen::Index k, ParticleRange range);
@@ -123,6 +125,7 @@ class HorizonCost {
   bool lone_ = false;                   // whether no particle ever meets another
   std::vector<double> decision_;        // that the stages belong to …
   bool rolled_out_ = false;             // … if any
+  Eigen::Index transposed_ = 0;         // maps whose transposes the stages have
   bool adjoints_at_hand_ = false;       // whether the adjoints are still those of the terms
   CostParts parts_;
   CostParts fixed_;  // what no decision changes

@@ -28,7 +28,7 @@ void expect_equal(const MixtureCase& mixture) {
   EXPECT_NEAR(cells.w2 * cells.w2, plain.w2 * plain.w2,
               kSquareTolerance * cells.whole_covariance.trace());
   StageMap map;
-  cluster_map(cells, mixture.sources.size(), run_in_turn, map);
+  cluster_map(cells, run_in_turn, map);
   for (int n = 0; n < cells.cells(); ++n) {
     const PlainCell& cell = plain.cells[n];
     ASSERT_EQ(cells.begin[n + 1] - cells.begin[n], static_cast<int>(cell.parts.size()))

@@ -26,7 +26,7 @@ constexpr double kRounding = 1e-12;
 /// Cells, as points with weights.
 DiscreteMeasure cell_means(const MixtureCase& mixture, const MixtureCells& cells) {
   StageMap map;
-  cluster_map(cells, mixture.sources.size(), run_in_turn, map);
+  cluster_map(cells, run_in_turn, map);
   DiscreteMeasure means{.locations = Points(mixture.sources.dim(), cells.cells()),
                         .weights = map.weights};
   apply_stage_map(map, mixture.sources.locations, means.locations);
