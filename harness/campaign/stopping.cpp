@@ -51,8 +51,8 @@ void refuse_shard_of_rule(const Campaign& campaign, const Shard& shard) {
   if (!campaign.until || shard.count == 1) return;
   throw InputError({.key = "--shard",
                     .found = fmt::format("{}/{}", shard.index, shard.count),
-                    .expected = "all seeds in one folder: the campaign's until looks at each of "
-                                "them in their order"});
+                    .expected = "all seeds in one folder, because the campaign's until checks "
+                                "them in order"});
 }
 
 }  // namespace qsmpc::harness

@@ -165,7 +165,7 @@ std::string overall_note(const ContestResults& results) {
                     counted(static_cast<std::size_t>(std::min(results.contest.timing_seeds,
                                                               results.contest.seeds.size())),
                             "seed"))
-              : "The times are not taken yet. ";
+              : "Times have not been measured yet. ";
   return note + "▲ and ▼: better and worse at the level of 1 %.</p>\n";
 }
 

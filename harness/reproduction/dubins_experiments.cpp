@@ -235,7 +235,7 @@ ExperimentResult corridor_with_noise(Laboratory& laboratory) {
       "period, its totals give a tenth of them a problem. Both are shown.",
       "The largest published probability is that of the first period, in which the belief is "
       "widest "
-      "and the same in every drive: it hardly knows of the drive. Bounds that hold for the law "
+      "and the same in every drive: it says little about the drive. Bounds that hold for the law "
       "itself, not for a ball about 100 points, are orders of magnitude lower.",
       "For the same beliefs, plans with feedback are unsafe less often, as simulation shows, but "
       "are "

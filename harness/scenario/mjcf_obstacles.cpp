@@ -79,7 +79,7 @@ std::vector<const GroundGeom*> chosen_by_name(const GeomChoice& choice) {
     };
     const auto found = std::ranges::find(choice.geoms, names[i], &GroundGeom::name);
     if (found == choice.geoms.end()) {
-      note(names[i], known.empty() ? "nothing, as no geom that stands still has a name"
+      note(names[i], known.empty() ? "nothing, because no static geom has a name"
                                    : expected_names(names[i], known));
     } else if (const std::string why = why_no_obstacle(*found, choice.height); !why.empty()) {
       note(why, expected_geoms(choice.height));

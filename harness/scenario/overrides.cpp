@@ -31,7 +31,7 @@ std::vector<std::string> split_key(const std::string& key) {
     }
   }
   if (parts.size() >= kMaxYamlDepth) {
-    throw InputError({.file = kOverrideSource, .key = key, .found = "a key of too many parts"});
+    throw InputError({.file = kOverrideSource, .key = key, .found = "a key with too many parts"});
   }
   return parts;
 }

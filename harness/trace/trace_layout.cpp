@@ -75,7 +75,7 @@ void add_plant(std::vector<DatasetSpec>& layout, const TraceSizes& n) {
                     .axes = {"step", "state"},
                     .units = n.states.units,
                     .columns = n.states.names,
-                    .comment = "what the planner saw of it"});
+                    .comment = "the state as the planner observed it"});
   layout.push_back({.path = "/plant/input",
                     .row_shape = {n.inputs.names.size()},
                     .axes = {"step", "input"},

@@ -36,8 +36,8 @@ const Scenario::Controller& defaults() {
 void check_kind(const ScenarioReading& reading, Section& section) {
   if (!reading.lookup.must_exist || reading.scenario.controller.kind != kObjectController) return;
   section.note("kind",
-               "another controller: an object is handed over by the program that drives, in Python "
-               "by qsmpc.run(scenario, controller=…)");
+               "another controller: an object can only be passed by a program, in Python as "
+               "qsmpc.run(scenario, controller=…)");
 }
 
 void check_lqr_about(const ScenarioReading& reading, Section& section) {
