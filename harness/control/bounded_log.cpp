@@ -29,7 +29,8 @@ std::string BoundedLog::text() const {
 }
 
 std::string BoundedLog::last_line() const {
-  const std::string& text = end_.empty() ? begin_ : end_;
+  // A line may have begun in the first half.
+  const std::string text = left_out_ == 0 ? begin_ + end_ : end_;
   const std::size_t last = text.find_last_not_of(" \t\r\n");
   if (last == std::string::npos) return {};
   const std::size_t line = text.find_last_of('\n', last);

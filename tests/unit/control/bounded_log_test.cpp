@@ -37,5 +37,14 @@ TEST(BoundedLog, keeps_beginning_and_end_of_what_is_long) {
   EXPECT_EQ(kept + std::stoul(text.substr(mark + std::string("[… ").size())), all);
 }
 
+TEST(BoundedLog, the_last_line_may_cross_the_half_or_end_before_it) {
+  BoundedLog crossing(10);
+  crossing.add("a long last line\n");
+  EXPECT_EQ(crossing.last_line(), "a long last line");
+  BoundedLog before(10);
+  before.add("ten bytes!\n\n");
+  EXPECT_EQ(before.last_line(), "ten bytes!");
+}
+
 }  // namespace bounded_log_test
 }  // namespace qsmpc::harness
